@@ -21,6 +21,9 @@ export const STILL_OBJECTS = 2;
 /** Bit of a triangle's tag that says that it faces a cavity. */
 export const CAVITY = 128;
 
+/** Endings of mesh files that are read. */
+export const MESHES = [".stl", ".obj", ".ply", ".off", ".glb", ".mesh", ".msh", ".inp", ".vtk", ".vtu", ".vtp", ".vti", ".vts", ".vtr"] as const;
+
 /** Endings of files of CAD programs. */
 export const CAD_SUFFIXES = [".step", ".stp", ".p21", ".iges", ".igs", ".brep", ".brp", ".fcstd", ".sldprt", ".sldasm", ".ipt", ".f3d", ".x_t", ".x_b", ".sat", ".3dm"] as const;
 

@@ -7,5 +7,6 @@ it("says of a CAD model what to do with it, and of other files what is taken", (
   expect(cad.what).toContain("Finger.STEP is a CAD model");
   expect(cad.hint).toContain(CAD_HINT);
   expect(CAD_HINT).toContain("STL");
-  expect(refusalOf("photo.png").hint).toContain(".stl");
+  for (const ending of [".toml", ".stl", ".vti", ".inp"])
+    expect(refusalOf("photo.png").hint).toContain(ending);
 });

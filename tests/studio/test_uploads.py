@@ -94,6 +94,15 @@ def test_an_array_that_is_no_labels_is_refused(tmp_path, array, what):
         uploaded(tmp_path, array)
 
 
+def test_a_mesh_that_says_its_unit_is_read_in_it(tmp_path):
+    file = tmp_path / "box.glb"
+    trimesh.creation.box((0.04, 0.02, 0.02)).export(file)
+    text = design_of_mesh(file)
+    assert "Its numbers are, as it says, in m: change" in text
+    design = Design.from_document(tomllib.loads(text))
+    assert voxels_of(design).volume == pytest.approx(16e-6, rel=0.1)
+
+
 def test_a_mesh_of_a_doubtful_size_is_asked_about(tmp_path):
     file = tmp_path / "box_m.stl"
     trimesh.creation.box((0.04, 0.02, 0.02)).export(file)

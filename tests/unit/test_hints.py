@@ -41,7 +41,7 @@ def test_a_format_that_nothing_converts_is_not_sent_to_a_converter(tmp_path):
     with pytest.raises(ShapeError) as caught:
         TriangleMesh(path=tmp_path / "a.unv", unit="mm").build()
     assert "meshio" not in str(caught.value)
-    assert "STL" in str(caught.value)
+    assert "open it in Gmsh and save it as .msh" in str(caught.value)
 
 
 def test_a_new_design_may_be_called_as_its_file(tmp_path):

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from voxsoft.errors import FileError
 from voxsoft.files import vtu
 from voxsoft.formats.contents import CORNERS, Contents
 from voxsoft.formats.read import read_contents
@@ -34,11 +33,7 @@ def account_of_surface(path: Path, surface: Surface, unit: str | None, ask: str)
         If neither the file nor the caller says the unit.
     """
     points = surface.points[np.unique(surface.triangles)]
-    try:
-        contents = read_contents(path)
-    except FileError:
-        # A dialect that the surface was read from by another reader: its triangles are all known.
-        contents = Contents(surface.points, (), format=path.suffix.lower().lstrip("."))
+    contents = read_contents(path)
     known = 1.0 if path.suffix.lower() == ".vtu" and vtu.is_ours(path) else contents.unit
     meter = meter_of(path.name, known, unit, points, ask)
     caution = doubt(np.ptp(points, axis=0), meter)

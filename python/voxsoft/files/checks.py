@@ -65,7 +65,7 @@ def check_mesh(
     Parameters
     ----------
     path
-        ``.stl``, ``.obj``, ``.ply``, ``.off``, ``.vtu`` or another that meshio reads.
+        ``.stl``, ``.obj``, ``.glb``, ``.vtu``, ``.inp``, ``.msh`` or another mesh file.
     unit
         What the numbers in the file are: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``; not needed where
         the file says it.

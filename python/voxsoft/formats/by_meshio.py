@@ -37,12 +37,17 @@ def read(path: Path) -> Contents:
         ):
             warnings.simplefilter("ignore")
             data = meshio.read(path)
+    except ImportError as error:
+        what = f"needs the package {error.name} to be read"
+        raise FileError(str(path), what, f"pip install {error.name}") from error
     # meshio raises whatever its parsers run into, and leaves the program in places.
     except (Exception, SystemExit) as error:
-        printed = " ".join(output.getvalue().split()).removeprefix("Error: ")
-        words = printed if isinstance(error, SystemExit) else f"{type(error).__name__} {error}"
-        kind = path.suffix.lower()
-        what = f"cannot be read as {kind} by meshio: {words[:200].strip()}"
+        words = "meshio does not understand its content"
+        if isinstance(error, SystemExit):
+            words = " ".join(output.getvalue().split()).removeprefix("Error: ") or words
+        elif isinstance(error, meshio.ReadError):
+            words = str(error) or words
+        what = f"cannot be read as {path.suffix.lstrip('.').upper()}: {words[:200].strip()}"
         raise FileError(str(path), what, "save it again, or as .vtu, .msh or .inp") from error
     return contents_of(data, path.suffix.lower().lstrip("."))
 

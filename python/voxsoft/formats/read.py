@@ -8,11 +8,44 @@ from pathlib import Path
 from typing import Final
 
 from voxsoft.errors import FileError
-from voxsoft.formats import abaqus, by_meshio, gmsh
+from voxsoft.formats import abaqus, by_meshio, by_trimesh, gmsh, obj, ply, stl, vtk_legacy, vtk_xml
 from voxsoft.formats.contents import Contents
 
 #: Own readers by suffix, before meshio.
-READERS: Final[dict[str, Callable[[Path], Contents]]] = {".inp": abaqus.read, ".msh": gmsh.read}
+READERS: Final[dict[str, Callable[[Path], Contents]]] = {
+    ".inp": abaqus.read,
+    ".msh": gmsh.read,
+    ".vtk": vtk_legacy.read,
+    **dict.fromkeys((".vtu", ".vtp", ".vti", ".vts", ".vtr"), vtk_xml.read),
+    ".obj": obj.read,
+    ".stl": stl.read,
+    ".glb": by_trimesh.read,
+    ".ply": ply.read,
+    ".off": by_trimesh.read_after_meshio,
+}
+#: Files of VTK that list other files: their reader says which.
+_LISTS: Final = dict.fromkeys(
+    (".vtm", ".vtmb", ".pvd", ".pvtu", ".pvtp", ".pvti", ".pvts", ".pvtr"), vtk_xml.read
+)
+#: Another way for formats that are not read, by programs that read them.
+_WAYS: Final = (
+    ((".3mf", ".amf"), "open it in a slicer such as PrusaSlicer and export it as STL"),
+    ((".unv",), "open it in Gmsh and save it as .msh"),
+    (
+        (".gltf", ".dae", ".fbx", ".x3d", ".blend", ".usd", ".usda", ".usdc", ".usdz"),
+        "open it in Blender and export it as STL or as glTF binary, .glb",
+    ),
+    (
+        (".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".tif", ".tiff"),
+        "open its labels, whole numbers with 0 outside, in ParaView or 3D Slicer and save them as "
+        ".vti or .vtk",
+    ),
+    ((".vtkhdf", ".hdf", ".vthb"), "open it in ParaView and save it as .vtu"),
+    (
+        (".npy", ".npz"),
+        "make voxels of it in Python by Voxels.from_array, or drop it on the studio",
+    ),
+)
 
 #: Formats of meshio that are drawings.
 _DRAWINGS: Final = {".svg", ".wkt"}
@@ -48,11 +81,16 @@ def read_contents(path: Path) -> Contents:
     voxsoft.errors.FileError: no-such-file.msh: no such file
     """
     suffix = path.suffix.lower()
-    if suffix not in known_suffixes():
-        what = f"unknown format {path.suffix!r}; allowed are {', '.join(known_suffixes())}"
-        raise FileError(str(path), what)
+    if suffix not in known_suffixes() and suffix not in _LISTS:
+        ways = (way for suffixes, way in _WAYS if suffix in suffixes)
+        what = f"unknown format {path.suffix!r}; known are {', '.join(known_suffixes())}"
+        raise FileError(str(path), what, next(ways, "export it as STL, OBJ or .vtu"))
     if not path.is_file():
         raise FileError(str(path), "no such file")
-    if suffix == ".msh" and b"$MeshFormat" not in path.read_bytes()[:4096]:
-        return by_meshio.read(path)  # ANSYS and others use the suffix too
-    return READERS.get(suffix, by_meshio.read)(path)
+    if not path.stat().st_size:
+        raise FileError(str(path), "holds nothing: it has 0 bytes", "save or copy it again")
+    if suffix == ".msh":
+        with path.open("rb") as file:
+            if b"$MeshFormat" not in file.read(4096):
+                return by_meshio.read(path)  # ANSYS and others use the suffix too
+    return (READERS | _LISTS).get(suffix, by_meshio.read)(path)

@@ -20,6 +20,7 @@ from voxsoft.shapes import KINDS as SHAPES
 from voxsoft.shapes.cad_files import CAD_SUFFIXES, HINT, WHAT
 from voxsoft.studio.commands import AnyCommand, Command
 from voxsoft.studio.events import AnyEvent, Event
+from voxsoft.studio.uploads import MESHES
 from voxsoft.studio.wire import (
     CAVITY,
     CREDITS,
@@ -74,6 +75,7 @@ def typescript() -> str:
     blocks = [
         _HEAD,
         *(_constant(name, value, about) for name, (value, about) in _NUMBERS.items()),
+        _constant("MESHES", MESHES, "Endings of mesh files that are read."),
         _constant("CAD_SUFFIXES", CAD_SUFFIXES, "Endings of files of CAD programs."),
         _constant("CAD_WHAT", WHAT, "Why they are not read."),
         _constant("CAD_HINT", HINT, "What to do with them."),

@@ -17,6 +17,8 @@ from voxsoft.errors import FileError
 from voxsoft.files import write_mesh
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
+from voxsoft.formats.read import read_contents
+from voxsoft.formats.unit import name_of
 from voxsoft.shapes import TriangleMesh
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 from voxsoft.shapes.mesh_bodies import sizes_in_units
@@ -27,7 +29,10 @@ from voxsoft.voxels import Voxels
 LARGEST_ARCHIVE: Final = 512 * 1024 * 1024
 #: Files in an archive.
 MOST_FILES: Final = 2_000
-MESHES: Final = (".stl", ".obj", ".ply", ".off", ".mesh", ".msh", ".vtk", ".vtu")
+MESHES: Final = (
+    *(".stl", ".obj", ".ply", ".off", ".glb", ".mesh", ".msh", ".inp"),
+    *(".vtk", ".vtu", ".vtp", ".vti", ".vts", ".vtr"),
+)
 KINDS: Final = (".toml", *MESHES, ".npy", ".csv", ".zip")
 #: Cells along the longest side of a mesh that is dropped on the page.
 _FIRST_CELLS: Final = 32
@@ -60,27 +65,28 @@ def safe_name(name: str) -> str:
     return f"{folder_name(stem, 'upload')}{suffix}"
 
 
-def design_of_mesh(file: Path, unit: str = "mm") -> str:
+def design_of_mesh(file: Path) -> str:
     """Write a design file whose body is a mesh that was dropped on the page.
 
     Parameters
     ----------
     file
-        The mesh.
-    unit
-        Unit of its numbers; most programs write mm.
+        The mesh. Its numbers are in the unit that it says, else in mm, as most programs write them.
 
     Raises
     ------
-    ShapeError
+    FileError, ShapeError
         The mesh cannot be read, or encloses nothing.
     """
+    meter = read_contents(file).unit
+    unit = "mm" if meter is None else name_of(meter)
     low, high = TriangleMesh(path=str(file), unit=unit).build().bounds()
     size = max(b - a for a, b in zip(low, high, strict=True)) / _FIRST_CELLS
     voxel = format_quantity(float(f"{size:.2g}"), "length")
     sizes = sizes_in_units(_FIRST_CELLS * size / parse(f"1 {unit}", "length"))
+    why = "are taken as" if meter is None else "are, as it says, in"
     about = (
-        f"# A body from {file.name}. Its numbers are taken as {unit}: change `unit`, and",
+        f"# A body from {file.name}. Its numbers {why} {unit}: change `unit`, and",
         f"# the lengths below, if that is wrong. It would be, {sizes}.",
     )
     return _standing(about, [_Piece(file, unit)], voxel, low[2], file.stem)

@@ -1,9 +1,10 @@
 import { useEffect, useState } from "react";
-import { CAD_HINT, CAD_SUFFIXES, CAD_WHAT, LARGEST_UPLOAD } from "../protocol";
+import { CAD_HINT, CAD_SUFFIXES, CAD_WHAT, LARGEST_UPLOAD, MESHES } from "../protocol";
 import { toast } from "../store/studio";
 import { openDocument } from "./actions";
 
-const TAKEN = [".toml", ".stl", ".obj", ".npy", ".zip"];
+/** Endings of files that can be opened. */
+export const TAKEN: readonly string[] = [".toml", ...MESHES, ".npy", ".zip"];
 
 /** Send a file to the server and open it; tables of measurements are taken by their own pane. */
 export async function upload(file: File): Promise<void> {

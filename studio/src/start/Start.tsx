@@ -2,7 +2,7 @@ import { useEffect, useRef, useState } from "react";
 import { Button } from "../controls/Choice";
 import icon from "../icon.svg";
 import type { RecentFile, Robot } from "../protocol";
-import { upload } from "../shell/DropZone";
+import { TAKEN, upload } from "../shell/DropZone";
 import { Icon } from "../shell/icons";
 import { BodyPicture } from "../shell/VersionsSheet";
 import { openSheet } from "../store/page";
@@ -111,7 +111,7 @@ export function Start() {
               type="file"
               tabIndex={-1}
               aria-label="Open from the start screen"
-              accept=".toml,.stl,.obj,.npy,.zip"
+              accept={TAKEN.join(",")}
               onChange={(event) => {
                 const files = [...(event.target.files ?? [])];
                 event.target.value = "";

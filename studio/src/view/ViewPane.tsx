@@ -63,7 +63,8 @@ function Welcome() {
     <div className="welcome" data-testid="welcome">
       <Empty title="Start from a design">
         <p>
-          Or drop a .toml, .stl, .obj or .npy file, or a run folder (.zip), anywhere on the page.
+          Or drop a .toml, a mesh such as .stl or .vtu, a .npy, or a run folder (.zip), anywhere on
+          the page.
         </p>
         <div className="welcome-grid">
           {[EMPTY, ...(templates ?? [])].map((template) => (

@@ -1,5 +1,7 @@
 // The ways to a new shape: the picker of all kinds, a file, and what most robots begin with.
+
 import { useRef } from "react";
+import { MESHES } from "../../protocol";
 import { sendFile } from "../../shell/DropZone";
 import { ShapeIcon } from "./ShapeIcon";
 import { ShapePicker } from "./ShapePicker";
@@ -36,7 +38,7 @@ export function AddShape(props: Props & { variants: Readonly<Record<string, Sche
       <input
         ref={file}
         type="file"
-        accept=".stl,.obj,.ply,.off"
+        accept={MESHES.join(",")}
         hidden
         aria-label="Mesh file of a shape"
         data-testid="shape-file"

@@ -1,9 +1,11 @@
 // Bodies of a design: other design files, each placed, copied, mirrored and arranged.
+
 import { useEffect, useRef, useState } from "react";
 import { Button, Section, Select } from "../../controls/Choice";
 import { describeValue } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
 import type { DesignFile } from "../../protocol";
+import { MESHES } from "../../protocol";
 import { sendFile } from "../../shell/DropZone";
 import { send } from "../../store/session";
 import { useStudio } from "../../store/studio";
@@ -118,7 +120,7 @@ function AddBody(props: { files: readonly DesignFile[] }) {
       <input
         ref={picker}
         type="file"
-        accept=".toml,.stl,.obj"
+        accept={[".toml", ...MESHES].join(",")}
         hidden
         aria-label="Design of a body"
         data-testid="body-file"

@@ -1,7 +1,7 @@
 import { useRef, useState } from "react";
 import { Button, Section } from "../../controls/Choice";
 import type { Template } from "../../protocol";
-import { upload } from "../../shell/DropZone";
+import { TAKEN, upload } from "../../shell/DropZone";
 import { useStudio } from "../../store/studio";
 import { openHere } from "./edits";
 import { EMPTY } from "./empty";
@@ -48,7 +48,7 @@ export function Gallery() {
             type="file"
             tabIndex={-1}
             aria-label="Open a design, a mesh, voxels or a run folder"
-            accept=".toml,.stl,.obj,.npy,.zip"
+            accept={TAKEN.join(",")}
             onChange={(event) => {
               for (const file of event.target.files ?? []) void upload(file);
               event.target.value = "";
@@ -67,8 +67,8 @@ export function Gallery() {
       )}
       {!open && (
         <p className="muted">
-          Or drop a <code>.toml</code>, <code>.stl</code>, <code>.obj</code>, <code>.npy</code> or a
-          zipped run folder anywhere on the page.
+          Or drop a <code>.toml</code>, a mesh such as <code>.stl</code>, <code>.vtu</code> or{" "}
+          <code>.inp</code>, a <code>.npy</code> or a zipped run folder anywhere on the page.
         </p>
       )}
     </Section>

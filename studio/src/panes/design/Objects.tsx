@@ -1,7 +1,9 @@
 // Objects that the body touches: added beside it, with the few things that matter first.
+
 import { useRef } from "react";
 import { Button, Section, Select } from "../../controls/Choice";
 import { bytesOf } from "../../engine/base64";
+import { MESHES } from "../../protocol";
 import { refusalOf, sendFile } from "../../shell/DropZone";
 import { toast, useStudio } from "../../store/studio";
 import { setView } from "../../store/view";
@@ -105,7 +107,7 @@ function AddObject(props: { values: readonly Table[] }) {
       <input
         ref={file}
         type="file"
-        accept=".stl"
+        accept={MESHES.join(",")}
         hidden
         aria-label="STL file of an object"
         data-testid="object-file"
