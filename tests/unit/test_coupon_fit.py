@@ -17,6 +17,7 @@ from voxsoft.materials.coupon import (
     read_curve,
     read_modulus_tests,
 )
+from voxsoft.units import format_quantity
 
 DATA = Path(__file__).parents[2] / "examples" / "data" / "tensile"
 
@@ -273,3 +274,21 @@ def test_beam_formulas_against_the_slender_limit():
 def test_modulus_tests_that_cannot_be_used(table, words):
     with pytest.raises(vs.VoxSoftError, match=words):
         read_modulus_tests({"observation": [table]})
+
+
+def test_a_card_that_fits_worse_than_others_says_its_own_stress_and_so():
+    # Mooney-Rivlin of 20 and 10 kPa: at an equibiaxial stretch of 1.5 it has 116.3 kPa.
+    random = np.random.default_rng(0)
+    stretch = np.linspace(1.02, 2.0, 60)
+    stress = 2.0 * (stretch - stretch**-2) * (20e3 + 10e3 / stretch)
+    noisy = stress + 150.0 * random.standard_normal(60)
+    curve = Curve(stretch - 1.0, noisy, name="coupon")
+    fit = fit_coupons([curve], toe="off")
+    (mode,) = (each for each in fit.untested if each.mode == "equibiaxial")
+    assert mode.low < 116.3e3 < mode.high
+    (sentence,) = (each for each in fit.warnings if each.startswith("equibiaxial"))
+    own = nominal_stress(fit.recommended.material, [mode.stretch], "equibiaxial")[0]
+    assert f"The card says {format_quantity(float(f'{own:.3g}'), 'modulus')}" in sentence
+    alone = fit.recommended.name not in mode.models
+    assert ("is not among the models that fit alike" in sentence) == alone
+    assert not any("safer" in each for each in fit.warnings)

@@ -16,6 +16,7 @@ from voxsoft.materials.coupon.cycles import Cycles, SofteningFit, fit_softening
 from voxsoft.materials.coupon.interval import Interval
 from voxsoft.materials.coupon.modulus_test import MeasuredModulus
 from voxsoft.materials.coupon.untested import UntestedMode
+from voxsoft.materials.homogeneous import nominal_stress
 from voxsoft.materials.hyperelastic import Hyperelastic
 from voxsoft.materials.stability import StableRange
 from voxsoft.materials.tested import StretchRange
@@ -186,11 +187,14 @@ class CouponFit:
             found += _about_the_start(curve, toe, self.correction)
         if {curve.mode for curve in self.curves} == {"uniaxial"}:
             found.append(
-                "Only uniaxial curves: mooney-rivlin and ogden are guesses in the other modes; "
-                "neo-hookean, gent and yeoh are safer there"
+                "Only uniaxial curves: each model is a guess in the other modes; neo-hookean, gent "
+                "and yeoh, of one invariant, stay stable there, and may be far off"
             )
-        found += [mode.sentence for mode in self.untested if mode.sentence]
-        young = self.recommended.young.value
+        fit = self.recommended
+        for mode in self.untested:
+            stress = float(nominal_stress(fit.material, np.array([mode.stretch]), mode.mode)[0])
+            found += [said] if (said := mode.beside(fit.name, stress)) else []
+        young = fit.young.value
         if not _RUBBER[0] < young < _RUBBER[1]:
             found.append(
                 f"Young's modulus comes out as {_kpa(young)}, which is no rubber: check the units"

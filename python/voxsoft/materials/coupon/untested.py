@@ -101,6 +101,25 @@ fit alike: walls of chambers are stretched both ways; test a membrane (--equibia
             f"that fit alike: {_ADVICE[self.mode]}"
         )
 
+    def beside(self, name: str, stress: float) -> str:
+        """The sentence with what a model of the fit says [Pa], and whether it fits alike.
+
+        Examples
+        --------
+        >>> alike = ("mooney-rivlin", "ogden-2")
+        >>> mode = UntestedMode("equibiaxial", 1.5, 90e3, 118e3, *alike, alike)
+        >>> mode.beside("yeoh-3", 69e3)
+        'equibiaxial stress at stretch 1.5 is 90 kPa (mooney-rivlin) to 118 kPa (ogden-2) by \
+models that fit alike: walls of chambers are stretched both ways; test a membrane (--equibiaxial). \
+The card says 69 kPa: yeoh-3 is not among the models that fit alike'
+        """
+        if not self.sentence:
+            return ""
+        own = f"The card says {format_quantity(float(f'{stress:.3g}'), 'modulus')}"
+        if name not in self.models:
+            own += f": {name} is not among the models that fit alike"
+        return f"{self.sentence}. {own}"
+
 
 _ADVICE: Final[dict[Mode, str]] = {
     "uniaxial": "what bends or is pulled is stretched one way; test a strip",
