@@ -193,7 +193,8 @@ class CouponFit:
         fit = self.recommended
         for mode in self.untested:
             stress = float(nominal_stress(fit.material, np.array([mode.stretch]), mode.mode)[0])
-            found += [said] if (said := mode.beside(fit.name, stress)) else []
+            sentence = mode.beside(fit.name, stress)
+            found += [sentence] if sentence else []
         young = fit.young.value
         if not _RUBBER[0] < young < _RUBBER[1]:
             found.append(
