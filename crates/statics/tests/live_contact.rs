@@ -138,8 +138,9 @@ fn force_on_body(touch: &LiveTouch, positions: &[Vec3]) -> Vec3 {
 
 #[test]
 fn what_falls_lies_on_an_object_and_gains_no_energy() {
-    let height = 0.02;
-    for step in [1.0 / 60.0, 1.0 / 600.0] {
+    // The step in which the block meets the plate would end up to 1.8 mm, nearly half a voxel, within it.
+    let heights = (0..8).map(|k| (0.02 + 3e-4 * f64::from(k), 1.0 / 60.0));
+    for (height, step) in heights.chain([(0.02, 1.0 / 600.0)]) {
         let plate = ([-0.02, -0.02, -0.01], [0.04, 0.04, 0.0]);
         let scene = Scene::of(lifted([3, 3, 3], height)).fixed(plate.0, plate.1);
         let (problem, touch) = scene.problem(gravity(), 0.3);
@@ -165,7 +166,7 @@ fn what_falls_lies_on_an_object_and_gains_no_energy() {
         }
         let state = run.state();
         let force = force_on_body(&touch, &state.positions);
-        // What is left of the shaking after a quarter of a second at rest.
+        // The rest of the shaking after a quarter of a second.
         assert!((force[2] / weight - 1.0).abs() < 1e-2, "{force:?} {weight}");
         let lowest = state.positions.iter().take(64).map(|x| x[2]);
         let lowest = lowest.fold(f64::INFINITY, f64::min);
@@ -206,11 +207,11 @@ fn what_sticks_stays_and_what_slips_slides_as_coulomb_says() {
         found / expected - 1.0
     };
     // Bounds of friction are those of the step before, and what touches anew, as corners of a block that rocks do, has
-    // none yet: with steps of 1/60 s it slides 12 % too fast, and with each half of that at most half as much.
-    let errors = [60.0, 120.0, 240.0].map(|rate| error(1.0 / rate));
-    assert!(errors[0].abs() < 0.15, "{errors:?}");
-    assert!(errors[1].abs() < errors[0].abs() / 2.0, "{errors:?}");
-    assert!(errors[2].abs() < errors[1].abs() / 2.0, "{errors:?}");
+    // none yet: an error of first order, of which the part depends on where the rocking ends.
+    for rate in [60.0, 120.0, 240.0] {
+        let error = error(1.0 / rate);
+        assert!(error.abs() < 0.15 * 60.0 / rate, "{rate} {error:e}");
+    }
 }
 
 /// Two pads whose backs close on a free box, whose weight comes on then.

@@ -27,6 +27,28 @@ impl Implicit {
         (positions, value, bound)
     }
 
+    /// Begins anew from standing still where that has less potential, after contact has changed what faces what or how
+    /// much it resists; the potential of standing still.
+    ///
+    /// What was found before may lie deep in what is faced now, and a search from there spends the energy of a spring that
+    /// nothing has compressed on throwing the body away.
+    pub(super) fn stay_where_better(
+        &mut self,
+        goal: Goal<'_>,
+        positions: &mut Vec<Vec3>,
+        value: &mut Value,
+    ) -> f64 {
+        let stayed = self.stayed(goal.time);
+        let mut other = Value::default();
+        let problem = &self.problem;
+        Objective { problem, goal }.evaluate(&stayed, &mut other);
+        let bound = other.potential;
+        if !(value.potential <= bound) {
+            (*positions, *value) = (stayed, other);
+        }
+        bound
+    }
+
     /// A guess, what it faces being looked for there.
     fn judged(&mut self, positions: Vec<Vec3>, goal: Goal<'_>) -> (Vec<Vec3>, Value) {
         self.face(&positions, true);

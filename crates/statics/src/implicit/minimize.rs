@@ -7,6 +7,7 @@ use voxsoft_solid::{Ask, Problem};
 
 use super::contact::{make_rigid, restore};
 use super::lagged::Lagged;
+use super::line::{Line, Outcome, Then};
 use super::objective::{Objective, Value};
 use super::quasi_newton::{Memory, product};
 
@@ -19,8 +20,6 @@ const SUFFICIENT: f64 = 1e-4;
 const LARGEST_STRETCH: f64 = 20.0;
 /// How far one move may turn or strain a voxel: what turns by `θ` in a straight line swells by `θ²`.
 const LARGEST_CHANGE: f64 = 0.15;
-/// How often a move may be halved.
-const HALVINGS: u32 = 8;
 /// Potentials are sums of many terms and known to about this part of their size, and of the energy of a strain of one:
 /// small strains are found as differences.
 const ROUNDING: f64 = 1e-12;
@@ -115,31 +114,37 @@ impl Search<'_> {
                 return (end, taken);
             }
             let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
-            let mut part = (LARGEST_CHANGE / largest_change(problem, &moves)).min(1.0);
-            let mut halvings = 0;
+            let part = (LARGEST_CHANGE / largest_change(problem, &moves)).min(1.0);
+            let mut line = Line::new(part, gain, problem.contact().is_some());
             loop {
                 trial.clear();
                 let pairs = positions.iter().zip(&moves);
-                trial.extend(pairs.map(|(x, m)| add(*x, scale(part, *m))));
+                trial.extend(pairs.map(|(x, m)| add(*x, scale(line.part, *m))));
                 restore(problem, &mut trial);
                 let new = Extremes::of(problem, &trial);
+                let mut outcome = Outcome::Unsound;
                 if new.are_sound_after(extremes) {
                     self.objective.evaluate(&trial, &mut next);
-                    let rounding = self.rounding(value, &next);
-                    if self.is_stable(&next)
-                        && next.potential <= value.potential - SUFFICIENT * part * gain + rounding
-                    {
+                    if self.is_stable(&next) {
+                        let asked = value.potential - SUFFICIENT * line.part * gain;
+                        let low = next.potential <= asked + self.rounding(value, &next);
+                        outcome = if low { Outcome::Lower } else { Outcome::TooFar };
+                    }
+                }
+                let slope = || -product(&direction, &self.free_force(&trial, &next));
+                match line.after(outcome, slope) {
+                    Then::Take => {
                         extremes = new;
                         break;
                     }
+                    Then::TryAgain => {}
+                    Then::GiveUp => {
+                        let nothing = gain <= self.rounding(value, value);
+                        return (if nothing { End::Found } else { End::Stuck }, taken);
+                    }
                 }
-                halvings += 1;
-                if halvings > HALVINGS {
-                    let nothing = gain <= self.rounding(value, value);
-                    return (if nothing { End::Found } else { End::Stuck }, taken);
-                }
-                part /= 2.0;
             }
+            let part = line.part;
             std::mem::swap(positions, &mut trial);
             std::mem::swap(value, &mut next);
             let after = self.free_force(positions, value);
@@ -147,7 +152,12 @@ impl Search<'_> {
             let step = direction.iter().map(|d| part * d).collect();
             self.memory.note(step, change, part * part * gain);
             force = after;
-            last = part * largest;
+            // A move that had to be shortened does not show how near the minimum is.
+            last = if line.is_whole() {
+                part * largest
+            } else {
+                f64::INFINITY
+            };
             if last <= self.tolerance.at(positions) {
                 return (End::Found, taken + 1);
             }

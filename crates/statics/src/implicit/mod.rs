@@ -16,6 +16,7 @@ mod contact;
 mod floor;
 mod guess;
 mod lagged;
+mod line;
 mod minimize;
 mod objective;
 mod pressures;
@@ -154,8 +155,8 @@ pub struct Implicit {
     carried: Vec<bool>,
     /// Whether the last step went on to the end of its search.
     settled: bool,
-    /// Whether anything was pressed at the state.
-    touching: bool,
+    /// Whether anything was pressed during the last step, at its end or on the way there.
+    met: bool,
     /// Whether contact joins other vertices than the tangent has room for.
     pattern_changed: bool,
     damping_rate: f64,
@@ -203,7 +204,7 @@ impl Implicit {
             value: Value::default(),
             carried: vec![false; state.positions.len()],
             settled: true,
-            touching: false,
+            met: false,
             pattern_changed: false,
             damping_rate: initial_rate(settings.damping),
             step: settings.step.clamp(STEPS[0], STEPS[1]),
@@ -231,6 +232,7 @@ impl Implicit {
         let Goal { inertia, .. } = goal;
         let (mut positions, mut value, mut bound) = self.first_guess(goal);
         self.settled = true;
+        self.met = self.touches(&positions);
         let mut rounds = 0;
         let mut searches = 0;
         let mut fresh = false;
@@ -274,6 +276,7 @@ impl Implicit {
                 },
             };
             let (end, moves) = search.run(&mut positions, &mut value, most, go_on);
+            self.met |= self.touches(&positions);
             if !fresh {
                 self.excess += f64::from(moves.saturating_sub(2));
             }
@@ -292,12 +295,11 @@ impl Implicit {
                     let mut faced =
                         self.faces_other(goal, &positions, &mut value) && rounds <= FACING_ROUNDS;
                     if rounds <= DEEP_ROUNDS {
-                        let deep = self.stiffens(goal, &positions, &mut value);
-                        if deep {
-                            // Potentials under other penalties do not compare.
-                            bound = f64::INFINITY;
-                        }
-                        faced |= deep;
+                        faced |= self.stiffens(goal, &positions, &mut value);
+                    }
+                    if faced {
+                        self.met = true;
+                        bound = self.stay_where_better(goal, &mut positions, &mut value);
                     }
                     if !(changed && rounds <= FLOOR_ROUNDS || faced) {
                         break;
@@ -311,6 +313,7 @@ impl Implicit {
             let hopeless = searches > SEARCHES_IN_CONTACT || (fresh && end == End::Stuck);
             if contact && hopeless {
                 self.settled = false;
+                self.met = true;
                 self.faces_other(goal, &positions, &mut value);
                 if value.potential <= bound {
                     break;
@@ -378,7 +381,7 @@ impl Implicit {
         self.state = state;
         self.before = None;
         self.stage = Stage::First;
-        self.touching = false;
+        self.met = false;
         if let Some(contact) = self.problem.contact() {
             contact.start(&self.state.positions);
         }

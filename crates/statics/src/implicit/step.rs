@@ -53,10 +53,14 @@ impl Implicit {
     }
 
     fn take_stage(&mut self, step: f64, go_on: &mut dyn FnMut(Ask) -> bool) -> Result<(), Failure> {
-        let second_order = self.before.is_some() && !self.touching;
+        let second_order = self.before.is_some() && !self.met;
         let mut found = self.find(step, second_order, go_on);
-        if second_order && matches!(&found, Ok((next, _)) if self.touches(&next.positions)) {
+        if second_order && self.met && !matches!(found, Err(Failure::Cancelled)) {
             self.go_back();
+            // The tangent resists where surfaces touched in the end, and would hold back what has yet to come there.
+            if let Some(lagged) = &mut self.lagged {
+                lagged.forget();
+            }
             found = self.find(step, false, go_on);
         }
         let (next, value) = found.inspect_err(|_| self.go_back())?;
@@ -125,7 +129,6 @@ impl Implicit {
             self.go_back();
             return Err(Failure::Lost);
         }
-        let touching = self.touches(&next.positions);
         let taken = self
             .problem
             .contact()
@@ -136,7 +139,6 @@ impl Implicit {
         }
         let factor_of = |load: &Load| load.history.at(next.time);
         self.problem.accept_loads(&next.positions, &factor_of);
-        self.touching = touching;
         self.hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
         if let Some(viscosity) = &mut self.viscosity {
             viscosity.end(self.problem.body(), &next.positions, step);

@@ -1,0 +1,113 @@
+//! How far to go along a direction down the potential of a time step.
+//!
+//! A move that brings too little is halved. Where surfaces may meet that is not enough: on the way the slope jumps from
+//! that of free flight to that of contact, and a move that ends before the jump leaves the search as wise as it was. There
+//! the secant of the slopes finds the end, the upper slope being halved whenever the lower end has moved (the Illinois
+//! variant of the false position, Dowell and Jarratt 1971, doi 10.1007/BF01934364), until at most [`FLAT`] of the first
+//! slope is left.
+
+/// How often the end of a move may be changed.
+const CHANGES: u32 = 8;
+const CHANGES_IN_CONTACT: u32 = 16;
+/// The part of the slope at the start that may be left at the end of a move which contact has shortened.
+const FLAT: f64 = 0.5;
+/// How near an end a trial between both may be, as a part of the way between them.
+const LEAST_PART: f64 = 1.0 / 16.0;
+
+/// How a trial ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Outcome {
+    /// A voxel is turned inside out, or gives way.
+    Unsound,
+    /// The potential is too large.
+    TooFar,
+    /// The potential is low enough.
+    Lower,
+}
+
+/// Which step follows a trial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Then {
+    Take,
+    TryAgain,
+    GiveUp,
+}
+
+/// The search for the end of a move.
+pub(super) struct Line {
+    /// The part of the move to try.
+    pub part: f64,
+    /// The slope of the potential at the start, in J.
+    start: f64,
+    /// Parts with the slopes of the potential there, in J: of the last trial that was low enough, and of the last one that
+    /// went too far in contact.
+    low: (f64, f64),
+    high: Option<(f64, f64)>,
+    in_contact: bool,
+    changes: u32,
+}
+
+impl Line {
+    /// Begins with the part `part` of a move along which the potential falls by `gain` (J) at first.
+    pub fn new(part: f64, gain: f64, in_contact: bool) -> Self {
+        Self {
+            part,
+            start: -gain,
+            low: (0.0, -gain),
+            high: None,
+            in_contact,
+            changes: 0,
+        }
+    }
+
+    /// Whether no trial had to be changed.
+    pub fn is_whole(&self) -> bool {
+        self.changes == 0
+    }
+
+    /// Goes on after a trial of `part` with its outcome and the slope there.
+    pub fn after(&mut self, outcome: Outcome, slope: impl FnOnce() -> f64) -> Then {
+        match (outcome, self.high) {
+            (Outcome::Lower, Some(high)) if self.changes < CHANGES_IN_CONTACT => {
+                let slope = slope();
+                if slope >= FLAT * self.start {
+                    return Then::Take;
+                }
+                self.low = (self.part, slope);
+                self.high = Some((high.0, high.1 / 2.0));
+            }
+            (Outcome::Lower, _) => return Then::Take,
+            (Outcome::TooFar, _) if self.in_contact => self.high = Some((self.part, slope())),
+            (Outcome::TooFar | Outcome::Unsound, _) => self.high = None,
+        }
+        self.changes += 1;
+        if self.changes <= self.most_changes() {
+            self.part = self.between();
+            Then::TryAgain
+        } else if self.low.0 > 0.0 {
+            self.part = self.low.0;
+            Then::TryAgain
+        } else {
+            Then::GiveUp
+        }
+    }
+
+    fn most_changes(&self) -> u32 {
+        if self.in_contact {
+            CHANGES_IN_CONTACT
+        } else {
+            CHANGES
+        }
+    }
+
+    /// Where the secant of the slopes vanishes, or the middle.
+    fn between(&self) -> f64 {
+        let (begin, below) = self.low;
+        let (end, part) = match self.high {
+            Some((end, above)) if above > 0.0 => (end, below / (below - above)),
+            Some((end, _)) => (end, 0.5),
+            None => (self.part, 0.5),
+        };
+        begin + (end - begin) * part.clamp(LEAST_PART, 1.0 - LEAST_PART)
+    }
+}
