@@ -6,10 +6,11 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use voxsoft_frames::{Display, Field, FrameHead, Outline};
+use voxsoft_solid::State;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Problem, State};
 
 use crate::errors::to_python;
+use crate::handle::Handle;
 use crate::simulate::{PyProblem, from_rows, rows};
 
 pub(crate) fn field(id: u16) -> PyResult<Field> {
@@ -165,7 +166,7 @@ pub fn pack_smooth<'py>(
 /// A surface or tetrahedra of a body, to be packed into frames.
 #[pyclass(frozen, name = "Display", module = "voxsoft._core")]
 pub struct PyDisplay {
-    pub(crate) problem: Arc<Problem>,
+    pub(crate) problem: Arc<Handle>,
     pub(crate) display: Display,
 }
 
@@ -183,7 +184,7 @@ impl PyDisplay {
         let triangles: Vec<[u32; 3]> = rows("triangles", &triangles)?;
         let tags = tags.as_array().to_vec();
         let problem = Arc::clone(&problem.problem);
-        let display = Display::surface(problem.body(), &triangles, &tags, voxel_size);
+        let display = Display::surface(problem.now().body(), &triangles, &tags, voxel_size);
         let display = display.map_err(to_python)?;
         Ok(Self { problem, display })
     }
@@ -201,7 +202,7 @@ impl PyDisplay {
         let voxels: Vec<[u32; 8]> = rows("voxels", &voxels)?;
         let tags = tags.as_array().to_vec();
         let problem = Arc::clone(&problem.problem);
-        let display = Display::solid(problem.body(), &triangles, &tags, &voxels, voxel_size);
+        let display = Display::solid(problem.now().body(), &triangles, &tags, &voxels, voxel_size);
         let display = display.map_err(to_python)?;
         Ok(Self { problem, display })
     }
@@ -217,7 +218,7 @@ impl PyDisplay {
         let tets: Vec<[u32; 4]> = rows("tets", &tets)?;
         let tags = tags.as_array().to_vec();
         let problem = Arc::clone(&problem.problem);
-        let display = Display::tets(problem.body(), &tets, &tags, voxel_size);
+        let display = Display::tets(problem.now().body(), &tets, &tags, voxel_size);
         let display = display.map_err(to_python)?;
         Ok(Self { problem, display })
     }
@@ -234,7 +235,8 @@ impl PyDisplay {
     }
 
     pub(crate) fn pack_topology<'py>(&self, py: Python<'py>, topology: u32) -> Bound<'py, PyBytes> {
-        let bytes = py.detach(|| self.display.topology(self.problem.body(), topology));
+        let problem = self.problem.now();
+        let bytes = py.detach(|| self.display.topology(problem.body(), topology));
         PyBytes::new(py, &bytes)
     }
 
@@ -256,7 +258,8 @@ impl PyDisplay {
         time: f64,
         velocities: Option<PyReadonlyArray2<'_, f64>>,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let body = self.problem.body();
+        let problem = self.problem.now();
+        let body = problem.body();
         let count = body.rest().len();
         let mut state = State::at_rest(body);
         state.positions = of_vertices("positions", &positions, count)?;
@@ -282,7 +285,8 @@ impl PyDisplay {
         positions: PyReadonlyArray2<'_, f64>,
         field: u16,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let body = self.problem.body();
+        let problem = self.problem.now();
+        let body = problem.body();
         let mut state = State::at_rest(body);
         state.positions = of_vertices("positions", &positions, body.rest().len())?;
         let field = self::field(field)?;

@@ -20,7 +20,7 @@ impl PyEnsemble {
     /// The layout of a problem, or None for one that cannot be laid out.
     #[staticmethod]
     fn of(problem: PyRef<'_, PyProblem>) -> Option<Self> {
-        Ensemble::of(&problem.problem).map(Arc::new).map(Self)
+        Ensemble::of(&problem.now()).map(Arc::new).map(Self)
     }
 
     /// The products of 3×3 blocks that each factorization takes.

@@ -46,7 +46,7 @@ pub fn adjoint<'py>(
         rows
     };
     let gradients: Vec<Vec<Vec3>> = view.outer_iter().map(each).collect();
-    let inner = Arc::clone(&problem.problem);
+    let inner = problem.now();
     let turn = problem.turns.take(py)?;
     let states = gate::run_owned(py, move |cancel| {
         let _turn = turn;
@@ -98,7 +98,7 @@ pub fn equilibrium(
     frames: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PyAnswer> {
-    let inner = &problem.problem;
+    let inner = problem.now();
     let control = match control {
         "load" => Control::Load,
         "time" => Control::Time {
@@ -138,8 +138,8 @@ pub fn equilibrium(
         pressures,
     });
     let watch = Watch::new(progress, collect_sensors(&sensors), frames);
-    let mut watch = watch.of_chambers(inner).of_loads();
-    let problem_of_work = Arc::clone(inner);
+    let mut watch = watch.of_loads();
+    let problem_of_work = Arc::clone(&inner);
     let turn = problem.turns.take(py)?;
     let turn_of_work = turn.clone();
     let (answer, watch) = gate::run_owned(py, move |cancel| {
@@ -148,6 +148,7 @@ pub fn equilibrium(
         let answer = voxsoft_statics::solve(&problem_of_work, start.as_ref(), &settings, &mut see);
         (answer, watch)
     })?;
+    problem.problem.remember(&answer.memory);
     let stable = answer.stable;
     let (factor, reached, limit) = (answer.factor, answer.reached, answer.limit);
     let path: Vec<[f64; 4]> = answer

@@ -1,4 +1,6 @@
 //! `_core.Fields`: stress and strain of a problem's body at any positions.
+use std::sync::Arc;
+
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -28,7 +30,8 @@ fn components(measure: &Measure) -> [f64; 6] {
 impl PyFields {
     #[new]
     fn new(py: Python<'_>, problem: Py<PyProblem>) -> PyResult<Self> {
-        let (mesh, body) = (&problem.get().mesh, problem.get().problem.body());
+        let now = problem.get().now();
+        let (mesh, body) = (&problem.get().mesh, now.body());
         let (fields, blocks) = gate::run(py, |_| {
             let fields = Fields::of_all(body);
             let blocks = fields.blocks(body, mesh);
@@ -60,7 +63,7 @@ impl PyFields {
         positions: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let positions = self.positions(&positions)?;
-        let body = self.body();
+        let body = &*self.body();
         let measures = gate::run(py, |_| self.fields.measure(body, &positions))?;
         let column = |value: fn(&Measure) -> f64| -> Bound<'py, PyArray1<f64>> {
             PyArray1::from_vec(py, measures.iter().map(value).collect())
@@ -82,7 +85,7 @@ impl PyFields {
         py: Python<'py>,
         positions: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let body = self.body();
+        let body = &*self.body();
         let own = self.problem.get().own();
         let mut state = State::at_rest(body);
         state.positions = self.positions(&positions)?;
@@ -126,14 +129,14 @@ impl PyFields {
             let message = format!("element {element} is past the last of {count}");
             return Err(PyIndexError::new_err(message));
         }
-        let slope = self.fields.stretch_slope(self.body(), &positions, element);
+        let slope = self.fields.stretch_slope(&self.body(), &positions, element);
         Ok(from_rows(py, &slope[..self.problem.get().own()]))
     }
 }
 
 impl PyFields {
-    fn body(&self) -> &Body {
-        self.problem.get().problem.body()
+    fn body(&self) -> Arc<Body> {
+        self.problem.get().now().shared_body()
     }
 
     fn positions(&self, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<[f64; 3]>> {

@@ -10,6 +10,7 @@ mod equilibrium;
 mod errors;
 mod fields;
 mod gate;
+mod handle;
 mod live;
 mod materials;
 mod mesh;

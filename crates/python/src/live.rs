@@ -108,7 +108,7 @@ impl PyLive {
             ..dynamics(substeps, damping, retardation, tolerance)
         };
         let surface = PyDisplay::surface(problem, triangles, tags, voxel_size)?;
-        let problem = Arc::clone(&surface.problem);
+        let problem = surface.problem.now();
         let live = gate::run(py, |_| stepper(Problem::clone(&problem), settings))?;
         Ok(Self {
             surface,
@@ -253,7 +253,8 @@ impl PyLive {
         };
         // A copy, so that the run can go on meanwhile.
         let state = self.with(py, |live| live.state().clone())?;
-        let body = shown.problem.body();
+        let problem = shown.problem.now();
+        let body = problem.body();
         let bytes = py.detach(|| shown.display.frame(body, &state, field, head));
         Ok(PyBytes::new(py, &bytes))
     }

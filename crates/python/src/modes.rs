@@ -1,5 +1,4 @@
 //! `_core.modes`: natural vibrations about an equilibrium.
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2};
@@ -25,7 +24,7 @@ pub fn modes<'py>(
 ) -> PyResult<Vibrations<'py>> {
     let positions = problem.positions(&positions)?;
     let vertices = positions.len();
-    let inner = Arc::clone(&problem.problem);
+    let inner = problem.now();
     let turn = problem.turns.take(py)?;
     let found = gate::run_owned(py, move |cancel| {
         let _turn = turn;

@@ -26,6 +26,7 @@ use voxsoft_xpbd::{Damping, Dynamics};
 use crate::display::{PyDisplay, field as field_of, of_vertices};
 use crate::errors::to_python;
 use crate::gate;
+use crate::handle::Handle;
 use crate::simulate::{PyProblem, from_rows, rows};
 
 /// How a problem moves live.
@@ -63,7 +64,7 @@ impl Clock for Wall<'_> {
 /// A problem with all it takes to play it: here, or in a page that opens its bytes.
 #[pyclass(frozen, name = "Scene", module = "voxsoft._core")]
 pub struct PyScene {
-    problem: Arc<Problem>,
+    problem: Arc<Handle>,
     /// How many vertices its body has.
     own: usize,
     scene: Scene,
@@ -101,7 +102,7 @@ impl PyScene {
             weights,
         };
         let touching = problem.touching.as_ref();
-        let mechanics = &problem.problem;
+        let mechanics = problem.now();
         let scene = Scene {
             notes: String::new(),
             mesh: problem.mesh.clone(),
@@ -122,7 +123,7 @@ impl PyScene {
             },
         };
         Ok(Self {
-            problem: Arc::clone(mechanics),
+            problem: Arc::clone(&problem.problem),
             own: problem.own(),
             scene,
         })
@@ -159,8 +160,8 @@ impl PyScene {
                 deterministic,
                 ..scene.settings.clone()
             };
+            let problem = Problem::clone(&problem.now());
             let surface = Display::surface(problem.body(), triangles, tags, scene.voxel_size)?;
-            let problem = Problem::clone(problem);
             Ok::<_, ProblemError>(Player::new(problem, settings, surface, scene.cast.clone()))
         })?;
         Ok(PyPlayer {
@@ -175,7 +176,7 @@ impl PyScene {
 /// A problem that lives; commands and events are JSON. Any thread may call any method; they take turns.
 #[pyclass(frozen, name = "Player", module = "voxsoft._core")]
 pub struct PyPlayer {
-    problem: Arc<Problem>,
+    problem: Arc<Handle>,
     /// How many vertices its body has.
     own: usize,
     player: Mutex<Player>,

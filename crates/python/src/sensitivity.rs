@@ -36,7 +36,7 @@ pub fn recorded_contact(problem: PyRef<'_, PyProblem>) -> PyResult<(bool, f64, f
 /// Whether the contact of two problems is of the same surfaces, wherever they are.
 #[pyfunction]
 pub fn same_surfaces(problem: PyRef<'_, PyProblem>, other: PyRef<'_, PyProblem>) -> PyResult<bool> {
-    let vertices = |problem: &PyProblem| problem.problem.body().rest().len();
+    let vertices = |problem: &PyProblem| problem.now().body().rest().len();
     let same = problem.touch()?.has_surfaces_of(other.touch()?);
     Ok(same && vertices(&problem) == vertices(&other))
 }
@@ -77,12 +77,12 @@ pub fn sensitivities<'py>(
 ) -> PyResult<Vec<Vec<Bound<'py, PyArray2<f64>>>>> {
     let own = problem.own();
     let touch = Arc::clone(problem.touch()?);
-    let inner = Arc::clone(&problem.problem);
+    let inner = problem.now();
     let mut parameters: Vec<Vec<Shared>> = Vec::new();
     for parameter in &varied {
         let shared = parameter.iter().map(|(problem, offset, weight)| {
             Ok(Shared {
-                problem: Arc::clone(&problem.problem),
+                problem: problem.now(),
                 touch: Arc::clone(problem.touch()?),
                 offset: *offset,
                 weight: *weight,

@@ -21,6 +21,7 @@ use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate
 use crate::answer::PyAnswer;
 use crate::errors::to_python;
 use crate::gate;
+use crate::handle::Handle;
 use crate::materials::PyMaterial;
 use crate::skin::PySkin;
 use crate::tendon::{PyTendon, TendonPart, tendons};
@@ -76,7 +77,7 @@ fn motion(
 pub struct PyProblem {
     pub(crate) mesh: Mesh,
     pub(crate) materials: Vec<Material>,
-    pub(crate) problem: Arc<Problem>,
+    pub(crate) problem: Arc<Handle>,
     pub(crate) touching: Option<Arc<Touching>>,
     pub(crate) turns: Turns,
 }
@@ -608,10 +609,11 @@ impl PyProblem {
 
     /// The same body and loads with other materials.
     fn with_materials(&self, py: Python<'_>, materials: Vec<PyMaterial>) -> PyResult<Self> {
+        let now = self.now();
         let parts = PyProblemParts {
-            clamps: self.problem.clamps().to_vec(),
-            loads: self.problem.loads().to_vec(),
-            floor: self.problem.floor(),
+            clamps: now.clamps().to_vec(),
+            loads: now.loads().to_vec(),
+            floor: now.floor(),
             membranes: Vec::new(),
             block_fraction: Vec::new(),
             block_filling: Vec::new(),
@@ -621,7 +623,7 @@ impl PyProblem {
             touch: None,
             tendons: Vec::new(),
             dielectrics: Vec::new(),
-            fluid: self.problem.fluid().cloned(),
+            fluid: now.fluid().cloned(),
         };
         let mut mesh = self.mesh.clone();
         let mut parts = parts;
@@ -637,12 +639,12 @@ impl PyProblem {
 
     #[getter]
     fn mass(&self) -> f64 {
-        self.problem.body().masses()[..self.own()].iter().sum()
+        self.now().body().masses()[..self.own()].iter().sum()
     }
 
     #[getter]
     fn masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.problem.body().masses()[..self.own()])
+        PyArray1::from_slice(py, &self.now().body().masses()[..self.own()])
     }
 
     /// Edges as (vertices, rest length, stiffness) arrays.
@@ -655,7 +657,8 @@ impl PyProblem {
         Bound<'py, PyArray1<f64>>,
         Bound<'py, PyArray1<f64>>,
     ) {
-        let edges = self.problem.body().edges();
+        let now = self.now();
+        let edges = now.body().edges();
         let vertices: Vec<[u32; 2]> = edges.iter().map(|edge| edge.vertices).collect();
         let collect = |value: fn(&voxsoft_solid::Edge) -> f64| edges.iter().map(value).collect();
         (
@@ -673,7 +676,8 @@ impl PyProblem {
         positions: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let positions = self.positions(&positions)?;
-        let body = self.problem.body();
+        let now = self.now();
+        let body = now.body();
         let pressures = body.brick_term().pressures(&positions);
         let mut found = vec![f64::NAN; self.own()];
         for (index, brick) in body.small_bricks().iter().enumerate() {
@@ -684,14 +688,13 @@ impl PyProblem {
 
     /// The largest isochoric energy (J/m³) that each hyperelastic voxel has had, if any softens.
     fn peaks<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        let peaks = self.problem.body().brick_term().peaks()?;
+        let peaks = self.now().body().brick_term().peaks()?;
         Some(PyArray1::from_vec(py, peaks))
     }
 
     /// Lets voxels that soften have had these energies (J/m³).
     fn set_peaks(&self, peaks: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
-        let bricks = self.problem.body().brick_term();
-        let (got, expected) = (peaks.len()?, bricks.bricks.len());
+        let (got, expected) = (peaks.len()?, self.now().body().bricks().len());
         if got != expected {
             let what = "peaks of voxels";
             return Err(to_python(ProblemError::Length {
@@ -701,7 +704,8 @@ impl PyProblem {
             }));
         }
         let _turn = self.turns.take(peaks.py())?;
-        bricks.set_peaks(&peaks.as_array().to_vec());
+        let peaks = peaks.as_array().to_vec();
+        self.problem.change(|problem| problem.set_peaks(&peaks));
         Ok(())
     }
 
@@ -713,7 +717,7 @@ impl PyProblem {
     ) -> PyResult<(f64, Bound<'py, PyArray2<f64>>)> {
         let positions = self.positions(&positions)?;
         let mut forces = vec![[0.0; 3]; positions.len()];
-        elastic::add_forces(self.problem.body(), &positions, &mut forces);
+        elastic::add_forces(self.now().body(), &positions, &mut forces);
         if let Some(touching) = &self.touching {
             let mut others = vec![[0.0; 3]; positions.len()];
             touching.contact.add_forces(&positions, &mut others);
@@ -736,9 +740,10 @@ impl PyProblem {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let positions = self.positions(&positions)?;
         let mut forces = vec![[0.0; 3]; positions.len()];
-        let problem = self.problem.with_taut_tendons(&taut);
+        let now = self.now();
+        let problem = now.with_taut_tendons(&taut);
         problem.add_loads(&positions, f64::INFINITY, &mut forces);
-        elastic::add_forces(self.problem.body(), &positions, &mut forces);
+        elastic::add_forces(now.body(), &positions, &mut forces);
         Ok(from_rows(py, &forces[..self.own()]))
     }
 
@@ -750,9 +755,9 @@ impl PyProblem {
     ) -> PyResult<Vec<Py<PyTendon>>> {
         let positions = self.positions(&positions)?;
         let _turn = self.turns.take(py)?;
-        self.problem.start_loads();
+        self.problem.change(Problem::start_loads);
         let factor_of = |load: &Load| load.history.at(f64::INFINITY);
-        tendons(py, &self.problem, &positions, &factor_of)
+        tendons(py, &self.now(), &positions, &factor_of)
     }
 
     /// A trial is a number of steps and the residual above which the run then ends.
@@ -771,14 +776,15 @@ impl PyProblem {
             max_steps,
             trial: trial.map(|(steps, residual)| Trial { steps, residual }),
         };
-        let mut state = State::at_rest(self.problem.body());
+        let problem = self.now();
+        let mut state = State::at_rest(problem.body());
         if let Some(start) = start {
             state.positions = self.positions(&start)?;
         }
         let mut watch = Watch::new(progress, Vec::new(), false);
         let _turn = self.turns.take(py)?;
         let answer = gate::run(py, |cancel| {
-            relax(&self.problem, state, &settings, &mut |now| {
+            relax(&problem, state, &settings, &mut |now| {
                 watch.see(now, cancel)
             })
         })?;
@@ -820,16 +826,17 @@ impl PyProblem {
             deterministic: false,
             record_interval,
         };
-        let state = State::at_rest(self.problem.body());
+        let problem = self.now();
+        let state = State::at_rest(problem.body());
         let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
         let _turn = self.turns.take(py)?;
         let answer = gate::run(py, |cancel| {
-            simulate(&self.problem, state, &settings, &mut |now| {
+            simulate(&problem, state, &settings, &mut |now| {
                 watch.see(now, cancel)
             })
         })?;
         let time = answer.state.time;
-        self.problem.body().begin(time);
+        self.problem.change(|problem| problem.begin(time));
         self.answer(py, answer, watch, &|load| load.history.at(time))
     }
 }
@@ -875,7 +882,7 @@ impl PyProblem {
             Ok(Self {
                 mesh,
                 materials,
-                problem: Arc::new(problem),
+                problem: Arc::new(Handle::new(problem)),
                 touching,
                 turns: Turns::default(),
             })
@@ -883,16 +890,21 @@ impl PyProblem {
         .map_err(to_python)
     }
 
+    /// The problem with the memory of its last solution.
+    pub(crate) fn now(&self) -> Arc<Problem> {
+        self.problem.now()
+    }
+
     /// That of the material, J: what multipliers of contact have of it is none.
     fn elastic_energy(&self, positions: &[Vec3]) -> f64 {
         let of_contact = |touching: &Arc<Touching>| touching.contact.energy(positions);
-        let all = elastic::energy(self.problem.body(), positions);
+        let all = elastic::energy(self.now().body(), positions);
         all - self.touching.as_ref().map_or(0.0, of_contact)
     }
 
     /// How many vertices the body has, those of objects left out.
     pub(crate) fn own(&self) -> usize {
-        let all = self.problem.body().rest().len();
+        let all = self.now().body().rest().len();
         self.touching
             .as_ref()
             .map_or(all, |touching| touching.first)
@@ -901,7 +913,8 @@ impl PyProblem {
     /// Pressures in the order of hyperelastic voxels, of those at their lowest corners.
     pub(crate) fn brick_pressures(&self, array: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
         let array = array.as_array();
-        let bricks = &self.problem.body().brick_term().bricks;
+        let now = self.now();
+        let bricks = now.body().bricks();
         let pressure = |brick: &Brick| array.get(brick.vertices[0] as usize).copied();
         let found: Option<Vec<f64>> = bricks.iter().map(pressure).collect();
         match found {
@@ -914,11 +927,11 @@ impl PyProblem {
 
     pub(crate) fn positions(&self, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Vec3>> {
         let mut positions = rows("positions", array)?;
-        let expected = self.problem.body().rest().len();
+        let expected = self.now().body().rest().len();
         if let Some(touching) = &self.touching
             && positions.len() == touching.first
         {
-            positions = touching.completed(&self.problem, positions);
+            positions = touching.completed(&self.now(), positions);
         }
         if positions.len() != expected {
             let message = format!("positions: {} rows, expected {expected}", positions.len());
@@ -951,10 +964,11 @@ impl PyProblem {
         let contact_field = touching
             .map(|touching| touching.field(py, positions))
             .transpose()?;
-        let balance = balance_under(&self.problem, positions, factor_of);
-        let (load, load_moment) = total_load_under(&self.problem, positions, factor_of);
+        let problem = self.now();
+        let balance = balance_under(&problem, positions, factor_of);
+        let (load, load_moment) = total_load_under(&problem, positions, factor_of);
         let sensors = watch.sensors.len();
-        let now = self.problem.fluid().map_or(Vec::new(), |fluid| {
+        let now = problem.fluid().map_or(Vec::new(), |fluid| {
             fluid.read(positions, fluid.instant(factor_of))
         });
         let now: Vec<[f64; 6]> = now.iter().map(|reading| reading.numbers()).collect();
@@ -995,7 +1009,7 @@ impl PyProblem {
             contacts,
             objects,
             history: None,
-            tendons: tendons(py, &self.problem, positions, factor_of)?,
+            tendons: tendons(py, &problem, positions, factor_of)?,
             contact_field,
         })
     }

@@ -5,7 +5,7 @@ use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use voxsoft_contact::touch::PairReport;
 use voxsoft_solid::vector::{Vec3, axpy, dot};
-use voxsoft_solid::{Damping, Problem, Progress, State, elastic};
+use voxsoft_solid::{Damping, Progress, State, elastic};
 use voxsoft_statics::Transient;
 use voxsoft_xpbd::Answer;
 
@@ -45,16 +45,15 @@ pub fn transient(
         record_interval,
         memory,
     };
-    let inner = Arc::clone(&problem.problem);
+    let inner = problem.now();
     let touching = problem.touching.as_ref().map(Arc::clone);
-    let mut watch = Watch::new(progress, collect_sensors(&sensors), frames).of_chambers(&inner);
+    let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
     let seen: Mutex<Seen> = Mutex::default();
     let turn = problem.turns.take(py)?;
     let turn_of_work = turn.clone();
     let (solution, watch, seen) = gate::run_owned(py, move |cancel| {
         let _turn = turn_of_work;
         let mut see = |now: &Progress<'_>| {
-            inner.body().begin(now.time);
             if let Some(touching) = touching.as_ref().filter(|_| now.record) {
                 let positions = touching.seen(now.positions);
                 let mut seen = seen.lock().expect("no holder of the lock panics");
@@ -66,7 +65,7 @@ pub fn transient(
                     Vec::new()
                 });
                 seen.frames.push(positions[touching.own()..].to_vec());
-                seen.motion.push(Motion::of(&inner, now));
+                seen.motion.push(Motion::of(now));
             }
             watch.see(now, cancel)
         };
@@ -77,7 +76,10 @@ pub fn transient(
     let seen = seen.into_inner().expect("no holder of the lock panics");
     let history = seen.into_python(py, &problem)?;
     let time = solution.state.time;
-    problem.problem.body().begin(time);
+    problem.problem.change(|problem| {
+        problem.remember(&solution.memory);
+        problem.begin(time);
+    });
     let answer = Answer {
         state: solution.state,
         status: solution.status,
@@ -112,7 +114,8 @@ struct Motion {
 }
 
 impl Motion {
-    fn of(problem: &Problem, now: &Progress<'_>) -> Self {
+    fn of(now: &Progress<'_>) -> Self {
+        let problem = now.problem;
         let stored = elastic::energy(problem.body(), now.positions);
         let touching = problem
             .contact()

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
+use voxsoft_solid::Progress;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Fluid, Problem, Progress};
 
 /// How often a Python progress callback is called at most.
 const PROGRESS_PERIOD: Duration = Duration::from_millis(100);
@@ -39,10 +39,9 @@ pub(crate) struct Watch {
     pub(crate) times: Vec<f64>,
     pub(crate) records: Vec<f64>,
     pub(crate) frames: Vec<f64>,
-    /// What fills chambers, and what was read of each at every record.
-    fluid: Option<Fluid>,
     /// The load factor of the last equilibrium, for a search that tries others.
     reached: Option<f64>,
+    /// What was read of each chamber at every record.
     pub(crate) chambers: Vec<f64>,
     pub(crate) raised: Option<PyErr>,
 }
@@ -62,18 +61,9 @@ impl Watch {
             times: Vec::new(),
             records: Vec::new(),
             frames: Vec::new(),
-            fluid: None,
             reached: None,
             chambers: Vec::new(),
             raised: None,
-        }
-    }
-
-    /// The same that also reads the chambers of a problem.
-    pub(crate) fn of_chambers(self, problem: &Problem) -> Self {
-        Self {
-            fluid: problem.fluid().cloned(),
-            ..self
         }
     }
 
@@ -88,7 +78,7 @@ impl Watch {
     pub(crate) fn see(&mut self, now: &Progress<'_>, cancel: &AtomicBool) -> ControlFlow<()> {
         if now.record {
             self.record(now.positions, now.time);
-            if let Some(fluid) = &self.fluid {
+            if let Some(fluid) = now.problem.fluid() {
                 // Without velocities it is a point of a path of equilibria, which the fluid has taken.
                 let instant = if now.velocities.is_empty() {
                     fluid.last_instant()

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use crate::coarse::Coarse;
 use crate::color::{color_order, interleave};
-use crate::hyperelastic::{LocalMaterials, Mullins};
+use crate::hyperelastic::LocalMaterials;
 use crate::lattice::LatticeConstants;
 use crate::matrix::{IDENTITY, Mat3, apply_transposed};
 use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
@@ -195,7 +195,7 @@ impl Body {
                         fraction,
                         filling,
                         warping: Warping::NONE,
-                        peak: material.mullins().map_or(0.0, Mullins::first),
+                        peak: material.first_peak(),
                     };
                     if material.is_local() {
                         let axes = axes_of(mesh, block).unwrap_or(IDENTITY);
@@ -300,25 +300,16 @@ impl Body {
         }
     }
 
-    /// Voxels that soften forget the way to where they were.
-    pub(crate) fn start(&self) {
-        self.bricks.start();
-    }
-
-    /// Voxels that soften take `positions` as a state that has been.
-    pub(crate) fn accept(&self, positions: &[Vec3]) {
-        self.bricks.accept(positions);
-    }
-
-    /// Remembers on its own, whatever copies of this body do.
-    pub(crate) fn own_memory(&mut self) {
-        self.bricks.own_memory();
+    /// Sets the peaks (J/m³) of voxels that soften.
+    pub(crate) fn set_peaks(&mut self, peaks: &[f64]) {
+        self.bricks.set_peaks(peaks);
     }
 
     /// Makes the free stretch of all materials that of a time in s.
-    pub fn begin(&self, time: f64) {
-        let growths = self.growths();
-        growths.for_each(|growth| growth.begin(time));
+    pub(crate) fn begin(&mut self, time: f64) {
+        for material in &mut self.bricks.materials {
+            material.begin(time);
+        }
     }
 
     /// The time in s after which no material changes by itself.

@@ -1,7 +1,6 @@
 //! How much longer a material is by itself, over time.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::vector::{Vec3, axpy};
 use crate::{History, ProblemError};
@@ -86,11 +85,11 @@ impl GrowthFactor {
 /// A free stretch that changes over time: the product of powers of histories, such as the cube root of a change of volume.
 ///
 /// What evaluates a body at an instant calls [`Growth::begin`] first; until then it is that of the end.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Growth {
     factors: Vec<GrowthFactor>,
-    /// The bits of the stretch now, and of half its differences across a voxel over it.
-    now: [AtomicU64; 4],
+    /// The stretch now, and half its differences across a voxel over it.
+    now: [f64; 4],
 }
 
 impl Growth {
@@ -106,9 +105,9 @@ impl Growth {
     }
 
     fn of(factors: Vec<GrowthFactor>) -> Self {
-        let growth = Self {
+        let mut growth = Self {
             factors,
-            now: [const { AtomicU64::new(0) }; 4],
+            now: [1.0, 0.0, 0.0, 0.0],
         };
         growth.begin(f64::INFINITY);
         growth
@@ -175,7 +174,7 @@ impl Growth {
     }
 
     /// Makes it that of a time in s.
-    pub fn begin(&self, time: f64) {
+    pub fn begin(&mut self, time: f64) {
         let (mut stretch, mut bent) = (1.0, [0.0; 3]);
         for factor in &self.factors {
             let (own, slopes) = factor.at(time);
@@ -183,49 +182,25 @@ impl Growth {
             axpy(&mut bent, 1.0, slopes);
         }
         let [x, y, z] = bent;
-        for (kept, value) in self.now.iter().zip([stretch, x, y, z]) {
-            kept.store(value.to_bits(), Ordering::Relaxed);
-        }
-    }
-
-    #[inline(always)]
-    fn kept(&self, place: usize) -> f64 {
-        f64::from_bits(self.now[place].load(Ordering::Relaxed))
+        self.now = [stretch, x, y, z];
     }
 
     /// The stretch now.
     #[inline(always)]
     pub fn now(&self) -> f64 {
-        self.kept(0)
+        self.now[0]
     }
 
     /// Half the difference of the stretches at the two sides of a voxel along each axis now, over the stretch.
     #[inline(always)]
     pub(crate) fn bent(&self) -> Vec3 {
-        [self.kept(1), self.kept(2), self.kept(3)]
+        [self.now[1], self.now[2], self.now[3]]
     }
 
     /// The time in s after which it stays the same.
     pub fn end(&self) -> f64 {
         let ends = self.factors.iter().map(|factor| factor.history.end());
         ends.fold(0.0, f64::max)
-    }
-}
-
-impl Clone for Growth {
-    fn clone(&self) -> Self {
-        let copy = |kept: &AtomicU64| AtomicU64::new(kept.load(Ordering::Relaxed));
-        Self {
-            factors: self.factors.clone(),
-            now: self.now.each_ref().map(copy),
-        }
-    }
-}
-
-impl PartialEq for Growth {
-    fn eq(&self, other: &Self) -> bool {
-        let same = self.now() == other.now() && self.bent() == other.bent();
-        self.factors == other.factors && same
     }
 }
 
@@ -243,7 +218,7 @@ mod tests {
 
     #[test]
     fn is_the_product_of_powers() {
-        let growth = Growth::new(vec![ramp(1.2, 1.0), ramp(8.0, 1.0 / 3.0)]).unwrap();
+        let mut growth = Growth::new(vec![ramp(1.2, 1.0), ramp(8.0, 1.0 / 3.0)]).unwrap();
         // Where nobody has begun it is that of the end.
         assert!((growth.now() - 2.4).abs() < 1e-15);
         growth.begin(1.0);
@@ -278,7 +253,7 @@ mod tests {
         let growth = Growth::new(vec![field]).unwrap();
         assert!(growth.is_field() && !growth.varies());
         assert_eq!(growth.in_block(0).unwrap().now(), 1.0);
-        let here = growth.in_block(1).unwrap();
+        let mut here = growth.in_block(1).unwrap();
         assert!(here.varies() && !here.is_field());
         assert_eq!(here.now(), libm::cbrt(1.2));
         // Half the difference between the sides over the mean, to second order in the slope.

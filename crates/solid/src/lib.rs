@@ -67,6 +67,7 @@ mod loads;
 mod material;
 pub mod matrix;
 mod membrane;
+mod memory;
 mod mirrored;
 mod mirrored_contact;
 pub mod mixed;
@@ -88,7 +89,7 @@ pub use clamp::{Clamp, Motion};
 pub use contact::{Contact, Moment, RecordedContact};
 pub use error::ProblemError;
 pub use floor::Floor;
-pub use fluid::Fluid;
+pub use fluid::{Fluid, FluidMemory};
 pub use growth::{Growth, GrowthFactor, Share};
 pub use hands::{Grab, Hands};
 pub use history::History;
@@ -96,10 +97,11 @@ pub use hyperelastic::{Fiber, HyperelasticMaterial, Model, Mullins, Winding};
 pub use lattice::{LatticeConstants, LatticeMaterial};
 pub use loads::{
     Dielectric, Drive, Element, ExternalForce, Gravity, Hydrostatic, Load, LoadKind, Place,
-    PointForces, Pressure, Tendon, TendonState, Vertices, enclosed_volume,
+    PointForces, Pressure, Tendon, TendonMemory, TendonState, Vertices, enclosed_volume,
 };
 pub use material::Material;
 pub use membrane::{Membrane, MembraneMaterial};
+pub use memory::Memory;
 pub use mirrored::{Images, Mirrored};
 pub use mirrored_contact::MirroredContact;
 pub use problem::Problem;

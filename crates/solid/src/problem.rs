@@ -6,13 +6,14 @@ use crate::fluid::Coupling;
 use crate::loads::Vertices;
 use crate::vector::Vec3;
 use crate::{
-    Body, Clamp, Contact, Floor, Fluid, History, Load, LoadKind, ProblemError, Rigid, Term,
+    Body, Clamp, Contact, Floor, Fluid, History, Load, LoadKind, Memory, ProblemError, Rigid,
+    Tendon, Term,
 };
 
 /// A body with clamps, loads, and maybe a floor or contact.
 #[derive(Debug, Clone)]
 pub struct Problem {
-    body: Body,
+    body: Arc<Body>,
     clamps: Vec<Clamp>,
     loads: Vec<Load>,
     floor: Option<Floor>,
@@ -24,6 +25,8 @@ pub struct Problem {
     /// By clamps, or as it follows others.
     held: Vec<[bool; 3]>,
     conservative: bool,
+    /// The time in s that free stretches belong to.
+    time: f64,
 }
 
 impl Problem {
@@ -68,7 +71,7 @@ impl Problem {
         }
         let conservative = loads.iter().all(|load| load.kind.is_conservative());
         Ok(Self {
-            body,
+            body: Arc::new(body),
             clamps,
             loads,
             floor,
@@ -78,6 +81,7 @@ impl Problem {
             clamped,
             held,
             conservative,
+            time: f64::INFINITY,
         })
     }
 
@@ -88,7 +92,7 @@ impl Problem {
         let mut joined = problem.clamped.clone();
         contact.visit_bonded(&mut |vertex| joined[vertex as usize] = [true; 3]);
         let pressed = problem.pressed();
-        problem.body.warp_unless(&joined, &pressed);
+        problem.body_mut().warp_unless(&joined, &pressed);
         problem.contact = Some(contact);
         Ok(problem)
     }
@@ -99,13 +103,32 @@ impl Problem {
         self.conservative &= fluid.is_conservative();
         self.fluid = Some(fluid);
         let pressed = self.pressed();
-        self.body.warp_unless(&self.clamped, &pressed);
+        let clamped = std::mem::take(&mut self.clamped);
+        self.body_mut().warp_unless(&clamped, &pressed);
+        self.clamped = clamped;
         Ok(self)
     }
 
     /// What fills its chambers, where that has a pressure of its own.
     pub fn fluid(&self) -> Option<&Fluid> {
         self.fluid.as_ref()
+    }
+
+    /// The same, to let it remember.
+    pub fn fluid_mut(&mut self) -> Option<&mut Fluid> {
+        self.fluid.as_mut()
+    }
+
+    /// Starts gas and liquid from `positions` (m): along a path of equilibria, or in motion from a time in s on.
+    pub fn start_fluid(&mut self, positions: &[Vec3], time: Option<f64>) {
+        if let Some(fluid) = &mut self.fluid {
+            fluid.start(positions, time);
+        }
+    }
+
+    /// The body, copied first where other problems have it too.
+    fn body_mut(&mut self) -> &mut Body {
+        Arc::make_mut(&mut self.body)
     }
 
     /// The triangles under pressure.
@@ -119,7 +142,7 @@ impl Problem {
     pub fn with_term(mut self, term: Arc<dyn Term>) -> Result<Self, ProblemError> {
         let ties = self.body.ties();
         ties.check_free(term.name(), |found| term.visit_pattern(found))?;
-        self.body.attach(term)?;
+        self.body_mut().attach(term)?;
         Ok(self)
     }
 
@@ -149,6 +172,11 @@ impl Problem {
     /// The body.
     pub fn body(&self) -> &Body {
         &self.body
+    }
+
+    /// The body as it is now, which may be kept while the problem goes on.
+    pub fn shared_body(&self) -> Arc<Body> {
+        Arc::clone(&self.body)
     }
 
     /// The clamps; where two hold the same axis of a vertex, the later one decides.
@@ -257,19 +285,85 @@ impl Problem {
         Cow::Owned(problem)
     }
 
-    /// Loads and what softens forget the way to where the body was.
-    pub fn start_loads(&self) {
-        self.body.start();
-        self.loads.iter().for_each(|load| load.kind.start());
+    /// All that it remembers, besides contact.
+    pub fn memory(&self) -> Memory {
+        let tendons = self.loads.iter().filter_map(|load| match &load.kind {
+            LoadKind::Tendon(tendon) => Some(tendon.memory().cloned()),
+            _ => None,
+        });
+        Memory {
+            time: self.time,
+            peaks: self.body.brick_term().peaks(),
+            tendons: tendons.collect(),
+            fluid: self.fluid.as_ref().map(|fluid| fluid.memory().clone()),
+        }
     }
 
-    /// Loads and what softens take `positions` as the state from which the way goes on.
-    pub fn accept_loads(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) {
-        self.body.accept(positions);
-        let positions = &*self.seen(positions);
-        let on = self.vertices(positions);
-        for load in &self.loads {
-            load.kind.accept(on, factor_of(load));
+    /// Goes on from a memory of this problem.
+    pub fn remember(&mut self, memory: &Memory) {
+        self.begin(memory.time);
+        if let Some(peaks) = &memory.peaks {
+            self.set_peaks(peaks);
+        }
+        for (tendon, kept) in self.tendons_mut().zip(&memory.tendons) {
+            tendon.remember(kept.clone());
+        }
+        if let (Some(fluid), Some(kept)) = (&mut self.fluid, &memory.fluid) {
+            fluid.remember(kept.clone());
+        }
+    }
+
+    /// Makes the free stretches of all materials those of a time in s.
+    pub fn begin(&mut self, time: f64) {
+        self.time = time;
+        if self.body.growth_end() > 0.0 {
+            self.body_mut().begin(time);
+        }
+    }
+
+    /// Loads and materials that soften forget the way to where the body was.
+    pub fn start_loads(&mut self) {
+        if self.body.brick_term().soften() {
+            let first = self.body.brick_term().first_peaks();
+            self.body_mut().set_peaks(&first);
+        }
+        self.tendons_mut().for_each(|tendon| tendon.remember(None));
+    }
+
+    /// Loads and materials that soften take `positions` as the state from which the way goes on.
+    pub fn accept_loads(&mut self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) {
+        if self.body.brick_term().soften() {
+            let peaks = self.body.brick_term().peaks_after(positions);
+            self.body_mut().set_peaks(&peaks);
+        }
+        let body = &*self.body;
+        let positions = &*body.ties().seen(positions);
+        let on = Vertices {
+            rest: body.rest(),
+            positions,
+            masses: body.masses(),
+        };
+        for load in &mut self.loads {
+            let factor = factor_of(load);
+            if let LoadKind::Tendon(tendon) = &mut load.kind {
+                tendon.accept(on, factor);
+            }
+        }
+    }
+
+    fn tendons_mut(&mut self) -> impl Iterator<Item = &mut Tendon> {
+        self.loads
+            .iter_mut()
+            .filter_map(|load| match &mut load.kind {
+                LoadKind::Tendon(tendon) => Some(tendon),
+                _ => None,
+            })
+    }
+
+    /// Sets the largest isochoric energy (J/m³) that each hyperelastic voxel has had; does nothing where none softens.
+    pub fn set_peaks(&mut self, peaks: &[f64]) {
+        if self.body.brick_term().soften() {
+            self.body_mut().set_peaks(peaks);
         }
     }
 
@@ -287,16 +381,6 @@ impl Problem {
             load.kind = load.kind.held();
         }
         self.conservative = self.loads.iter().all(|load| load.kind.is_conservative());
-        self
-    }
-
-    /// The same with loads and a body that remember on their own, whatever copies of this problem do.
-    #[must_use]
-    pub fn with_own_memory(mut self) -> Self {
-        self.body.own_memory();
-        for load in &mut self.loads {
-            load.kind = load.kind.with_own_memory();
-        }
         self
     }
 

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::vector::Vec3;
-use crate::{Breakdown, Problem, State};
+use crate::{Breakdown, Memory, Problem, State};
 
 /// How a solution ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,6 +52,8 @@ impl Status {
 /// What an observer is shown now and then.
 #[derive(Debug)]
 pub struct Progress<'a> {
+    /// The problem with its memory there.
+    pub problem: &'a Problem,
     /// Steps or iterations so far.
     pub steps: u64,
     /// The time in s; for statics, which knows none, the load factor.
@@ -74,6 +76,8 @@ pub type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
 pub struct Solution {
     /// The last good state.
     pub state: State,
+    /// The memory of the problem there, besides contact.
+    pub memory: Memory,
     /// How it ended.
     pub status: Status,
     /// The residual force without units, see [`crate::balance::Balance::relative_residual`].

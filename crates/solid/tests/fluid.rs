@@ -161,7 +161,7 @@ fn check_derivatives(fluid: &Fluid, step: f64) {
 fn sealed_contents_have_a_potential_and_the_stiffness_of_their_forces() {
     for (medium, over) in [(AIR, 1.3), (AIR, 0.6), (WATER, 1.00002)] {
         let sealed = network(vec![chamber(medium, over)], vec![], vec![]);
-        let fluid = Fluid::new(sealed, vec![vec![wall(0.5), wall(0.5)]]).unwrap();
+        let mut fluid = Fluid::new(sealed, vec![vec![wall(0.5), wall(0.5)]]).unwrap();
         fluid.start(&corners(), None);
         check_derivatives(&fluid, 1e-5);
     }
@@ -180,7 +180,7 @@ fn so_have_those_that_flow_in_a_step() {
             opening: None,
         };
         let open = network(vec![chamber(AIR, 1.0)], vec![branch], vec![source.clone()]);
-        let fluid = Fluid::new(open, vec![vec![wall(1.0)]]).unwrap();
+        let mut fluid = Fluid::new(open, vec![vec![wall(1.0)]]).unwrap();
         fluid.start(&corners(), Some(0.0));
         fluid.begin(0.1, 10.0, [1.0, 0.0]);
         check_derivatives(&fluid, 1e-5);
@@ -196,7 +196,7 @@ fn what_two_chambers_exchange_is_not_lost() {
     };
     let chambers = vec![chamber(AIR, 2.0), chamber(AIR, 1.0)];
     let both = network(chambers, vec![branch], vec![]);
-    let fluid = Fluid::new(both, vec![vec![wall(1.0)], vec![wall(1.0)]]).unwrap();
+    let mut fluid = Fluid::new(both, vec![vec![wall(1.0)], vec![wall(1.0)]]).unwrap();
     assert!(!fluid.is_conservative());
     fluid.start(&corners(), Some(0.0));
     let total = |fluid: &Fluid| -> f64 { fluid.read(&corners(), END).iter().map(|r| r.mass).sum() };
@@ -244,12 +244,12 @@ fn nothing_flows_through_a_closed_valve_at_rest_or_over_time() {
     };
     // At rest what counts is how it ends: sealed, or at the pressure of the source.
     for (opening, expected) in [(vec![1.0, 0.0], 0.0), (vec![0.0, 1.0], 5e4)] {
-        let fluid = filled(opening);
+        let mut fluid = filled(opening);
         fluid.start(&corners(), None);
         let pressure = fluid.read(&corners(), END)[0].pressure;
         assert!((pressure - expected).abs() < 1e-6 * ATMOSPHERE);
     }
-    let fluid = filled(vec![0.5, 0.0]);
+    let mut fluid = filled(vec![0.5, 0.0]);
     fluid.start(&corners(), Some(0.0));
     let mut masses = Vec::new();
     for step in 1..=4 {
@@ -282,7 +282,7 @@ fn the_weight_of_a_liquid_keeps_the_laws_of_loads() {
 #[test]
 fn a_pressure_that_is_carried_along_ends_at_that_of_the_volume() {
     let sealed = network(vec![chamber(WATER, 1.001)], vec![], vec![]);
-    let fluid = Fluid::new(sealed, vec![vec![wall(1.0)]]).unwrap();
+    let mut fluid = Fluid::new(sealed, vec![vec![wall(1.0)]]).unwrap();
     fluid.start(&corners(), None);
     let pressure = fluid.read(&corners(), END)[0].pressure;
     let mut carried = vec![0.9 * pressure];

@@ -83,7 +83,7 @@ pub(crate) fn with_tangent<'a>(
         solver: LinearSolver::Auto,
         memory,
     };
-    let mut equilibrium = Equilibrium::new(problem, means)?;
+    let mut equilibrium = Equilibrium::new(problem.clone(), means)?;
     let full = Point::all(1.0);
     equilibrium.update_floor(positions, full)?;
     equilibrium.follow_contact(positions)?;

@@ -128,7 +128,7 @@ impl<C: Constraint> Search for Bordered<C> {
             iterations: 0,
         };
         let touches = equilibrium.problem.contact().is_some();
-        let searches = touches || self.constraint.has_potential(equilibrium.problem);
+        let searches = touches || self.constraint.has_potential(&equilibrium.problem);
         let mut newton = Newton {
             equilibrium,
             constraint: &self.constraint,
@@ -222,11 +222,11 @@ pub(crate) fn assemble(
         jump,
     } = place;
     equilibrium.iterations += 1;
-    let problem = equilibrium.problem;
     let mut direction = load_direction(equilibrium, positions, point, unknown);
     let mut residual = residual.to_vec();
-    let velocity = clamp_velocity(problem, point, unknown);
-    let (system, factor_of) = (&mut equilibrium.system, point.factor_of());
+    let velocity = clamp_velocity(&equilibrium.problem, point, unknown);
+    let (system, problem) = (&mut equilibrium.system, &equilibrium.problem);
+    let factor_of = point.factor_of();
     let mut put = |jump: Option<&[Vec3]>, side: &mut [f64]| {
         system.assemble(problem, positions, &factor_of, strains, jump, side);
     };
@@ -360,7 +360,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         self.equilibrium.follow_contact(positions)?;
         let point = self.constraint.unknown().with(self.point, factor);
         let (forces, jump) = self.equilibrium.look(positions, point, self.observer)?;
-        let problem = self.equilibrium.problem;
+        let problem = &self.equilibrium.problem;
         let missing = self.constraint.missing(problem, positions, factor);
         if !missing.size.is_finite() {
             return Err(Failure::Lost);
@@ -441,7 +441,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
     /// Puts clamps exactly where the factor has them.
     fn place_clamps(&self, now: &mut Iterate) {
         if self.constraint.unknown() == Unknown::All {
-            let problem = self.equilibrium.problem;
+            let problem = &self.equilibrium.problem;
             let (time, ramp) = (self.point.time, now.factor);
             problem.place_clamps(time, ramp, &mut now.positions);
         }
@@ -451,7 +451,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
     /// goes downhill, as one does past a limit.
     fn carried(&mut self) -> Result<Factor, Failure> {
         let factor = self.equilibrium.system.factor(0.0)?;
-        let problem = self.equilibrium.problem;
+        let problem = &self.equilibrium.problem;
         let astray = problem.contact().is_some()
             && self.constraint.has_potential(problem)
             && self.equilibrium.system.negative_pivots(&factor) > Some(1);
@@ -473,6 +473,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
     /// With strains carried along. Where it is lost, `now` is the best that it came by.
     fn mixed(&mut self, now: &mut Iterate) -> Result<Seen, Failure> {
         let mut at = now.clone();
+        let body = self.equilibrium.problem.shared_body();
         let mut strains: Option<Strains<'_>> = None;
         let (mut best, mut lowest, mut since_lowest) = (f64::INFINITY, f64::INFINITY, 0);
         for iteration in 0..=MIXED_ITERATIONS {
@@ -521,7 +522,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
                 now.iterations = iteration;
                 return Ok(seen);
             }
-            let body = self.equilibrium.problem.body();
+            let body = &*body;
             strains = Some(match strains.take() {
                 Some(strains) => strains.carry(body, &at.positions, &moves),
                 None => Strains::predict(body, &at.positions, &moves),
@@ -553,7 +554,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
             now.iterations += 1;
             let place = self.place(now, &seen, None);
             let sides = assemble(self.equilibrium, place, &seen.forces.free);
-            let potential = self.constraint.has_potential(self.equilibrium.problem);
+            let potential = self.constraint.has_potential(&self.equilibrium.problem);
             let step = if potential {
                 self.descending(&sides, now, &seen, &mut memory)?
             } else {
@@ -621,7 +622,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         let point = self.constraint.unknown().with(self.point, factor);
         let merit = |positions: &[Vec3]| {
             let (potential, size) = self.equilibrium.potential(positions, point);
-            let problem = self.equilibrium.problem;
+            let problem = &self.equilibrium.problem;
             let missing = self.constraint.missing(problem, positions, factor).size;
             (potential + 0.5 * penalty * missing * missing, size)
         };
@@ -641,7 +642,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         moves: &[Vec3],
         seen: &Seen,
     ) -> Result<(), Failure> {
-        let problem = self.equilibrium.problem;
+        let problem = &self.equilibrium.problem;
         let unit = seen.forces.scale;
         let start = seen.both();
         self.halve(now, step, moves, |trial, part| {

@@ -158,7 +158,7 @@ impl Walk {
             unit: 0.05 * size * (equilibrium.system.size() as f64).sqrt(),
             length,
             longest: if equilibrium.problem.depends_on_way() {
-                longest_step(equilibrium.problem)
+                longest_step(&equilibrium.problem)
             } else {
                 f64::INFINITY
             },
@@ -175,20 +175,20 @@ impl Walk {
         settings: &Settings,
         steps: u32,
     ) -> Result<Option<f64>, Failure> {
-        let contact = path.equilibrium.problem.contact();
         let mut tangent = self.tangent_at(path, None)?;
         let (mut last, mut cuts, mut taken) = (f64::INFINITY, 0, 0);
         while taken < steps {
             let mut length = self.length.min(self.longest / tangent.factor.abs());
-            contact.inspect(|contact| contact.extrapolate(length / last));
+            path.contact()
+                .inspect(|contact| contact.extrapolate(length / last));
             let mut outcome = self.step(path, &tangent, length, settings);
             let lost = matches!(outcome, Err(failure) if failure != Failure::Cancelled);
             if lost
-                && let Some(contact) = contact
+                && path.contact().is_some()
                 && cuts >= CUTS_TO_A_CORNER
                 && let Some(corner) = tangent.at_corner()
             {
-                contact.go_back();
+                path.contact().inspect(|contact| contact.go_back());
                 outcome = self.step(path, &corner, length, settings);
                 if outcome.is_ok() {
                     // Cuts came of the corner, not of what follows.
@@ -213,7 +213,7 @@ impl Walk {
                 }
                 Err(failure) => failure,
             };
-            contact.inspect(|contact| contact.go_back());
+            path.contact().inspect(|contact| contact.go_back());
             if failure == Failure::Cancelled {
                 return Err(failure);
             }

@@ -60,24 +60,6 @@ pub(crate) struct Found {
     pub residual: f64,
 }
 
-/// As long as it lives, forces and stiffness of a fluid are those of pressures that are carried along; what is looked at
-/// to judge a state has none.
-struct Carrying<'a>(Option<&'a Fluid>);
-
-impl<'a> Carrying<'a> {
-    fn along(fluid: Option<&'a Fluid>, pressures: Option<Vec<f64>>) -> Self {
-        let fluid = fluid.filter(|_| pressures.is_some());
-        fluid.inspect(|fluid| fluid.carry(pressures));
-        Self(fluid)
-    }
-}
-
-impl Drop for Carrying<'_> {
-    fn drop(&mut self) {
-        self.0.inspect(|fluid| fluid.carry(None));
-    }
-}
-
 /// The forces at some positions.
 pub(crate) struct Forces {
     /// On free coordinates.
@@ -96,7 +78,8 @@ impl Forces {
 
 /// A problem with its tangent, and the vertices that rest on the floor for now.
 pub(crate) struct Equilibrium<'a> {
-    pub problem: &'a Problem,
+    /// A copy of its own, with the memory of where it has come to.
+    pub problem: Problem,
     pub system: System,
     /// How linear systems may be solved.
     pub means: Means,
@@ -162,7 +145,7 @@ const STANDSTILL_OF_MOTION: f64 = 1e-9;
 const STANDSTILL_RESIDUAL: f64 = 1e-4;
 
 impl<'a> Equilibrium<'a> {
-    pub fn new(problem: &'a Problem, means: Means) -> Result<Self, FactorError> {
+    pub fn new(problem: Problem, means: Means) -> Result<Self, FactorError> {
         let mut held = problem.held().to_vec();
         if let Some(floor) = problem.floor() {
             for (held, point) in held.iter_mut().zip(problem.body().rest()) {
@@ -170,8 +153,9 @@ impl<'a> Equilibrium<'a> {
             }
         }
         Ok(Self {
-            system: System::new(problem, &held, means)?,
+            system: System::new(&problem, &held, means)?,
             means,
+            largest_motion: largest_motion(&problem),
             problem,
             held,
             iterations: 0,
@@ -181,7 +165,6 @@ impl<'a> Equilibrium<'a> {
             inertia: None,
             negligible: 0.0,
             precision: 1.0,
-            largest_motion: largest_motion(problem),
             by_load: None,
             has_loose: false,
         })
@@ -194,7 +177,7 @@ impl<'a> Equilibrium<'a> {
             .contact()
             .is_some_and(|contact| contact.follow(positions))
         {
-            self.system = System::new(self.problem, &self.held, self.means)?;
+            self.system = System::new(&self.problem, &self.held, self.means)?;
         }
         Ok(())
     }
@@ -290,7 +273,7 @@ impl<'a> Equilibrium<'a> {
     /// From here on solves directly, if that fits in memory.
     pub fn go_on_directly(&mut self) -> Result<(), FactorError> {
         self.means.solver = LinearSolver::Direct;
-        self.system = System::new(self.problem, &self.held, self.means)?;
+        self.system = System::new(&self.problem, &self.held, self.means)?;
         Ok(())
     }
 
@@ -318,6 +301,14 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
+    /// Carries pressures of a fluid along for the rest of an iteration: its forces and stiffness are theirs, while a state is
+    /// judged by its own.
+    fn carry(&mut self, pressures: Option<Vec<f64>>) {
+        if let Some(fluid) = self.problem.fluid_mut() {
+            fluid.carry(pressures);
+        }
+    }
+
     fn newton_mixed(
         &mut self,
         positions: &mut Vec<Vec3>,
@@ -325,11 +316,24 @@ impl<'a> Equilibrium<'a> {
         settings: &Settings,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
-        let body = self.problem.body();
+        let found = self.iterate_mixed(positions, point, settings, observer);
+        self.carry(None);
+        found
+    }
+
+    fn iterate_mixed(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        point: Point,
+        settings: &Settings,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure> {
+        let body = &*self.problem.shared_body();
         let opening = self.opening.take();
         let mut strains = opening.map(|p| Strains::with_pressures(body, positions, &p));
-        let fluid = self.problem.fluid().filter(|fluid| fluid.is_stiff());
-        let mut carried = fluid.map(Fluid::last_pressures);
+        let stiff = self.problem.fluid().filter(|fluid| fluid.is_stiff());
+        let mut carried = stiff.map(Fluid::last_pressures);
+        let is_stiff = carried.is_some();
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
         let mut previous = f64::INFINITY;
@@ -347,10 +351,12 @@ impl<'a> Equilibrium<'a> {
                     residual: relative,
                 });
             }
-            let carrying = Carrying::along(fluid, carried.take());
+            if is_stiff {
+                self.carry(carried.take());
+            }
             if let Some(strains) = &strains {
                 forces.free = self.predicted_forces(strains, positions, point);
-            } else if fluid.is_some() {
+            } else if is_stiff {
                 forces.free = self.forces(positions, point).free;
             }
             // While clamps have yet to move, the residual is that of the last equilibrium.
@@ -373,7 +379,7 @@ impl<'a> Equilibrium<'a> {
             previous = relative;
             self.iterations += 1;
             self.system.assemble(
-                self.problem,
+                &self.problem,
                 positions,
                 &point.factor_of(),
                 strains.as_ref(),
@@ -407,10 +413,11 @@ impl<'a> Equilibrium<'a> {
                 Some(strains) => strains.carry(body, positions, &moves),
                 None => Strains::predict(body, positions, &moves),
             });
-            carried = fluid.map(|fluid| {
+            let stiff = self.problem.fluid().filter(|_| is_stiff);
+            carried = stiff.map(|fluid| {
                 fluid.carried_on(positions, fluid.instant(&point.factor_of()), &moves)
             });
-            drop(carrying);
+            self.carry(None);
             for (x, m) in positions.iter_mut().zip(&moves) {
                 *x = add(*x, *m);
             }
@@ -486,6 +493,7 @@ impl<'a> Equilibrium<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<(), Failure> {
         let progress = Progress {
+            problem: &self.problem,
             steps: u64::from(self.iterations),
             time: point.progress(),
             residual,
@@ -524,7 +532,7 @@ impl<'a> Equilibrium<'a> {
             }
             self.iterations += 1;
             self.system.assemble(
-                self.problem,
+                &self.problem,
                 positions,
                 &point.factor_of(),
                 None,
@@ -662,7 +670,7 @@ impl<'a> Equilibrium<'a> {
         }
         let mut unused = vec![0.0; self.system.size()];
         self.system.assemble(
-            self.problem,
+            &self.problem,
             positions,
             &point.factor_of(),
             None,
@@ -693,7 +701,7 @@ impl<'a> Equilibrium<'a> {
             self.held[vertex][2] = keep;
         }
         if changed {
-            self.system = System::new(self.problem, &self.held, self.means)?;
+            self.system = System::new(&self.problem, &self.held, self.means)?;
         }
         Ok(changed)
     }

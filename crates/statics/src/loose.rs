@@ -258,7 +258,7 @@ impl Path<'_, '_> {
                             return self.rest(loose, trial, point, &found, known);
                         }
                         self.accept(trial, point, found.iterations, found.residual);
-                        if loose.is_gone(self.equilibrium.problem, &self.positions) {
+                        if loose.is_gone(&self.equilibrium.problem, &self.positions) {
                             return self.lost(Status::NotAtRest);
                         }
                         if found.iterations <= FLIGHT && moved > reach / 2.0 {

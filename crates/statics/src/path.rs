@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Observer, Problem, Progress, Status, Term};
+use voxsoft_solid::{Contact, Memory, Observer, Problem, Progress, Status, Term};
 
 use crate::along::Along;
 use crate::control;
@@ -127,8 +127,9 @@ fn follow(
     observer: &mut Observer<'_>,
     loose: Option<&Loose>,
 ) -> Answer {
-    let rest = problem.body().rest();
-    let positions = start.map_or(rest, |start| &start.positions).to_vec();
+    let mut problem = problem.clone();
+    let rest = problem.body().rest().to_vec();
+    let positions = start.map_or(&rest, |start| &start.positions).clone();
     let solver = match settings.control {
         Control::Load | Control::Time { .. } => settings.linear,
         // Where contact goes astray is told from the signs of pivots.
@@ -146,16 +147,15 @@ fn follow(
     }
     if !goes_on {
         problem.start_loads();
-        if let Some(fluid) = problem.fluid() {
-            fluid.start(rest, None);
-        }
+        problem.start_fluid(&rest, None);
     }
+    let memory = problem.memory();
     let equilibrium = match Equilibrium::new(problem, means) {
         Ok(equilibrium) => Equilibrium {
             precision: (settings.tolerance / Settings::default().tolerance).min(1.0),
             ..equilibrium
         },
-        Err(error) => return refused(positions, error),
+        Err(error) => return refused(positions, memory, error),
     };
     let mut path = Path {
         equilibrium: Equilibrium {
@@ -185,8 +185,9 @@ fn follow(
     path.answer(ending, settings)
 }
 
-fn refused(positions: Vec<Vec3>, error: FactorError) -> Answer {
+fn refused(positions: Vec<Vec3>, memory: Memory, error: FactorError) -> Answer {
     Answer {
+        memory,
         positions,
         status: match error {
             FactorError::Memory(bytes) => Status::OutOfMemory(bytes),
@@ -219,6 +220,11 @@ pub(crate) fn status_of(failure: Failure) -> Status {
 }
 
 impl Path<'_, '_> {
+    /// Contact of its problem.
+    pub fn contact(&self) -> Option<&dyn Contact> {
+        self.equilibrium.problem.contact()
+    }
+
     fn answer(mut self, ending: Ending, settings: &Settings) -> Answer {
         // Load and volume control have asked at each point; a point of an arc knows only whether the load has turned.
         let stable = match (self.points.last(), settings.control) {
@@ -232,6 +238,7 @@ impl Path<'_, '_> {
             .forces(&self.positions, self.point)
             .relative();
         Answer {
+            memory: self.equilibrium.problem.memory(),
             status: ending.status,
             factor: self.point.pressure,
             dead_factor: self.point.dead,
@@ -249,13 +256,14 @@ impl Path<'_, '_> {
     }
 
     pub fn accept(&mut self, positions: Vec<Vec3>, point: Point, iterations: u32, residual: f64) {
-        if let Some(contact) = self.equilibrium.problem.contact() {
+        let problem = &mut self.equilibrium.problem;
+        if let Some(contact) = problem.contact() {
             contact.accept(&positions);
         }
-        let problem = self.equilibrium.problem;
         problem.accept_loads(&positions, &point.factor_of());
-        if let Some(fluid) = self.equilibrium.problem.fluid() {
-            fluid.take_rest(&positions, fluid.instant(&point.factor_of()));
+        if let Some(fluid) = problem.fluid_mut() {
+            let instant = fluid.instant(&point.factor_of());
+            fluid.take_rest(&positions, instant);
         }
         self.positions = positions;
         self.point = point;
@@ -267,6 +275,7 @@ impl Path<'_, '_> {
         });
         // A converged point is worth telling; whether to stop is asked at the next iteration.
         let _ = (self.observer)(&Progress {
+            problem: &self.equilibrium.problem,
             steps: u64::from(self.equilibrium.iterations),
             time: point.pressure,
             residual,
@@ -300,17 +309,16 @@ impl Path<'_, '_> {
             settings.first_step.clamp(settings.least_step, 1.0)
         };
         let cold = self.equilibrium.problem.body().rest().to_vec();
-        let contact = self.equilibrium.problem.contact();
         let longest = match settings.control {
             _ if !self.equilibrium.problem.depends_on_way() => 1.0,
             Control::Time { longest, .. } => longest,
-            _ => longest_step(self.equilibrium.problem),
+            _ => longest_step(&self.equilibrium.problem),
         };
         let longest = match self.equilibrium.problem.fluid() {
             Some(_) => f64::min(longest, LONGEST_OF_WORK),
             None => longest,
         };
-        let easy = if contact.is_some() {
+        let easy = if self.contact().is_some() {
             EASY_WITH_CONTACT
         } else {
             EASY
@@ -330,7 +338,8 @@ impl Path<'_, '_> {
             };
             let point = along.at(next);
             let mut trial = self.positions.clone();
-            contact.inspect(|contact| contact.extrapolate((next - now) / last));
+            self.contact()
+                .inspect(|contact| contact.extrapolate((next - now) / last));
             loose.inspect(|loose| loose.hold(&self.positions, next - now));
             let safe = step <= SAFE_STEP;
             let mut search = AtLoad {
@@ -372,28 +381,27 @@ impl Path<'_, '_> {
                     Failure::Lost
                 }
                 Err(Failure::Turned(turn)) => {
-                    contact.inspect(|contact| contact.go_back());
+                    self.contact().inspect(|contact| contact.go_back());
                     length.set((step * GOOD_TURN / turn).max(settings.least_step));
                     continue;
                 }
                 Err(failure) => failure,
             };
-            contact.inspect(|contact| contact.go_back());
+            self.contact().inspect(|contact| contact.go_back());
             if !matches!(failure, Failure::Lost | Failure::Singular) {
                 return Ending::new(status_of(failure), None, now);
             }
             self.equilibrium.back_offs += 1;
             if self.points.is_empty() && warm {
                 self.positions.clone_from(&cold);
-                contact.inspect(|contact| contact.start(&cold));
+                self.contact().inspect(|contact| contact.start(&cold));
             }
             length.failed(next - now);
             if length.get() < settings.least_step {
                 let point = along.at((now + SNAP).min(1.0));
-                if let Some(contact) = contact
-                    && !contact.is_recorded()
+                let may_snap = self.contact().is_some_and(|contact| !contact.is_recorded());
+                if may_snap
                     && self.snap(
-                        contact,
                         &mut AtLoad {
                             point,
                             safe: true,
@@ -413,13 +421,13 @@ impl Path<'_, '_> {
                 // Contact makes corners in the path, which no tangent foresees; and what fills chambers is not proportional to the
                 // load, so that no direction leads ahead.
                 let fluid = self.equilibrium.problem.fluid();
-                let limit = match contact {
+                let limit = match self.contact() {
                     None if fluid.is_none() && along.has_factor() => self.look_ahead(settings),
                     _ => None,
                 };
                 // What was held at an equilibrium before does not move freely: contact lost its way.
                 let failure = match failure {
-                    Failure::Singular if contact.is_some() && now > 0.0 => Failure::Lost,
+                    Failure::Singular if self.contact().is_some() && now > 0.0 => Failure::Lost,
                     other => other,
                 };
                 let status = limit.map_or(status_of(failure), |_| Status::LimitReached);

@@ -64,7 +64,7 @@ pub fn sensitivities<C: RecordedContact>(
     for varied in parameters.iter().flatten() {
         varied.contact.start(varied.problem.body().rest());
     }
-    let mut equilibrium = Equilibrium::new(problem, means)?;
+    let mut equilibrium = Equilibrium::new(problem.clone(), means)?;
     let mut ends = Vec::new();
     let mut steps = factors.iter();
     let mut point = Point::all(0.0);

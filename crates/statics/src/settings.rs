@@ -1,5 +1,5 @@
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Load, Observer, Problem, Solution, Solver, State, Status};
+use voxsoft_solid::{Load, Memory, Observer, Problem, Solution, Solver, State, Status};
 
 use crate::path::{Start, solve};
 use crate::point::Point;
@@ -104,6 +104,7 @@ impl Solver for Settings {
                 positions: answer.positions,
                 ..State::at_rest(problem.body())
             },
+            memory: answer.memory,
             status: answer.status,
             residual: answer.residual,
             steps: u64::from(answer.iterations),
@@ -156,6 +157,8 @@ pub struct Answer {
     pub limit: Option<f64>,
     /// Whether the equilibrium at `positions` is stable.
     pub stable: bool,
+    /// The memory of the problem at `positions`, besides contact.
+    pub memory: Memory,
 }
 
 impl Answer {

@@ -69,7 +69,7 @@ impl Search for AtLoad {
         round: usize,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
-        let way = way_of(round, equilibrium.problem, self.safe);
+        let way = way_of(round, &equilibrium.problem, self.safe);
         equilibrium.newton(positions, self.point, settings, way, observer)
     }
 }

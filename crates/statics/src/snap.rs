@@ -8,7 +8,7 @@
 //! less than the tolerance of the forces. Nothing is left of them in the answer.
 
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Contact, Status, Term};
+use voxsoft_solid::{Status, Term};
 
 use std::sync::Arc;
 
@@ -37,7 +37,7 @@ impl Path<'_, '_> {
         along: Along,
         settings: &Settings,
     ) -> Option<f64> {
-        let problem = self.equilibrium.problem;
+        let problem = &self.equilibrium.problem;
         let plain = problem.contact().is_none() && problem.fluid().is_none();
         let known = plain && problem.floor().is_none() && !problem.depends_on_way();
         if !known || !along.has_factor() || self.equilibrium.system.is_iterative() {
@@ -56,13 +56,11 @@ impl Path<'_, '_> {
 
     /// Moves on to an equilibrium that the `search` finds, to which no short step leads; whether one was found. If not, nothing has
     /// changed.
-    pub fn snap(
-        &mut self,
-        contact: &dyn Contact,
-        search: &mut impl Search,
-        settings: &Settings,
-    ) -> bool {
-        let problem = self.equilibrium.problem;
+    pub fn snap(&mut self, search: &mut impl Search, settings: &Settings) -> bool {
+        let problem = &self.equilibrium.problem;
+        let Some(contact) = problem.contact() else {
+            return false;
+        };
         let dampers = Loose::of_everything(problem, contact.length());
         let term = Arc::clone(&dampers.dampers) as Arc<dyn Term>;
         let Ok(damped) = problem.clone().with_term(term) else {
@@ -72,7 +70,7 @@ impl Path<'_, '_> {
             solver: LinearSolver::Direct,
             ..self.equilibrium.means
         };
-        let Ok(equilibrium) = Equilibrium::new(&damped, means) else {
+        let Ok(equilibrium) = Equilibrium::new(damped, means) else {
             return false;
         };
         contact.save();
@@ -97,15 +95,20 @@ impl Path<'_, '_> {
             points,
             ..
         } = path;
+        let memory = equilibrium.problem.memory();
         self.equilibrium.iterations += equilibrium.iterations;
         self.equilibrium.back_offs += equilibrium.back_offs;
         // What touches now has no room in the tangent of before.
+        let problem = &self.equilibrium.problem;
         let system = System::new(problem, &self.equilibrium.held, self.equilibrium.means);
         let (Status::AtRest, Ok(system)) = (ending.status(), system) else {
-            contact.restore();
+            if let Some(contact) = self.contact() {
+                contact.restore();
+            }
             return false;
         };
         self.equilibrium.system = system;
+        self.equilibrium.problem.remember(&memory);
         self.positions = positions;
         self.point = point;
         self.points.extend(points.last().copied());

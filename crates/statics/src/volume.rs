@@ -72,7 +72,7 @@ pub(crate) fn follow_volume(
         return Ending::new(dead.status(), None, 0.0);
     }
     Growth {
-        first: volume(path.equilibrium.problem, &path.positions),
+        first: volume(&path.equilibrium.problem, &path.positions),
         ratio,
         highest: 0.0,
         turned: None,
@@ -112,20 +112,22 @@ impl Growth {
         steps: u32,
         loose: Option<&Loose>,
     ) -> Ending {
-        let contact = path.equilibrium.problem.contact();
+        let touches = path.contact().is_some();
         let (mut longest, mut scale) = (1.0 / f64::from(steps.max(1)), 1);
-        if contact.is_some() {
+        if touches {
             scale = WITH_CONTACT;
         }
-        longest = longest.min(longest_step(path.equilibrium.problem));
-        let shortest = match contact {
-            Some(_) => settings.least_step.min(longest),
-            None => SHORTEST * longest,
+        longest = longest.min(longest_step(&path.equilibrium.problem));
+        let shortest = if touches {
+            settings.least_step.min(longest)
+        } else {
+            SHORTEST * longest
         };
         let (mut part, mut last) = (longest, f64::INFINITY);
         while self.done < 1.0 - 1e-12 {
             let next = (self.done + part).min(1.0);
-            contact.inspect(|contact| contact.extrapolate((next - self.done) / last));
+            path.contact()
+                .inspect(|contact| contact.extrapolate((next - self.done) / last));
             loose.inspect(|loose| loose.hold(&path.positions, next - self.done));
             // What dampers still hold in the end is let go from there.
             path.looking = loose.is_some() && next == 1.0;
@@ -145,19 +147,17 @@ impl Growth {
                 }
                 Err(failure) => failure,
             };
-            contact.inspect(|contact| contact.go_back());
+            path.contact().inspect(|contact| contact.go_back());
             path.equilibrium.back_offs += 1;
             part *= CUT;
             let lost = matches!(failure, Failure::Lost | Failure::Singular);
             if lost && part >= shortest {
                 continue;
             }
-            if lost
-                && let Some(contact) = contact
-                && !contact.is_recorded()
-            {
+            let may_snap = path.contact().is_some_and(|contact| !contact.is_recorded());
+            if lost && may_snap {
                 let next = (self.done + SNAP).min(1.0);
-                if path.snap(contact, &mut self.search(path, next), settings) {
+                if path.snap(&mut self.search(path, next), settings) {
                     (self.done, part, last) = (next, SNAP.min(longest), f64::INFINITY);
                     self.see(path.point);
                     continue;

@@ -21,8 +21,11 @@ pub struct Answer {
 }
 
 impl Answer {
-    pub(crate) fn into_solution(self) -> Solution {
+    pub(crate) fn into_solution(self, problem: &Problem) -> Solution {
+        let mut problem = problem.clone();
+        problem.begin(self.state.time);
         Solution {
+            memory: problem.memory(),
             state: self.state,
             status: self.status,
             residual: self.residual,

@@ -109,8 +109,8 @@ impl Element {
     fn upright_stress(&self, body: &Body, positions: &[Vec3]) -> Mat3 {
         let pieces = match self {
             Self::Brick(index, _) => {
-                let brick = body.brick_term().at(*index as usize);
-                return brick.cauchy_stress(body.material_of(&brick), positions);
+                let brick = &body.bricks()[*index as usize];
+                return brick.cauchy_stress(body.material_of(brick), positions);
             }
             Self::Lattice(pieces) => pieces,
         };
@@ -143,8 +143,8 @@ impl Element {
     pub fn energy_density(&self, body: &Body, positions: &[Vec3]) -> f64 {
         let pieces = match self {
             Self::Brick(index, _) => {
-                let brick = body.brick_term().at(*index as usize);
-                let material = body.material_of(&brick);
+                let brick = &body.bricks()[*index as usize];
+                let material = body.material_of(brick);
                 return brick.energy(material, positions) / brick.volume(material);
             }
             Self::Lattice(pieces) => pieces,

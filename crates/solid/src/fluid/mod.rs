@@ -18,8 +18,9 @@ mod network;
 mod pressures;
 mod small;
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
+pub use self::motion::State as FluidMemory;
 use self::motion::State;
 use crate::assembly::Visitor;
 use crate::loads::{ExternalForce, Pressure, Vertices};
@@ -77,7 +78,7 @@ pub struct Fluid {
     part: Load,
     /// A load whose factor is that times the time in s, up to the end of all histories.
     clock: Load,
-    state: Arc<Mutex<State>>,
+    state: State,
 }
 
 /// The part of a stiffness that joins all of the walls: `Σ gᵢ Cᵢⱼ gⱼᵀ`.
@@ -121,17 +122,17 @@ impl Fluid {
             walls: Arc::new(walls),
             part: nothing(History::constant()),
             clock: nothing(clock),
-            state: Arc::new(Mutex::new(State {
+            state: State {
                 exchanged: vec![0.0; count],
                 before: vec![0.0; count],
                 work: vec![0.0; count],
                 energy: vec![0.0; count],
                 ..State::default()
-            })),
+            },
         })
     }
 
-    /// The same in a state of its own.
+    /// The same as it was made, without memory.
     pub fn anew(&self) -> Result<Self, ProblemError> {
         Self::new((*self.network).clone(), (*self.walls).clone())
     }
@@ -178,9 +179,13 @@ impl Fluid {
             .flat_map(|wall| wall.triangles.iter().copied())
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
-        // A panic of another thread leaves numbers that the next step overwrites.
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Its memory.
+    pub(crate) fn memory(&self) -> &FluidMemory {
+        &self.state
+    }
+
+    pub(crate) fn remember(&mut self, memory: FluidMemory) {
+        self.state = memory;
     }
 
     /// The volume of each chamber, m³.
@@ -193,7 +198,7 @@ impl Fluid {
     /// The pressures that push, those whose stiffness the walls feel, and how pressures follow volumes.
     fn answer(&self, volumes: &[f64], instant: Instant) -> (Pressures, Vec<f64>) {
         let Instant { part, time } = instant;
-        let state = self.state();
+        let state = &self.state;
         let found = match (&state.carried, &state.step) {
             (Some(near), Some(step)) => self.network.along_end_of(step, near, volumes),
             (Some(near), None) => self.network.along_rest(near, volumes, part, time),
@@ -226,7 +231,7 @@ impl Fluid {
     /// Its potential (J), up to a constant of the step.
     pub fn potential(&self, positions: &[Vec3], instant: Instant) -> f64 {
         let volumes = self.volumes(positions);
-        let step = self.state().step.clone();
+        let step = self.state.step.clone();
         match step {
             Some(step) if !self.network.is_closed() => -self.work_in(&step, &volumes),
             Some(step) => -self.network.work_at_rest(&volumes, 1.0, step.time),
@@ -315,8 +320,8 @@ impl Fluid {
     }
 
     /// From here on forces and stiffness are those of pressures that are carried along; none lets them go.
-    pub fn carry(&self, pressures: Option<Vec<f64>>) {
-        self.state().carried = pressures;
+    pub fn carry(&mut self, pressures: Option<Vec<f64>>) {
+        self.state.carried = pressures;
     }
 
     /// The pressures to carry along after a move of the vertices, to first order.

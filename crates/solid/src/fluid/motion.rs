@@ -5,24 +5,24 @@ use super::{Fluid, Instant};
 use crate::vector::Vec3;
 
 /// What it remembers between steps and iterations.
-#[derive(Debug, Default)]
-pub(super) struct State {
-    pub step: Option<Step>,
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct State {
+    pub(super) step: Option<Step>,
     /// Pressures that Newton's method carries along.
-    pub carried: Option<Vec<f64>>,
+    pub(super) carried: Option<Vec<f64>>,
     /// Masses that have been exchanged since the start, now and a step ago, kg.
-    pub exchanged: Vec<f64>,
-    pub before: Vec<f64>,
-    pub last: Option<Last>,
+    pub(super) exchanged: Vec<f64>,
+    pub(super) before: Vec<f64>,
+    pub(super) last: Option<Last>,
     /// The largest pressure so far, of either sign, Pa.
-    pub largest: f64,
+    pub(super) largest: f64,
     /// Work on the walls and energy given so far, J, for each chamber.
-    pub work: Vec<f64>,
-    pub energy: Vec<f64>,
+    pub(super) work: Vec<f64>,
+    pub(super) energy: Vec<f64>,
 }
 
 /// The last accepted state.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Last {
     pub volumes: Vec<f64>,
     pub pressures: Vec<f64>,
@@ -66,7 +66,7 @@ impl Reading {
 
 impl Fluid {
     /// Starts a path from rest, or a motion: nothing has been exchanged.
-    pub fn start(&self, positions: &[Vec3], time: Option<f64>) {
+    pub fn start(&mut self, positions: &[Vec3], time: Option<f64>) {
         let volumes = self.volumes(positions);
         let network = &self.network;
         let (part, instant) = time.map_or((0.0, f64::INFINITY), |time| (1.0, time));
@@ -88,7 +88,7 @@ impl Fluid {
             None => vec![0.0; n],
         };
         let masses = network.masses(&volumes, &pressures, part, instant);
-        *self.state() = State {
+        self.state = State {
             step: None,
             carried: None,
             largest: 0.0,
@@ -112,15 +112,15 @@ impl Fluid {
 
     /// Begins a step of a motion to `time`, at whose end the derivative of the masses is `rate` times what they differ by from
     /// a mean of those now and a step ago, with these weights.
-    pub fn begin(&self, time: f64, rate: f64, [now, ago]: [f64; 2]) {
-        let mut state = self.state();
+    pub fn begin(&mut self, time: f64, rate: f64, [now, ago]: [f64; 2]) {
+        let state = &self.state;
         let pairs = state.exchanged.iter().zip(&state.before);
         let exchanged = pairs.map(|(a, b)| now * a + ago * b).collect();
         let (from, guess) = match &state.last {
             Some(last) => (last.volumes.clone(), last.pressures.clone()),
             None => return,
         };
-        state.step = Some(Step {
+        self.state.step = Some(Step {
             time,
             rate,
             exchanged,
@@ -130,17 +130,16 @@ impl Fluid {
     }
 
     /// Takes a state as the end of a step of a motion.
-    pub fn take_step(&self, positions: &[Vec3]) {
-        let before = self.state().exchanged.clone();
+    pub fn take_step(&mut self, positions: &[Vec3]) {
+        let before = self.state.exchanged.clone();
         self.take_stage(positions);
-        self.state().before = before;
+        self.state.before = before;
     }
 
     /// The same of a stage after the first one of a step: what was a step ago stays so.
-    pub fn take_stage(&self, positions: &[Vec3]) {
+    pub fn take_stage(&mut self, positions: &[Vec3]) {
         let volumes = self.volumes(positions);
-        let mut state = self.state();
-        let Some(step) = state.step.clone() else {
+        let Some(step) = self.state.step.clone() else {
             return;
         };
         let Some(found) = self.network.at_end_of(&step, &volumes) else {
@@ -160,9 +159,9 @@ impl Fluid {
                 }
             })
             .collect();
-        state.exchanged = exchanged;
+        self.state.exchanged = exchanged;
         let power = self.network.power(&found.pressures, step.time);
-        state.count(
+        self.state.count(
             &self.network,
             Last {
                 volumes,
@@ -176,13 +175,13 @@ impl Fluid {
     }
 
     /// Takes a state as a point of a path of equilibria.
-    pub fn take_rest(&self, positions: &[Vec3], instant: Instant) {
+    pub fn take_rest(&mut self, positions: &[Vec3], instant: Instant) {
         let volumes = self.volumes(positions);
         let Instant { part, time } = instant;
         if let Some(found) = self.network.at_rest(&volumes, part, time) {
             let power = vec![0.0; volumes.len()];
             let masses = self.network.masses(&volumes, &found.pressures, part, time);
-            self.state().count(
+            self.state.count(
                 &self.network,
                 Last {
                     volumes,
@@ -198,7 +197,7 @@ impl Fluid {
 
     /// The instant of the last accepted state; that of the unloaded body where there is none.
     pub fn last_instant(&self) -> Instant {
-        let state = self.state();
+        let state = &self.state;
         let last = state.last.as_ref();
         last.map_or(Instant::at_the_end(0.0), |last| Instant {
             part: last.part,
@@ -208,14 +207,14 @@ impl Fluid {
 
     /// Those of the last accepted state, Pa.
     pub fn last_pressures(&self) -> Vec<f64> {
-        let state = self.state();
+        let state = &self.state;
         let last = state.last.as_ref();
         last.map_or(vec![0.0; self.walls.len()], |last| last.pressures.clone())
     }
 
     /// Whether pressures have come to rest, up to a part of the largest one so far, if volumes stay.
     pub fn is_at_rest(&self, tolerance: f64) -> bool {
-        let state = self.state();
+        let state = &self.state;
         let (Some(last), Some(step)) = (&state.last, &state.step) else {
             return true;
         };
@@ -233,7 +232,7 @@ impl Fluid {
         let volumes = self.volumes(positions);
         let (found, _) = self.answer(&volumes, instant);
         let part = instant.part;
-        let state = self.state();
+        let state = &self.state;
         let time = state.step.as_ref().map_or(instant.time, |step| step.time);
         let masses = self.network.masses(&volumes, &found.pressures, part, time);
         let flows: Vec<f64> = match &state.step {

@@ -226,6 +226,17 @@ impl HyperelasticMaterial {
         [&self.growth, &self.fiber_growth]
     }
 
+    /// Makes the free stretches of it and its fibers those of a time in s.
+    pub(crate) fn begin(&mut self, time: f64) {
+        self.growth.begin(time);
+        self.fiber_growth.begin(time);
+    }
+
+    /// The largest isochoric energy (J/m³) that a voxel counts as having had before it is strained.
+    pub(crate) fn first_peak(&self) -> f64 {
+        self.mullins.as_ref().map_or(0.0, Mullins::first)
+    }
+
     /// Its fibers with the free stretch that they have now.
     pub(crate) fn fibers_now(&self) -> impl Iterator<Item = Fiber> + '_ {
         let growth = self.fiber_growth.now();

@@ -20,7 +20,7 @@ pub use gravity::Gravity;
 pub use hydrostatic::Hydrostatic;
 pub use point_forces::PointForces;
 pub use pressure::{Pressure, enclosed_volume};
-pub use tendon::{Drive, Place, Tendon, TendonState};
+pub use tendon::{Drive, Place, Tendon, TendonMemory, TendonState};
 
 /// The vertices that a load acts on: where they were at rest, where they are now, and what they weigh.
 #[derive(Debug, Clone, Copy)]
@@ -77,12 +77,6 @@ pub trait ExternalForce: Debug + Send + Sync {
         false
     }
 
-    /// Forgets the way.
-    fn start(&self) {}
-
-    /// Takes a state as the one from which the way goes on.
-    fn accept(&self, _on: Vertices<'_>, _factor: f64) {}
-
     /// Whether the forces depend on where the body is. Those of a dead load do not.
     fn follows(&self) -> bool {
         false
@@ -138,14 +132,6 @@ impl LoadKind {
     pub(crate) fn held(&self) -> Self {
         match self {
             Self::Tendon(tendon) => Self::Tendon(tendon.held()),
-            other => other.clone(),
-        }
-    }
-
-    /// The same with a memory of its own, where it has one.
-    pub(crate) fn with_own_memory(&self) -> Self {
-        match self {
-            Self::Tendon(tendon) => Self::Tendon(tendon.with_own_memory()),
             other => other.clone(),
         }
     }

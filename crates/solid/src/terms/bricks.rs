@@ -1,4 +1,3 @@
-use super::peaks::Peaks;
 use super::{Strain, Term};
 use crate::assembly::{Elements, ElementsVisitor, Visitor};
 use crate::batches::{groups_in_order, in_order};
@@ -21,8 +20,8 @@ pub struct Bricks {
     pub materials: Vec<HyperelasticMaterial>,
     /// Which of their vertices follow others.
     pub(crate) ties: Ties,
-    /// What they remember.
-    peaks: Peaks,
+    /// Whether the material of any of them softens.
+    softens: bool,
 }
 
 impl Bricks {
@@ -32,68 +31,52 @@ impl Bricks {
         materials: Vec<HyperelasticMaterial>,
         ties: Ties,
     ) -> Self {
-        let mut all = Self {
+        let soften = |brick: &Brick| {
+            let material: &HyperelasticMaterial = &materials[brick.material as usize];
+            material.mullins().is_some()
+        };
+        Self {
+            softens: bricks.iter().any(soften),
             bricks,
             materials,
             ties,
-            peaks: Peaks::default(),
-        };
-        let soften = |brick: &Brick| all.material_of(brick).mullins().is_some();
-        if all.bricks.iter().any(soften) {
-            all.peaks = Peaks::new(all.bricks.iter().map(|brick| brick.peak));
-        }
-        all
-    }
-
-    /// A voxel with what it remembers.
-    pub fn at(&self, index: usize) -> Brick {
-        let brick = self.bricks[index];
-        Brick {
-            peak: self.peaks.get(index).unwrap_or(brick.peak),
-            ..brick
         }
     }
 
     /// Whether any voxel softens.
     pub fn soften(&self) -> bool {
-        self.peaks.are_kept()
+        self.softens
     }
 
-    /// The largest isochoric energy (J/m³) of each voxel, if any softens.
+    /// The largest isochoric energy (J/m³) that each voxel has had, if any softens.
     pub fn peaks(&self) -> Option<Vec<f64>> {
-        self.peaks.all()
+        let peaks = self.bricks.iter().map(|brick| brick.peak);
+        self.softens.then(|| peaks.collect())
     }
 
-    /// Sets them; does nothing where nothing softens.
-    pub fn set_peaks(&self, peaks: &[f64]) {
-        for (index, &peak) in peaks.iter().enumerate() {
-            self.peaks.set(index, peak);
+    /// Sets the peaks (J/m³) of all voxels.
+    pub(crate) fn set_peaks(&mut self, peaks: &[f64]) {
+        for (brick, peak) in self.bricks.iter_mut().zip(peaks) {
+            brick.peak = *peak;
         }
     }
 
-    /// Forgets what came after the beginning.
-    pub(crate) fn start(&self) {
-        for (index, brick) in self.bricks.iter().enumerate() {
-            self.peaks.set(index, brick.peak);
-        }
-    }
-
-    /// Takes `positions` as a state that has been.
-    pub(crate) fn accept(&self, positions: &[Vec3]) {
-        if !self.soften() {
-            return;
-        }
+    /// The peaks (J/m³) after a state at `positions`.
+    pub(crate) fn peaks_after(&self, positions: &[Vec3]) -> Vec<f64> {
         let positions = &*self.ties.seen(positions);
+        let mut peaks = Vec::with_capacity(self.bricks.len());
         self.each(
             FORCE_BATCH,
             |_, brick| brick.virgin_energy(self.material_of(brick), positions),
-            |index, brick, energy| self.peaks.set(index, brick.peak.max(energy)),
+            |_, brick, energy| peaks.push(brick.peak.max(energy)),
         );
+        peaks
     }
 
-    /// Remembers on its own from now on.
-    pub(crate) fn own_memory(&mut self) {
-        self.peaks = self.peaks.own();
+    /// The peaks (J/m³) of a body that has not been strained.
+    pub(crate) fn first_peaks(&self) -> Vec<f64> {
+        let first = |brick: &Brick| self.material_of(brick).first_peak();
+        self.bricks.iter().map(first).collect()
     }
 
     /// The material of a voxel.
@@ -156,8 +139,7 @@ impl Bricks {
             let within = Within::elastic(material);
             brick.respond(material, positions, &within).pressure
         };
-        let bricks = (0..self.bricks.len()).map(|index| self.at(index));
-        bricks.map(|brick| pressure(&brick)).collect()
+        self.bricks.iter().map(pressure).collect()
     }
 
     /// The strains at `positions` with other pressures in Pa, one for each voxel.
@@ -177,15 +159,6 @@ impl Bricks {
         })
     }
 
-    /// The voxels from `first` on with what they remember, in `copies` if they do.
-    fn now<'a>(&'a self, first: usize, count: usize, copies: &'a mut Vec<Brick>) -> &'a [Brick] {
-        if !self.soften() {
-            return &self.bricks[first..first + count];
-        }
-        copies.extend((first..first + count).map(|index| self.at(index)));
-        copies
-    }
-
     /// The voxels from `first` on, with what is carried of them.
     fn together<'a>(
         &'a self,
@@ -193,11 +166,10 @@ impl Bricks {
         count: usize,
         positions: &'a [Vec3],
         carried: Option<&'a [Carried]>,
-        copies: &'a mut Vec<Brick>,
     ) -> Together<'a> {
         let range = first..first + count;
         Together {
-            bricks: self.now(first, count, copies),
+            bricks: &self.bricks[range.clone()],
             materials: &self.materials,
             positions,
             carried: carried.map(|states| &states[range]),
@@ -212,8 +184,7 @@ impl Bricks {
             TOGETHER,
             &[[0.0; 3]; 8],
             |first, out| {
-                let mut copies = Vec::new();
-                self.together(first, out.len(), positions, carried, &mut copies)
+                self.together(first, out.len(), positions, carried)
                     .forces(out);
             },
             |first, all| {
@@ -246,7 +217,7 @@ impl Bricks {
                 let last = out.len() - 1;
                 let own: [usize; TOGETHER] =
                     std::array::from_fn(|place| order[first + place.min(last)] as usize);
-                let bricks = own.map(|index| self.at(index));
+                let bricks = own.map(|index| self.bricks[index]);
                 let states = carried.map(|states| own.map(|index| states[index]));
                 let together = Together {
                     bricks: &bricks[..=last],
@@ -286,8 +257,7 @@ impl Bricks {
             TOGETHER,
             &Carried::NOTHING,
             |first, out| {
-                let mut copies = Vec::new();
-                self.together(first, out.len(), positions, before, &mut copies)
+                self.together(first, out.len(), positions, before)
                     .carry(moves, out);
             },
             |_, all| states.extend_from_slice(all),
@@ -305,8 +275,8 @@ impl Bricks {
         in_order(
             self.bricks.len(),
             batch,
-            |i| work(i, &self.at(i)),
-            |i, result| take(i, &self.at(i), result),
+            |i| work(i, &self.bricks[i]),
+            |i, result| take(i, &self.bricks[i], result),
         );
     }
 }
@@ -324,9 +294,8 @@ impl Term for Bricks {
 
     fn energy(&self, positions: &[Vec3]) -> f64 {
         let positions = &*self.ties.seen(positions);
-        let energy = |brick: Brick| brick.energy(self.material_of(&brick), positions);
-        let bricks = (0..self.bricks.len()).map(|index| self.at(index));
-        bricks.map(energy).sum()
+        let energy = |brick: &Brick| brick.energy(self.material_of(brick), positions);
+        self.bricks.iter().map(energy).sum()
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {

@@ -10,7 +10,6 @@
 mod bricks;
 mod edges;
 mod membranes;
-mod peaks;
 mod springs;
 mod tets;
 

@@ -191,7 +191,7 @@ impl From<FactorError> for Failure {
 impl Implicit {
     /// Starts at the rest pose.
     pub fn new(problem: Problem, settings: ImplicitSettings) -> Self {
-        let problem = problem.with_held_loads().with_own_memory();
+        let problem = problem.with_held_loads();
         let state = State::at_rest(problem.body());
         Self {
             hands: Hands::new(&problem),

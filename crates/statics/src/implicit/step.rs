@@ -93,7 +93,7 @@ impl Implicit {
                 .add_loads(&self.state.positions, time, &mut forces);
             forces
         });
-        self.problem.body().begin(time);
+        self.problem.begin(time);
         let mut within = self.pressures.start(self.problem.body());
         if let Some(viscosity) = &mut self.viscosity {
             let from = &self.state.positions;

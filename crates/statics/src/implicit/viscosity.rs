@@ -86,8 +86,8 @@ impl Viscosity {
 }
 
 fn stresses(body: &Body, positions: &[Vec3]) -> Vec<BrickStress> {
-    let bricks = (0..body.bricks().len()).map(|index| body.brick_term().at(index));
+    let bricks = body.bricks().iter();
     bricks
-        .map(|brick| brick.deviatoric_stress(body.material_of(&brick), positions))
+        .map(|brick| brick.deviatoric_stress(body.material_of(brick), positions))
         .collect()
 }

@@ -42,7 +42,7 @@ impl Now {
 
 impl Run<'_> {
     pub(super) fn look_at(&self, state: &State) -> Now {
-        let (problem, positions) = (self.problem, &state.positions);
+        let (problem, positions) = (&self.problem, &state.positions);
         let mut internal = vec![[0.0; 3]; positions.len()];
         elastic::add_forces(problem.body(), positions, &mut internal);
         let mut external = vec![[0.0; 3]; positions.len()];
@@ -95,20 +95,20 @@ impl Run<'_> {
     }
 
     /// Makes materials those of a time in s.
-    pub(super) fn begin(&self, time: f64) {
-        self.problem.body().begin(time);
-        self.moving.body().begin(time);
+    pub(super) fn begin(&mut self, time: f64) {
+        self.problem.begin(time);
+        self.equilibrium.problem.begin(time);
     }
 
     /// What materials that grow from a state on to a time in s have done, in J: what the body stores more where it is.
     fn work_of_growth(&self, from: &State, time: f64) -> f64 {
-        let body = self.problem.body();
-        if body.growth_end() <= from.time {
+        if self.problem.body().growth_end() <= from.time {
             return 0.0;
         }
-        let stored = |time: f64| {
-            body.begin(time);
-            body.brick_term().energy(&from.positions)
+        let mut problem = self.problem.clone();
+        let mut stored = |time: f64| {
+            problem.begin(time);
+            problem.body().brick_term().energy(&from.positions)
         };
         let before = stored(from.time);
         stored(time) - before
@@ -143,15 +143,15 @@ impl Run<'_> {
         let pairs = self.now.internal.iter().zip(&self.now.external);
         let net = pairs.map(|(a, b)| add(*a, *b)).collect();
         let external = &self.now.external;
-        balance_of_forces(self.problem, &self.state.positions, external, net).relative_residual()
+        balance_of_forces(&self.problem, &self.state.positions, external, net).relative_residual()
     }
 
     pub(super) fn is_at_rest(&self, residual: f64) -> bool {
         let tolerance = self.settings.tolerance;
         let fluid = self.problem.fluid();
-        self.state.time >= loads_end(self.problem)
+        self.state.time >= loads_end(&self.problem)
             && fluid.is_none_or(|fluid| fluid.is_at_rest(tolerance))
             && residual <= tolerance
-            && is_still_with(self.problem, self.now.elastic, self.now.kinetic, tolerance)
+            && is_still_with(&self.problem, self.now.elastic, self.now.kinetic, tolerance)
     }
 }

@@ -28,7 +28,7 @@ use std::sync::Arc;
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Damping, Load, Observer, Problem, Progress, Solution, Solver, State, Status, Term,
+    Damping, Load, Memory, Observer, Problem, Progress, Solution, Solver, State, Status, Term,
 };
 
 use self::energy::Now;
@@ -102,36 +102,33 @@ impl Transient {
     /// Moves a problem on from a state.
     pub fn follow(&self, problem: &Problem, start: State, observer: &mut Observer<'_>) -> Solution {
         let inertia = Arc::new(Inertia::new(problem.body().masses()));
-        let problem = &problem.clone().with_held_loads();
-        let moving = problem
-            .clone()
-            .with_term(Arc::clone(&inertia) as Arc<dyn Term>);
-        let moving = moving.expect("inertia has the vertices of its body");
+        let mut problem = problem.clone().with_held_loads();
         if let Some(contact) = problem.contact() {
             contact.start(&start.positions);
         }
         problem.start_loads();
-        problem.body().begin(start.time);
-        moving.body().begin(start.time);
-        if let Some(fluid) = problem.fluid() {
-            fluid.start(&start.positions, Some(start.time));
-        }
+        problem.begin(start.time);
+        problem.start_fluid(&start.positions, Some(start.time));
+        let moving = problem
+            .clone()
+            .with_term(Arc::clone(&inertia) as Arc<dyn Term>);
+        let moving = moving.expect("inertia has the vertices of its body");
         let means = Means {
             solver: LinearSolver::Auto,
             memory: self.memory,
         };
-        let equilibrium = match Equilibrium::new(&moving, means) {
+        let equilibrium = match Equilibrium::new(moving, means) {
             Ok(equilibrium) => equilibrium,
-            Err(error) => return refused(start, error),
+            Err(error) => return refused(start, problem.memory(), error),
         };
         let run = Run {
+            travel_limit: travel_limit(&problem),
             problem,
             settings: self,
             equilibrium: Equilibrium {
                 inertia: Some(&inertia),
                 ..equilibrium
             },
-            moving: &moving,
             inertia: &inertia,
             now: Now::default(),
             before: None,
@@ -145,15 +142,15 @@ impl Transient {
             good: 0,
             steps: 0,
             back_offs: 0,
-            travel_limit: travel_limit(problem),
             state: start,
         };
         run.go(observer)
     }
 }
 
-fn refused(state: State, error: FactorError) -> Solution {
+fn refused(state: State, memory: Memory, error: FactorError) -> Solution {
     Solution {
+        memory,
         state,
         status: error.into(),
         residual: f64::INFINITY,
@@ -164,9 +161,8 @@ fn refused(state: State, error: FactorError) -> Solution {
 }
 
 struct Run<'a> {
-    problem: &'a Problem,
-    /// The same with inertia.
-    moving: &'a Problem,
+    /// Without inertia, which that of `equilibrium` has.
+    problem: Problem,
     settings: &'a Transient,
     equilibrium: Equilibrium<'a>,
     inertia: &'a Inertia,
@@ -197,6 +193,7 @@ impl Run<'_> {
                 (self.state.time / each + SAME_TIME).floor() as i64
             });
             let progress = Progress {
+                problem: &self.problem,
                 steps: self.steps,
                 time: self.state.time,
                 positions: &self.state.positions,
@@ -233,7 +230,7 @@ impl Run<'_> {
                         let State {
                             positions, time, ..
                         } = &self.state;
-                        let place = Breakdown::farthest(self.problem, positions, *time);
+                        let place = Breakdown::farthest(&self.problem, positions, *time);
                         self.ended(Status::Diverged, residual, Some(place))
                     }
                 };
@@ -243,6 +240,7 @@ impl Run<'_> {
 
     fn ended(self, status: Status, residual: f64, breakdown: Option<Breakdown>) -> Solution {
         Solution {
+            memory: self.problem.memory(),
             state: self.state,
             status,
             residual,
@@ -334,13 +332,14 @@ impl Run<'_> {
         }
         let factor_of = |load: &Load| load.history.at(next.time);
         self.problem.accept_loads(&next.positions, &factor_of);
-        if let Some(fluid) = self.problem.fluid() {
+        if let Some(fluid) = self.problem.fluid_mut() {
             if self.stage == Stage::Second {
                 fluid.take_stage(&next.positions);
             } else {
                 fluid.take_step(&next.positions);
             }
         }
+        self.equilibrium.problem.remember(&self.problem.memory());
         if self.settings.damping == Damping::Critical {
             self.damping_rate = 2.0 * self.frequency(&next, &found);
         }

@@ -33,8 +33,10 @@ impl Run<'_> {
         self.equilibrium.negligible = NEGLIGIBLE_CHANGE * self.momentum() / step;
         let time = self.state.time + step;
         self.begin(time);
-        if let Some(fluid) = self.problem.fluid() {
-            fluid.begin(time, start.rate, start.weights);
+        for problem in [&mut self.problem, &mut self.equilibrium.problem] {
+            if let Some(fluid) = problem.fluid_mut() {
+                fluid.begin(time, start.rate, start.weights);
+            }
         }
         let point = Point::at(time);
         let mut positions = self.best_prediction(step, before, point)?;
@@ -46,7 +48,7 @@ impl Run<'_> {
             positions,
             time,
         };
-        let place = Breakdown::find(self.problem, &next.positions, self.travel_limit, time);
+        let place = Breakdown::find(&self.problem, &next.positions, self.travel_limit, time);
         if let Some(place) = place {
             return Err(Stop::Gone(place));
         }
@@ -58,7 +60,7 @@ impl Run<'_> {
             )
         };
         let accelerations = next.velocities.iter().zip(&start.velocities).map(inertia);
-        found.take_reactions(self.problem, accelerations);
+        found.take_reactions(&self.problem, accelerations);
         Ok((next, found))
     }
 

@@ -104,6 +104,7 @@ impl Live {
 
     fn take_substep(&mut self) {
         let pulls = self.hands.follow(ANCHOR_TRAVEL * self.shortest_edge);
+        self.problem.begin(self.arrays.time() + self.substep);
         let subject = Subject {
             problem: &self.problem,
             settings: &self.settings,
@@ -117,6 +118,7 @@ impl Live {
     fn look(&mut self) {
         let mut now = self.state.clone();
         self.arrays.store(&mut now);
+        self.problem.begin(now.time);
         let pulls: Vec<Grab> = self.hands.grabs().iter().map(|(_, grab)| *grab).collect();
         let subject = Subject {
             problem: &self.problem,

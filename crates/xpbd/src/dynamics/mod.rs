@@ -86,15 +86,11 @@ pub fn simulate(
     settings: &Dynamics,
     observer: &mut Observer<'_>,
 ) -> Answer {
-    let subject = Subject {
-        problem,
-        settings,
-        grabs: &[],
-    };
+    let subject = Subject::alone(problem, settings);
     let strips = strips_of(subject);
     let substeps = substeps_of(subject, strips.as_ref());
     let arrays = arrays_of(subject, strips);
-    run(subject, start, observer, arrays, substeps)
+    run(problem.clone(), settings, start, observer, arrays, substeps)
 }
 
 impl Solver for Dynamics {
@@ -109,7 +105,7 @@ impl Solver for Dynamics {
         observer: &mut Observer<'_>,
     ) -> Solution {
         let start = start_at(problem, start);
-        simulate(problem, start, self, observer).into_solution()
+        simulate(problem, start, self, observer).into_solution(problem)
     }
 }
 
@@ -120,6 +116,17 @@ struct Subject<'a> {
     problem: &'a Problem,
     settings: &'a Dynamics,
     grabs: &'a [Grab],
+}
+
+impl<'a> Subject<'a> {
+    /// One that nobody grabs.
+    fn alone(problem: &'a Problem, settings: &'a Dynamics) -> Self {
+        Self {
+            problem,
+            settings,
+            grabs: &[],
+        }
+    }
 }
 
 /// Strips for bodies that have them.
@@ -147,6 +154,8 @@ fn arrays_of(subject: Subject<'_>, strips: Option<Strips>) -> Box<dyn Arrays + S
 trait Arrays {
     /// Starts again from a state.
     fn load(&mut self, state: &State);
+    /// The present time in s.
+    fn time(&self) -> f64;
     /// Gives the present state.
     fn store(&self, state: &mut State);
     /// The balance at the present positions, which are those of `state`.
@@ -160,18 +169,16 @@ trait Arrays {
 }
 
 fn run(
-    subject: Subject<'_>,
+    mut problem: Problem,
+    settings: &Dynamics,
     mut state: State,
     observer: &mut Observer<'_>,
     mut arrays: Box<dyn Arrays + Send>,
     mut substeps: u32,
 ) -> Answer {
-    let Subject {
-        problem, settings, ..
-    } = subject;
-    let limit = travel_limit(problem);
+    let limit = travel_limit(&problem);
     // What still changes is not at rest, though nothing pulls at it yet.
-    let steady = loads_end(problem);
+    let steady = loads_end(&problem);
     arrays.load(&state);
     let mut checkpoint = state.clone();
     let (mut steps, mut back_offs) = (0u64, 0u32);
@@ -179,9 +186,10 @@ fn run(
     let mut window = Window::default();
     let (status, residual, breakdown) = loop {
         arrays.store(&mut state);
-        let now = arrays.balance(subject, &state);
+        problem.begin(state.time);
+        let now = arrays.balance(Subject::alone(&problem, settings), &state);
         let residual = now.relative_residual();
-        let broken = Breakdown::find(problem, &state.positions, limit, state.time);
+        let broken = Breakdown::find(&problem, &state.positions, limit, state.time);
         let excess = now.excess();
         let blown_up = broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS;
         let stuck = !blown_up
@@ -203,7 +211,7 @@ fn run(
             window = Window::default();
         } else if blown_up {
             let place = broken
-                .unwrap_or_else(|| Breakdown::farthest(problem, &state.positions, state.time));
+                .unwrap_or_else(|| Breakdown::farthest(&problem, &state.positions, state.time));
             state.clone_from(&checkpoint);
             break (Status::Diverged, residual, Some(place));
         } else {
@@ -214,6 +222,7 @@ fn run(
             let record = slot > recorded;
             recorded = recorded.max(slot);
             let progress = Progress {
+                problem: &problem,
                 steps,
                 time: state.time,
                 positions: &state.positions,
@@ -229,7 +238,7 @@ fn run(
                     break (Status::EndTime, residual, None);
                 }
                 None if state.time >= steady
-                    && at_rest(problem, &state, residual, settings.tolerance) =>
+                    && at_rest(&problem, &state, residual, settings.tolerance) =>
                 {
                     break (Status::AtRest, residual, None);
                 }
@@ -244,7 +253,8 @@ fn run(
             .map_or(f64::INFINITY, |end| end - state.time);
         let substep = settings.time_step.min(left) / f64::from(substeps);
         for _ in 0..substeps {
-            arrays.substep(subject, substep);
+            problem.begin(arrays.time() + substep);
+            arrays.substep(Subject::alone(&problem, settings), substep);
         }
         steps += u64::from(substeps);
     };
@@ -321,15 +331,18 @@ mod tests {
         let strips = Strips::of(problem.body());
         assert!(strips.is_some(), "voxels");
         let go_on = &mut |_: &Progress<'_>| ControlFlow::Continue(());
-        let subject = Subject {
-            problem,
-            settings,
-            grabs: &[],
-        };
+        let subject = Subject::alone(problem, settings);
         [strips, None].map(|strips| {
             let substeps = substeps_of(subject, strips.as_ref());
             let arrays = arrays_of(subject, strips);
-            run(subject, start.clone(), go_on, arrays, substeps)
+            run(
+                problem.clone(),
+                settings,
+                start.clone(),
+                go_on,
+                arrays,
+                substeps,
+            )
         })
     }
 

@@ -157,6 +157,10 @@ impl Arrays for OnStrips {
         self.substep_before = 0.0;
     }
 
+    fn time(&self) -> f64 {
+        self.time
+    }
+
     fn store(&self, state: &mut State) {
         self.strips.store(&self.positions, &mut state.positions);
         self.strips.store(&self.velocities, &mut state.velocities);

@@ -77,7 +77,6 @@ impl OnVertices {
         std::mem::swap(&mut self.forces, &mut self.forces_before);
         self.forces.fill([0.0; 3]);
         let time = self.state.time + h;
-        body.begin(time);
         subject
             .problem
             .add_loads(&self.start, time, &mut self.forces);
@@ -246,13 +245,16 @@ impl Arrays for OnVertices {
         self.substep_before = 0.0;
     }
 
+    fn time(&self) -> f64 {
+        self.state.time
+    }
+
     fn store(&self, state: &mut State) {
         state.clone_from(&self.state);
     }
 
     fn balance(&mut self, subject: Subject<'_>, state: &State) -> Balance {
         let (problem, positions) = (subject.problem, &state.positions);
-        problem.body().begin(state.time);
         let mut external = vec![[0.0; 3]; positions.len()];
         problem.add_loads(positions, state.time, &mut external);
         add_pulls(subject.grabs, positions, &mut external);

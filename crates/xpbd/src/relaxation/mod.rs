@@ -91,7 +91,7 @@ impl Solver for Relaxation {
         observer: &mut Observer<'_>,
     ) -> Solution {
         let start = start_at(problem, start);
-        relax(problem, start, self, observer).into_solution()
+        relax(problem, start, self, observer).into_solution(problem)
     }
 }
 
@@ -197,6 +197,7 @@ fn run(
                 checkpoint_step = step;
             }
             let progress = Progress {
+                problem,
                 steps: taken,
                 time: state.time,
                 positions: &state.positions,

@@ -84,13 +84,13 @@ impl Tendon {
     /// With friction as this module has it. Of a line that is drawn in the first tension is `(L − M)/Σ c_j r_j`, as at the
     /// ratios `r` that were there.
     pub(super) fn held_tensions(&self, line: &Polyline, factor: f64) -> (Tensions, Option<f64>) {
-        let kept = self.memory.kept();
+        let kept = &self.memory;
         let first_before = kept.as_ref().map_or(0.0, |kept| kept.tensions[0]);
         let (first, compliance) = match self.drive {
             Drive::Tension(tension) => ((factor * tension).max(0.0), None),
             Drive::Shortening { by, stiffness } => {
                 let compliances = self.compliances(stiffness);
-                let compliance = match &kept {
+                let compliance = match kept {
                     Some(kept) if first_before > 0.0 => {
                         dot_of(&kept.tensions, &compliances) / first_before
                     }
@@ -120,7 +120,7 @@ impl Tendon {
 
     /// Each bend during a step, and by how much the line has slid over it; none in the first step.
     pub(super) fn held_bends(&self, line: &Polyline, first: f64) -> Vec<(HeldBend, f64)> {
-        let Some(kept) = self.memory.kept() else {
+        let Some(kept) = &self.memory else {
             return Vec::new();
         };
         // Where a tension is given, it has changed already where the line was; that of a line that is drawn in is found

@@ -19,7 +19,7 @@ use crate::assembly::{Visitor, check_indices};
 use crate::vector::{Vec3, axpy};
 
 use capstan::Tensions;
-use memory::{Kept, Memory};
+pub use memory::TendonMemory;
 pub use polyline::Place;
 use polyline::Polyline;
 use tangent::{add_curvature, visit_carried};
@@ -50,9 +50,9 @@ pub struct Tendon {
     pub drive: Drive,
     /// `μ` at every bend.
     pub friction: f64,
-    /// The tensions that were there, which friction remembers.
+    /// The state that friction remembers; `None` before one was accepted.
     #[serde(skip)]
-    memory: Memory,
+    memory: Option<TendonMemory>,
     /// Whether friction has the bounds of the state that was accepted last.
     #[serde(skip)]
     held: bool,
@@ -93,7 +93,7 @@ impl Tendon {
             lengths,
             drive,
             friction,
-            memory: Memory::default(),
+            memory: None,
             held: false,
             taut: false,
         }
@@ -127,12 +127,33 @@ impl Tendon {
         }
     }
 
-    /// The same with a memory of its own.
-    pub fn with_own_memory(&self) -> Self {
-        Self {
-            memory: Memory::default(),
-            ..self.clone()
+    /// The state that friction remembers.
+    pub(crate) fn memory(&self) -> Option<&TendonMemory> {
+        self.memory.as_ref()
+    }
+
+    pub(crate) fn remember(&mut self, memory: Option<TendonMemory>) {
+        self.memory = memory;
+    }
+
+    /// Takes positions as the state from which the way goes on.
+    pub(crate) fn accept(&mut self, on: Vertices<'_>, factor: f64) {
+        if !self.has_friction() {
+            return;
         }
+        let Pulled { line, tensions, .. } = self.pulled(on.positions, factor);
+        let decays = self.decays(&line);
+        let tensions = if self.is_held() {
+            // The bounds are those of this state from now on.
+            Tensions::from_first(tensions.values[0], &tensions.values, &decays).values
+        } else {
+            tensions.values
+        };
+        self.memory = Some(TendonMemory {
+            tensions,
+            lengths: line.lengths,
+            decays,
+        });
     }
 
     /// The same as if it could push where it would become slack, for differences around a state in which it is taut.
@@ -200,7 +221,7 @@ impl Tendon {
     /// The tension of each segment if the line sticks at the bend before it: what it was, and what the way from there to
     /// the anchor has become longer since, over the compliance of the line that lies on it.
     fn sticking(&self, line: &Polyline) -> Vec<f64> {
-        let (mut tensions, then, first) = match self.memory.kept() {
+        let (mut tensions, then, first) = match self.memory.clone() {
             Some(kept) => {
                 let first = kept.tensions[0];
                 (kept.tensions, kept.lengths, Some(first))
@@ -387,29 +408,6 @@ impl ExternalForce for Tendon {
 
     fn depends_on_way(&self) -> bool {
         self.has_friction()
-    }
-
-    fn start(&self) {
-        self.memory.forget();
-    }
-
-    fn accept(&self, on: Vertices<'_>, factor: f64) {
-        if !self.has_friction() {
-            return;
-        }
-        let Pulled { line, tensions, .. } = self.pulled(on.positions, factor);
-        let decays = self.decays(&line);
-        let tensions = if self.is_held() {
-            // The bounds are those of this state from now on.
-            Tensions::from_first(tensions.values[0], &tensions.values, &decays).values
-        } else {
-            tensions.values
-        };
-        self.memory.keep(Kept {
-            tensions,
-            lengths: line.lengths,
-            decays,
-        });
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {

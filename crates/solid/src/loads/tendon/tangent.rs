@@ -14,7 +14,7 @@ impl Tendon {
             compliance,
         } = pulled;
         let width = 3 * self.places.len();
-        let before = self.memory.kept().map(|kept| kept.tensions[0]);
+        let before = self.memory.as_ref().map(|kept| kept.tensions[0]);
         let stick = self.stick_stiffness(before);
         // With the first tension as it is.
         let mut rows = vec![vec![0.0; width]];

@@ -69,14 +69,14 @@ fn tendons_that_stick_in_part_keep_the_laws() {
     for (drive, eased) in [(PULLED, 1.3), (DRAWN_IN, 1.1)] {
         // Within its cone: on the edge of it, where a pull leaves it, there are two slopes.
         let before = tendon(drive, 0.25).state(&MOVED, eased).tensions;
-        let tendon = tendon(drive, 0.4);
+        let mut tendon = tendon(drive, 0.4);
         let way = Polyline::new(&tendon.places, &MOVED).lengths;
         let decays = vec![0.9; 4];
-        tendon.memory.keep(Kept {
+        tendon.remember(Some(TendonMemory {
             tensions: before.clone(),
             lengths: way,
             decays,
-        });
+        }));
         let now = tendon.state(&MOVED, 1.0).tensions;
         assert!(now[1] < before[1], "it slides back where it is pulled");
         assert_eq!(now[4..], before[4..], "and sticks farther along");
@@ -85,7 +85,7 @@ fn tendons_that_stick_in_part_keep_the_laws() {
             check_load(&tendon, on(&MOVED)).unwrap();
         }
         tendon.accept(on(&MOVED), 1.0);
-        let held = Tendon {
+        let mut held = Tendon {
             held: true,
             ..tendon.clone()
         };
