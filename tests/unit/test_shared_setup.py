@@ -9,7 +9,6 @@ import pytest
 import voxsoft as vs
 from voxsoft import _core
 from voxsoft.design.contact import Contact
-from voxsoft.errors import SimulationError, VoxSoftError
 from voxsoft.simulation import Setup
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
@@ -112,36 +111,42 @@ def test_derivatives_and_modes_of_a_result_are_found_in_threads_too():
         assert found == slope
 
 
-def test_a_progress_that_solves_what_it_watches_is_refused():
+def test_a_progress_may_solve_what_it_watches():
     setup = Setup.of(RUBBED)
+    alone, within = vs.simulate(setup), []
 
     def again(*_):
-        vs.simulate(setup)
+        if not within:
+            within.append(vs.simulate(setup))
 
-    with pytest.raises(SimulationError, match="setup: is being solved"):
-        vs.simulate(setup, progress=again)
-    # Nothing of it stays.
-    assert vs.simulate(setup).status == "ok"
+    watched = vs.simulate(setup, progress=again)
+    assert within
+    assert watched.positions.tobytes() == within[0].positions.tobytes() == alone.positions.tobytes()
 
 
-def test_the_core_refuses_a_second_solution_of_one_problem():
+def test_a_solution_leaves_its_problem_as_it_was():
     setup = Setup.of(RUBBED)
-    refused = []
-
-    def again(*_):
-        try:
-            _core.equilibrium(setup.problem, tolerance=1e-8)
-        except VoxSoftError as error:
-            refused.append(str(error))
-
-    vs.simulate(setup, progress=again)
-    assert refused
-    assert "is being solved already" in refused[0]
+    before = setup.problem.net_forces(setup.mesh.vertices)
+    answer = _core.equilibrium(setup.problem, tolerance=1e-8)
+    assert np.array_equal(setup.problem.net_forces(setup.mesh.vertices), before)
+    # Multipliers that the answer remembers hold what is pressed.
+    there = answer.problem.net_forces(answer.positions)
+    free = ~np.any(answer.reactions != 0.0, axis=1)
+    assert np.abs(there[free]).max() < 1e-6 * np.abs(answer.reactions).max()
+    forgotten = setup.problem.net_forces(answer.positions)
+    assert np.abs(forgotten[free]).max() > 1e-3 * np.abs(answer.reactions).max()
 
 
-def test_copies_of_a_setup_have_locks_of_their_own():
-    import copy
+@pytest.mark.parametrize("work", ["contacts", "net_forces"])
+def test_threads_ask_one_answer_at_once(work):
+    setup = Setup.of(RUBBED)
+    answer = _core.equilibrium(setup.problem, tolerance=1e-8)
 
-    setup = Setup.of(coarsened(named("beam"), 2.0))
-    with setup.lock.held():
-        assert vs.simulate(copy.copy(Setup(setup.design, setup.mesh))).status == "ok"
+    def ask():
+        if work == "net_forces":
+            return answer.problem.net_forces(answer.positions).tobytes()
+        found = _core.contacts_at(answer.problem, answer.positions)
+        return [(each.pressed, each.bound, each.slipping) for each in found]
+
+    first, second = in_threads(ask)
+    assert first == second == ask()

@@ -1,12 +1,10 @@
 //! What touches what, and where rigid objects are.
 
-use std::sync::Arc;
-
 use serde::{Deserialize, Serialize};
 use voxsoft_contact::touch::live::LiveTouch;
-use voxsoft_solid::Rigid;
 use voxsoft_solid::matrix::{Mat3, apply};
 use voxsoft_solid::vector::{Vec3, add, scale, sub};
+use voxsoft_solid::{Problem, Rigid};
 
 use crate::event::{Moment, Pose, Touch};
 
@@ -35,8 +33,6 @@ impl Placed {
 /// The contact of what is played.
 #[derive(Debug, Clone)]
 pub struct Touching {
-    /// What finds it.
-    pub contact: Arc<LiveTouch>,
     /// What each of its surfaces is called.
     pub names: Vec<String>,
     /// The objects that are drawn.
@@ -48,9 +44,13 @@ impl Touching {
     pub(crate) fn moment(
         &self,
         (frame, time): (u64, f64),
-        rest: &[Vec3],
+        problem: &Problem,
         positions: &[Vec3],
     ) -> Moment {
+        let rest = problem.body().rest();
+        let contact = problem.contact();
+        let live: Option<&LiveTouch> =
+            contact.and_then(|contact| contact.found_by().downcast_ref());
         let pose = |object: &Placed| {
             let (position, turn) = object.pose(rest, positions);
             Pose {
@@ -64,7 +64,7 @@ impl Touching {
                 .cloned()
                 .unwrap_or_default()
         };
-        let pairs = self.contact.touch().pairs(positions);
+        let pairs = live.map_or_else(Vec::new, |live| live.touch().pairs(positions));
         let touches = pairs.into_iter().map(|pair| Touch {
             of: pair.of.map(name),
             force: pair.force,
@@ -79,7 +79,7 @@ impl Touching {
             poses: self.objects.iter().map(pose).collect(),
             contacts: touches.collect(),
             fields: false,
-            depth: self.contact.excess_depth(positions),
+            depth: live.and_then(|live| live.excess_depth(positions)),
         }
     }
 

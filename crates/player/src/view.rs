@@ -132,8 +132,8 @@ impl Player {
     pub fn moment(&self) -> Option<Event> {
         let touching = self.touching.as_ref()?;
         let state = self.stepper.state();
-        let rest = self.stepper.problem().body().rest();
-        let moment = touching.moment((self.frame, state.time), rest, &state.positions);
+        let problem = self.stepper.problem();
+        let moment = touching.moment((self.frame, state.time), problem, &state.positions);
         let topology = self.topology;
         Some(Event::Moment(MomentOf { topology, moment }))
     }

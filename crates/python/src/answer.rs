@@ -5,6 +5,7 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{LiveStatus, Look, Status};
 
 use crate::contact_field::PyContactField;
+use crate::simulate::PyProblem;
 use crate::tendon::PyTendon;
 use crate::touch_answer::{PyContact, PyObjectPose, PyTouchHistory};
 
@@ -83,6 +84,8 @@ pub struct PyAnswer {
     pub tendons: Vec<Py<PyTendon>>,
     /// Contact over the vertices of the body; none where the problem has none.
     pub contact_field: Option<Py<PyContactField>>,
+    /// The problem with the memory there.
+    pub problem: Py<PyProblem>,
 }
 
 /// How statics followed the loads.

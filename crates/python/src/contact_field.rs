@@ -1,6 +1,7 @@
 //! Contact over the vertices of the body, as Python is told of it.
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use voxsoft_contact::touch::Touch;
 use voxsoft_solid::vector::Vec3;
 
 use crate::simulate::from_rows;
@@ -20,10 +21,13 @@ pub struct PyContactField {
 }
 
 impl Touching {
-    pub(crate) fn field(&self, py: Python<'_>, positions: &[Vec3]) -> PyResult<Py<PyContactField>> {
-        let found = self
-            .touch
-            .field(&self.seen(positions), self.own(), self.flips());
+    pub(crate) fn field(
+        &self,
+        py: Python<'_>,
+        touch: &Touch,
+        positions: &[Vec3],
+    ) -> PyResult<Py<PyContactField>> {
+        let found = touch.field(&self.seen(positions), self.own(), self.flips());
         let field = PyContactField {
             pressure: PyArray1::from_vec(py, found.pressure).unbind(),
             friction: from_rows(py, &found.friction).unbind(),

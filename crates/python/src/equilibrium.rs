@@ -47,9 +47,7 @@ pub fn adjoint<'py>(
     };
     let gradients: Vec<Vec<Vec3>> = view.outer_iter().map(each).collect();
     let inner = problem.now();
-    let turn = problem.turns.take(py)?;
     let states = gate::run_owned(py, move |cancel| {
-        let _turn = turn;
         let mut stop = || cancel.load(Ordering::Relaxed);
         voxsoft_statics::adjoint(&inner, &positions, &gradients, memory, &mut stop)
     })?
@@ -140,15 +138,12 @@ pub fn equilibrium(
     let watch = Watch::new(progress, collect_sensors(&sensors), frames);
     let mut watch = watch.of_loads();
     let problem_of_work = Arc::clone(&inner);
-    let turn = problem.turns.take(py)?;
-    let turn_of_work = turn.clone();
     let (answer, watch) = gate::run_owned(py, move |cancel| {
-        let _turn = turn_of_work;
         let mut see = |now: &Progress<'_>| watch.see(now, cancel);
         let answer = voxsoft_statics::solve(&problem_of_work, start.as_ref(), &settings, &mut see);
         (answer, watch)
     })?;
-    problem.problem.remember(&answer.memory);
+    let there = problem.with(|problem| problem.remember(&answer.memory));
     let stable = answer.stable;
     let (factor, reached, limit) = (answer.factor, answer.reached, answer.limit);
     let path: Vec<[f64; 4]> = answer
@@ -197,7 +192,6 @@ pub fn equilibrium(
         points: from_rows(py, &path).unbind(),
     };
     let path = Some(Py::new(py, path)?);
-    let found = problem.answer(py, common, watch, &factor_of)?;
-    drop(turn);
+    let found = there.answer(py, common, watch, &factor_of)?;
     Ok(PyAnswer { path, ..found })
 }

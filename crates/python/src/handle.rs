@@ -1,11 +1,11 @@
-//! A problem with the memory that its last solution has left.
+//! A problem whose voxels may be softened from outside.
 use std::sync::{Arc, PoisonError, RwLock};
 
-use voxsoft_solid::{Memory, Problem};
+use voxsoft_solid::Problem;
 
-/// The problem of a `_core.Problem`, as all that belongs to it sees it: displays, fields, what is asked after a solution.
+/// The problem of a `_core.Problem`, as its displays and fields see it.
 ///
-/// Each solution works on a value of its own and leaves its memory here, which replaces the value whole.
+/// Each solution works on a value of its own; peaks of softening, which a stored result brings along, replace the value whole.
 pub(crate) struct Handle(RwLock<Arc<Problem>>);
 
 impl Handle {
@@ -17,11 +17,6 @@ impl Handle {
     pub fn now(&self) -> Arc<Problem> {
         // A value is replaced whole, so that a thread that died leaves none half written.
         Arc::clone(&self.0.read().unwrap_or_else(PoisonError::into_inner))
-    }
-
-    /// Takes the memory of a solution.
-    pub fn remember(&self, memory: &Memory) {
-        self.change(|problem| problem.remember(memory));
     }
 
     /// Lets the problem go on from other memory.

@@ -24,7 +24,6 @@ mod tendon;
 mod touch;
 mod touch_answer;
 mod transient;
-mod turn;
 mod voxels;
 mod watch;
 
@@ -62,7 +61,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(equilibrium::adjoint, module)?)?;
     module.add_function(wrap_pyfunction!(modes::modes, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::sensitivities, module)?)?;
-    module.add_function(wrap_pyfunction!(sensitivity::record_contact, module)?)?;
+    module.add_function(wrap_pyfunction!(sensitivity::recording, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::recorded_contact, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::same_surfaces, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::contacts_at, module)?)?;

@@ -25,9 +25,7 @@ pub fn modes<'py>(
     let positions = problem.positions(&positions)?;
     let vertices = positions.len();
     let inner = problem.now();
-    let turn = problem.turns.take(py)?;
     let found = gate::run_owned(py, move |cancel| {
-        let _turn = turn;
         let mut stop = || cancel.load(Ordering::Relaxed);
         voxsoft_statics::modes(&inner, &positions, count, memory, &mut stop)
     })?

@@ -105,8 +105,8 @@ impl PyScene {
         let mechanics = problem.now();
         let scene = Scene {
             notes: String::new(),
-            mesh: problem.mesh.clone(),
-            materials: problem.materials.clone(),
+            mesh: Mesh::clone(&problem.mesh),
+            materials: problem.materials.to_vec(),
             clamps: mechanics.clamps().to_vec(),
             loads: mechanics.loads().to_vec(),
             floor: mechanics.floor(),

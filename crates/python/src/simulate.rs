@@ -25,8 +25,9 @@ use crate::handle::Handle;
 use crate::materials::PyMaterial;
 use crate::skin::PySkin;
 use crate::tendon::{PyTendon, TendonPart, tendons};
-use crate::touch::{BodyPart, BondPart, Freedom, ObjectPart, TouchParts, Touching, Way, Whole};
-use crate::turn::Turns;
+use crate::touch::{
+    BodyPart, BondPart, Freedom, ObjectPart, TouchParts, Touching, Way, Whole, touch_of,
+};
 use crate::watch::{Watch, collect_sensors};
 
 pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
@@ -75,11 +76,10 @@ fn motion(
 /// One mechanical problem: a body with clamps, loads and a floor.
 #[pyclass(frozen, name = "Problem", module = "voxsoft._core")]
 pub struct PyProblem {
-    pub(crate) mesh: Mesh,
-    pub(crate) materials: Vec<Material>,
+    pub(crate) mesh: Arc<Mesh>,
+    pub(crate) materials: Arc<Vec<Material>>,
     pub(crate) problem: Arc<Handle>,
     pub(crate) touching: Option<Arc<Touching>>,
-    pub(crate) turns: Turns,
 }
 
 /// Collects clamps and loads before the problem is made.
@@ -625,7 +625,7 @@ impl PyProblem {
             dielectrics: Vec::new(),
             fluid: now.fluid().cloned(),
         };
-        let mut mesh = self.mesh.clone();
+        let mut mesh = Mesh::clone(&self.mesh);
         let mut parts = parts;
         if let Some(touching) = &self.touching {
             mesh.vertices.truncate(touching.first);
@@ -703,7 +703,6 @@ impl PyProblem {
                 expected,
             }));
         }
-        let _turn = self.turns.take(peaks.py())?;
         let peaks = peaks.as_array().to_vec();
         self.problem.change(|problem| problem.set_peaks(&peaks));
         Ok(())
@@ -717,10 +716,11 @@ impl PyProblem {
     ) -> PyResult<(f64, Bound<'py, PyArray2<f64>>)> {
         let positions = self.positions(&positions)?;
         let mut forces = vec![[0.0; 3]; positions.len()];
-        elastic::add_forces(self.now().body(), &positions, &mut forces);
-        if let Some(touching) = &self.touching {
+        let now = self.now();
+        elastic::add_forces(now.body(), &positions, &mut forces);
+        if let Some(contact) = now.contact() {
             let mut others = vec![[0.0; 3]; positions.len()];
-            touching.contact.add_forces(&positions, &mut others);
+            contact.add_forces(&positions, &mut others);
             for (force, other) in forces.iter_mut().zip(others) {
                 *force = sub(*force, other);
             }
@@ -754,10 +754,10 @@ impl PyProblem {
         positions: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Vec<Py<PyTendon>>> {
         let positions = self.positions(&positions)?;
-        let _turn = self.turns.take(py)?;
-        self.problem.change(Problem::start_loads);
+        let mut problem = Problem::clone(&self.now());
+        problem.start_loads();
         let factor_of = |load: &Load| load.history.at(f64::INFINITY);
-        tendons(py, &self.now(), &positions, &factor_of)
+        tendons(py, &problem, &positions, &factor_of)
     }
 
     /// A trial is a number of steps and the residual above which the run then ends.
@@ -782,13 +782,13 @@ impl PyProblem {
             state.positions = self.positions(&start)?;
         }
         let mut watch = Watch::new(progress, Vec::new(), false);
-        let _turn = self.turns.take(py)?;
         let answer = gate::run(py, |cancel| {
             relax(&problem, state, &settings, &mut |now| {
                 watch.see(now, cancel)
             })
         })?;
-        self.answer(py, answer, watch, &|load| load.history.at(f64::INFINITY))
+        let there = self.with(|_| ());
+        there.answer(py, answer, watch, &|load| load.history.at(f64::INFINITY))
     }
 
     #[pyo3(signature = (*, time_step, substeps, iterations, damping, retardation, end_time, max_time, tolerance,
@@ -829,15 +829,14 @@ impl PyProblem {
         let problem = self.now();
         let state = State::at_rest(problem.body());
         let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
-        let _turn = self.turns.take(py)?;
         let answer = gate::run(py, |cancel| {
             simulate(&problem, state, &settings, &mut |now| {
                 watch.see(now, cancel)
             })
         })?;
         let time = answer.state.time;
-        self.problem.change(|problem| problem.begin(time));
-        self.answer(py, answer, watch, &|load| load.history.at(time))
+        let there = self.with(|problem| problem.begin(time));
+        there.answer(py, answer, watch, &|load| load.history.at(time))
     }
 }
 
@@ -875,31 +874,44 @@ impl PyProblem {
                 if let Some(springs) = parts.frame_springs(problem.body(), first) {
                     problem = problem.with_term(Arc::new(springs))?;
                 }
-                let made = parts.into_touching(&problem, first)?;
-                problem = problem.with_contact(Arc::clone(&made.contact))?;
+                let (made, contact) = parts.into_touching(&problem, first)?;
+                problem = problem.with_contact(contact)?;
                 touching = Some(Arc::new(made));
             }
             Ok(Self {
-                mesh,
-                materials,
+                mesh: Arc::new(mesh),
+                materials: Arc::new(materials),
                 problem: Arc::new(Handle::new(problem)),
                 touching,
-                turns: Turns::default(),
             })
         })?
         .map_err(to_python)
     }
 
-    /// The problem with the memory of its last solution.
+    /// The problem with its memory.
     pub(crate) fn now(&self) -> Arc<Problem> {
         self.problem.now()
     }
 
+    /// The same problem with other memory.
+    pub(crate) fn with(&self, act: impl FnOnce(&mut Problem)) -> Self {
+        let mut problem = Problem::clone(&self.now());
+        act(&mut problem);
+        Self {
+            mesh: Arc::clone(&self.mesh),
+            materials: Arc::clone(&self.materials),
+            problem: Arc::new(Handle::new(problem)),
+            touching: self.touching.clone(),
+        }
+    }
+
     /// That of the material, J: what multipliers of contact have of it is none.
     fn elastic_energy(&self, positions: &[Vec3]) -> f64 {
-        let of_contact = |touching: &Arc<Touching>| touching.contact.energy(positions);
-        let all = elastic::energy(self.now().body(), positions);
-        all - self.touching.as_ref().map_or(0.0, of_contact)
+        let now = self.now();
+        let of_contact = now
+            .contact()
+            .map_or(0.0, |contact| contact.energy(positions));
+        elastic::energy(now.body(), positions) - of_contact
     }
 
     /// How many vertices the body has, those of objects left out.
@@ -940,9 +952,9 @@ impl PyProblem {
         Ok(positions)
     }
 
-    /// What Python is told of an answer, its reactions under loads with these factors.
+    /// An answer as Python sees it, of a problem with the memory there, its reactions under loads with these factors.
     pub(crate) fn answer(
-        &self,
+        self,
         py: Python<'_>,
         answer: Answer,
         watch: Watch,
@@ -953,18 +965,19 @@ impl PyProblem {
         }
         let positions = &answer.state.positions;
         let own = self.own();
+        let problem = self.now();
         let (contacts, objects) = match &self.touching {
             Some(touching) => (
-                touching.contacts(py, positions)?,
+                touching.contacts(py, &problem, positions)?,
                 touching.poses(py, &touching.seen(positions)[touching.own()..])?,
             ),
             None => (Vec::new(), Vec::new()),
         };
         let touching = self.touching.as_ref();
         let contact_field = touching
-            .map(|touching| touching.field(py, positions))
+            .zip(touch_of(&problem))
+            .map(|(touching, touch)| touching.field(py, touch, positions))
             .transpose()?;
-        let problem = self.now();
         let balance = balance_under(&problem, positions, factor_of);
         let (load, load_moment) = total_load_under(&problem, positions, factor_of);
         let sensors = watch.sensors.len();
@@ -1010,6 +1023,7 @@ impl PyProblem {
             objects,
             history: None,
             tendons: tendons(py, &problem, positions, factor_of)?,
+            problem: Py::new(py, self)?,
             contact_field,
         })
     }

@@ -285,23 +285,21 @@ impl TouchParts {
         self,
         problem: &Problem,
         first: usize,
-    ) -> Result<Touching, ProblemError> {
-        let touch = Arc::new(self.touch(problem, first)?);
+    ) -> Result<(Touching, Box<dyn Contact>), ProblemError> {
+        let touch = self.touch(problem, first)?;
         let images = self.images(first);
-        let contact: Arc<dyn Contact> = match &images {
-            Some(images) => {
-                let own = Arc::clone(&touch);
-                Arc::new(MirroredContact::new(images.clone(), own))
-            }
-            None => Arc::clone(&touch) as Arc<dyn Contact>,
+        let description = touch.description().clone();
+        let contact: Box<dyn Contact> = match &images {
+            Some(images) => Box::new(MirroredContact::new(images.clone(), touch)),
+            None => Box::new(touch),
         };
-        Ok(Touching {
+        let touching = Touching {
             parts: self,
-            touch,
-            contact,
+            description,
             images,
             first,
-        })
+        };
+        Ok((touching, contact))
     }
 
     /// A point of an object whose vertices are those from `at` on. Those of an image are images of what carries the
@@ -390,13 +388,16 @@ fn frame_at(positions: &[Vec3], first: usize) -> [Vec3; 4] {
     std::array::from_fn(|i| positions[first + i])
 }
 
+/// The contact of a problem, with its memory; where a part is solved for, that of the whole.
+pub(crate) fn touch_of(problem: &Problem) -> Option<&Touch> {
+    problem.contact()?.found_by().downcast_ref()
+}
+
 /// Contact of a problem of Python, and where its objects begin among the vertices.
 pub(crate) struct Touching {
     pub parts: TouchParts,
-    /// What touches: all of it, also where a part is solved for.
-    pub touch: Arc<Touch>,
-    /// What acts on the vertices that are solved for.
-    pub contact: Arc<dyn Contact>,
+    /// Who touches whom: all of it, also where a part is solved for.
+    description: Description,
     /// What makes the whole of these.
     images: Option<Images>,
     pub first: usize,
@@ -427,9 +428,11 @@ impl Touching {
     pub(crate) fn contacts(
         &self,
         py: Python<'_>,
+        problem: &Problem,
         positions: &[Vec3],
     ) -> PyResult<Vec<Py<PyContact>>> {
-        to_python(py, self.touch.pairs(&self.seen(positions)))
+        let pairs = touch_of(problem).map(|touch| touch.pairs(&self.seen(positions)));
+        to_python(py, pairs.unwrap_or_default())
     }
 
     /// Where the objects are, by the vertices of all of them.
@@ -465,7 +468,7 @@ impl Touching {
         };
         let springs = self.parts.frame_springs(body, self.first);
         Played {
-            description: self.touch.description().clone(),
+            description: self.description.clone(),
             rigid: free.map(|(number, _)| Rigid(corners(number))).collect(),
             springs: springs.unwrap_or_default(),
             names,

@@ -12,6 +12,7 @@ use voxsoft_xpbd::Answer;
 use crate::answer::PyAnswer;
 use crate::gate;
 use crate::simulate::PyProblem;
+use crate::touch::touch_of;
 use crate::touch_answer::PyTouchHistory;
 use crate::watch::{Watch, collect_sensors};
 
@@ -49,21 +50,16 @@ pub fn transient(
     let touching = problem.touching.as_ref().map(Arc::clone);
     let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
     let seen: Mutex<Seen> = Mutex::default();
-    let turn = problem.turns.take(py)?;
-    let turn_of_work = turn.clone();
     let (solution, watch, seen) = gate::run_owned(py, move |cancel| {
-        let _turn = turn_of_work;
         let mut see = |now: &Progress<'_>| {
             if let Some(touching) = touching.as_ref().filter(|_| now.record) {
                 let positions = touching.seen(now.positions);
                 let mut seen = seen.lock().expect("no holder of the lock panics");
                 // Before the first step there are no forces yet that keep what touches apart.
                 let started = now.steps > 0;
-                seen.pairs.push(if started {
-                    touching.touch.pairs(&positions)
-                } else {
-                    Vec::new()
-                });
+                let touch = touch_of(now.problem).filter(|_| started);
+                let pairs = touch.map(|touch| touch.pairs(&positions));
+                seen.pairs.push(pairs.unwrap_or_default());
                 seen.frames.push(positions[touching.own()..].to_vec());
                 seen.motion.push(Motion::of(now));
             }
@@ -76,7 +72,7 @@ pub fn transient(
     let seen = seen.into_inner().expect("no holder of the lock panics");
     let history = seen.into_python(py, &problem)?;
     let time = solution.state.time;
-    problem.problem.change(|problem| {
+    let there = problem.with(|problem| {
         problem.remember(&solution.memory);
         problem.begin(time);
     });
@@ -89,8 +85,7 @@ pub fn transient(
         substep: step,
         breakdown: solution.breakdown,
     };
-    let found = problem.answer(py, answer, watch, &|load| load.history.at(time))?;
-    drop(turn);
+    let found = there.answer(py, answer, watch, &|load| load.history.at(time))?;
     Ok(PyAnswer { history, ..found })
 }
 

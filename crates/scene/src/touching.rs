@@ -27,13 +27,12 @@ impl Touching {
     /// The problem with this contact, and what a player is told of it.
     pub(crate) fn add_to(&self, problem: Problem) -> Result<(Problem, Played), ProblemError> {
         let description = self.description.clone();
-        let contact = Arc::new(LiveTouch::new(description, problem.body().rest())?);
+        let contact = LiveTouch::new(description, problem.body().rest())?;
         let problem = problem
             .with_term(Arc::new(self.springs.clone()))?
             .with_rigid(self.rigid.clone())?
-            .with_contact(contact.clone())?;
+            .with_contact(Box::new(contact))?;
         let played = Played {
-            contact,
             names: self.names.clone(),
             objects: self.objects.clone(),
         };

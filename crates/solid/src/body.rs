@@ -24,7 +24,7 @@ use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
 use crate::ties::Ties;
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use crate::{
-    Brick, Filling, Growth, HyperelasticMaterial, LatticeMaterial, Material, Membrane,
+    Brick, Contact, Filling, Growth, HyperelasticMaterial, LatticeMaterial, Material, Membrane,
     ProblemError, Warping, cube, free_faces,
 };
 
@@ -341,8 +341,31 @@ impl Body {
     /// Adds a term of a kind that is not an [`Attachment`].
     pub fn attach(&mut self, term: Arc<dyn Term>) -> Result<(), ProblemError> {
         term.check(self.rest.len())?;
-        self.foreign.push(Foreign(term));
+        self.foreign.push(Foreign::Term(term));
         Ok(())
+    }
+
+    /// Adds surfaces that touch.
+    pub(crate) fn touch(&mut self, contact: Box<dyn Contact>) -> Result<(), ProblemError> {
+        contact.check(self.rest.len())?;
+        self.foreign.push(Foreign::Contact(contact));
+        Ok(())
+    }
+
+    /// The surfaces that touch.
+    pub fn contact(&self) -> Option<&dyn Contact> {
+        self.foreign.iter().find_map(|foreign| match foreign {
+            Foreign::Contact(contact) => Some(&**contact),
+            Foreign::Term(_) => None,
+        })
+    }
+
+    /// The same, to let them remember.
+    pub(crate) fn contact_mut(&mut self) -> Option<&mut Box<dyn Contact>> {
+        self.foreign.iter_mut().find_map(|foreign| match foreign {
+            Foreign::Contact(contact) => Some(contact),
+            Foreign::Term(_) => None,
+        })
     }
 
     /// Everything that has an energy, block by block.
@@ -372,7 +395,7 @@ impl Body {
     /// The terms that are not made of the mesh.
     pub fn attached(&self) -> impl Iterator<Item = &dyn Term> {
         let own = self.attachments.iter().map(|attachment| &**attachment);
-        own.chain(self.foreign.iter().map(|foreign| &*foreign.0))
+        own.chain(self.foreign.iter().map(Foreign::term))
     }
 
     /// All hyperelastic voxels as one block.
@@ -465,13 +488,41 @@ impl Body {
     }
 }
 
-/// A term of a kind that is not known here; two are the same if they are one.
-#[derive(Debug, Clone)]
-struct Foreign(Arc<dyn Term>);
+/// A term of a kind that is not known here.
+#[derive(Debug)]
+enum Foreign {
+    /// One without memory, which copies share.
+    Term(Arc<dyn Term>),
+    /// Contact with its memory.
+    Contact(Box<dyn Contact>),
+}
 
+impl Foreign {
+    fn term(&self) -> &dyn Term {
+        match self {
+            Self::Term(term) => &**term,
+            Self::Contact(contact) => &**contact,
+        }
+    }
+}
+
+impl Clone for Foreign {
+    fn clone(&self) -> Self {
+        match self {
+            Self::Term(term) => Self::Term(Arc::clone(term)),
+            Self::Contact(contact) => Self::Contact(contact.boxed()),
+        }
+    }
+}
+
+/// Two are the same if they are one, or remember the same.
 impl PartialEq for Foreign {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
+        match (self, other) {
+            (Self::Term(a), Self::Term(b)) => Arc::ptr_eq(a, b),
+            (Self::Contact(a), Self::Contact(b)) => a.memory() == b.memory(),
+            _ => false,
+        }
     }
 }
 

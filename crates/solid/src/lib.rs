@@ -86,7 +86,7 @@ pub use body::{Body, Mesh};
 pub use breakdown::Breakdown;
 pub use brick::{Brick, Faces, Filling, Warping};
 pub use clamp::{Clamp, Motion};
-pub use contact::{Contact, Moment, RecordedContact};
+pub use contact::{Contact, ContactMemory, Moment, RecordedContact, Remembered};
 pub use error::ProblemError;
 pub use floor::Floor;
 pub use fluid::{Fluid, FluidMemory};

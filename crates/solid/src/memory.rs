@@ -1,5 +1,6 @@
-//! Memory of a problem: all that the way to a state leaves behind, besides contact.
+//! Memory of a problem: all that the way to a state leaves behind.
 
+use crate::ContactMemory;
 use crate::fluid::FluidMemory;
 use crate::loads::TendonMemory;
 
@@ -15,4 +16,6 @@ pub struct Memory {
     pub tendons: Vec<Option<TendonMemory>>,
     /// Gas and liquid in chambers.
     pub fluid: Option<FluidMemory>,
+    /// Surfaces that touch.
+    pub contact: Option<ContactMemory>,
 }

@@ -167,40 +167,30 @@ impl<T: Term> Term for Mirrored<T> {
         images.add_to(&found, product);
     }
 
-    fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
         let images = &self.images;
-        let strains = self
-            .elements
-            .predict(&images.seen(positions), &images.seen(moves))?;
-        Some(Box::new(MirroredStrain { images, strains }))
+        self.elements
+            .predict(&images.seen(positions), &images.seen(moves))
     }
-}
 
-/// Strains of elements on mirror images.
-struct MirroredStrain<'a> {
-    images: &'a Images,
-    strains: Box<dyn Strain + 'a>,
-}
-
-impl Strain for MirroredStrain<'_> {
-    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
+    fn add_predicted_forces(&self, strain: &Strain, positions: &[Vec3], forces: &mut [Vec3]) {
         let mut found = vec![[0.0; 3]; self.images.of.len()];
-        self.strains
-            .add_forces(&self.images.seen(positions), &mut found);
+        self.elements
+            .add_predicted_forces(strain, &self.images.seen(positions), &mut found);
         self.images.add_to(&found, forces);
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        let images = self.images;
-        (self.strains).visit_stiffness(&images.seen(positions), &mut |corners, matrix| {
-            images.visit(corners, matrix, visit);
-        });
+    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+        let images = &self.images;
+        let mut seen = |corners: &[u32], matrix: &[f64]| images.visit(corners, matrix, visit);
+        self.elements
+            .visit_predicted_stiffness(strain, &images.seen(positions), &mut seen);
     }
 
-    fn carry(&mut self, positions: &[Vec3], moves: &[Vec3]) -> bool {
-        let images = self.images;
-        self.strains
-            .carry(&images.seen(positions), &images.seen(moves))
+    fn carry(&self, strain: &mut Strain, positions: &[Vec3], moves: &[Vec3]) -> bool {
+        let images = &self.images;
+        self.elements
+            .carry(strain, &images.seen(positions), &images.seen(moves))
     }
 }
 

@@ -4,24 +4,24 @@
 //! as in the whole: walls and their own images, edges in the plane, friction. Of contacts that are images of each other it
 //! counts one, and what it does to images is done to the vertices.
 
-use std::sync::Arc;
+use std::any::Any;
 
 use crate::assembly::Visitor;
 use crate::brick::Tangent;
 use crate::terms::{Strain, Term};
 use crate::vector::Vec3;
-use crate::{Contact, Images, ProblemError};
+use crate::{Contact, ContactMemory, Images, ProblemError};
 
 /// Contact on mirror images.
 #[derive(Debug, Clone)]
 pub struct MirroredContact<C> {
     images: Images,
-    contact: Arc<C>,
+    contact: C,
 }
 
 impl<C> MirroredContact<C> {
     /// Contact of a whole whose vertices are the images.
-    pub fn new(images: Images, contact: Arc<C>) -> Self {
+    pub fn new(images: Images, contact: C) -> Self {
         Self { images, contact }
     }
 
@@ -38,7 +38,7 @@ impl<C> MirroredContact<C> {
     }
 }
 
-impl<C: Contact> Term for MirroredContact<C> {
+impl<C: Contact + Clone> Term for MirroredContact<C> {
     fn name(&self) -> &'static str {
         self.contact.name()
     }
@@ -81,53 +81,63 @@ impl<C: Contact> Term for MirroredContact<C> {
         (self.contact).visit_tangent(&seen, tangent, &mut self.seen(visit));
     }
 
-    fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
         let images = &self.images;
-        let pressures = (self.contact).predict(&images.seen(positions), &images.seen(moves))?;
-        Some(Box::new(Predicted {
-            whole: self,
-            pressures,
-        }))
+        (self.contact).predict(&images.seen(positions), &images.seen(moves))
+    }
+
+    fn add_predicted_forces(&self, strain: &Strain, positions: &[Vec3], forces: &mut [Vec3]) {
+        let seen = self.images.seen(positions);
+        self.add_seen(forces, |found| {
+            (self.contact).add_predicted_forces(strain, &seen, found);
+        });
+    }
+
+    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+        let seen = self.images.seen(positions);
+        (self.contact).visit_predicted_stiffness(strain, &seen, &mut self.seen(visit));
+    }
+
+    fn carry(&self, strain: &mut Strain, positions: &[Vec3], moves: &[Vec3]) -> bool {
+        let images = &self.images;
+        (self.contact).carry(strain, &images.seen(positions), &images.seen(moves))
     }
 }
 
-/// What contact of the whole predicts.
-struct Predicted<'a, C> {
-    whole: &'a MirroredContact<C>,
-    pressures: Box<dyn Strain + 'a>,
-}
-
-impl<C: Contact> Strain for Predicted<'_, C> {
-    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        let seen = self.whole.images.seen(positions);
-        (self.whole).add_seen(forces, |found| self.pressures.add_forces(&seen, found));
+impl<C: Contact + Clone> Contact for MirroredContact<C> {
+    fn boxed(&self) -> Box<dyn Contact> {
+        Box::new(self.clone())
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        let seen = self.whole.images.seen(positions);
-        (self.pressures).visit_stiffness(&seen, &mut self.whole.seen(visit));
+    fn found_by(&self) -> &dyn Any {
+        self.contact.found_by()
     }
 
-    fn carry(&mut self, positions: &[Vec3], moves: &[Vec3]) -> bool {
-        let images = &self.whole.images;
-        (self.pressures).carry(&images.seen(positions), &images.seen(moves))
+    fn found_by_mut(&mut self) -> &mut dyn Any {
+        self.contact.found_by_mut()
     }
-}
 
-impl<C: Contact> Contact for MirroredContact<C> {
-    fn start(&self, positions: &[Vec3]) {
+    fn memory(&self) -> ContactMemory {
+        self.contact.memory()
+    }
+
+    fn remember(&mut self, memory: &ContactMemory) {
+        self.contact.remember(memory);
+    }
+
+    fn start(&mut self, positions: &[Vec3]) {
         self.contact.start(&self.images.seen(positions));
     }
 
-    fn follow(&self, positions: &[Vec3]) -> bool {
+    fn follow(&mut self, positions: &[Vec3]) -> bool {
         self.contact.follow(&self.images.seen(positions))
     }
 
-    fn look_anew(&self) {
+    fn look_anew(&mut self) {
         self.contact.look_anew();
     }
 
-    fn correct(&self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
+    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
         let seen = self.images.seen(positions);
         self.contact.correct(&seen, negligible, precision)
     }
@@ -142,7 +152,7 @@ impl<C: Contact> Contact for MirroredContact<C> {
         self.contact.length()
     }
 
-    fn let_go(&self, positions: &[Vec3]) -> bool {
+    fn let_go(&mut self, positions: &[Vec3]) -> bool {
         self.contact.let_go(&self.images.seen(positions))
     }
 
@@ -150,15 +160,15 @@ impl<C: Contact> Contact for MirroredContact<C> {
         self.contact.depends_on_way()
     }
 
-    fn accept(&self, positions: &[Vec3]) {
+    fn accept(&mut self, positions: &[Vec3]) {
         self.contact.accept(&self.images.seen(positions));
     }
 
-    fn take_step(&self, positions: &[Vec3]) -> bool {
+    fn take_step(&mut self, positions: &[Vec3]) -> bool {
         self.contact.take_step(&self.images.seen(positions))
     }
 
-    fn stiffen(&self, positions: &[Vec3]) -> bool {
+    fn stiffen(&mut self, positions: &[Vec3]) -> bool {
         self.contact.stiffen(&self.images.seen(positions))
     }
 
@@ -166,23 +176,15 @@ impl<C: Contact> Contact for MirroredContact<C> {
         self.contact.is_touching(&self.images.seen(positions))
     }
 
-    fn go_back(&self) {
+    fn go_back(&mut self) {
         self.contact.go_back();
-    }
-
-    fn save(&self) {
-        self.contact.save();
-    }
-
-    fn restore(&self) {
-        self.contact.restore();
     }
 
     fn is_recorded(&self) -> bool {
         self.contact.is_recorded()
     }
 
-    fn extrapolate(&self, ratio: f64) {
+    fn extrapolate(&mut self, ratio: f64) {
         self.contact.extrapolate(ratio);
     }
 }

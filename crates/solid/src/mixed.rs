@@ -18,22 +18,21 @@
 //! by `p̂` in place of `K (J(ê) − 1)` in `C` and `G` alone; in the forces it cancels.
 
 use crate::Body;
-use crate::assembly::{ElementsVisitor, Visitor};
+use crate::assembly::ElementsVisitor;
 use crate::terms::{Strain, Term};
 use crate::vector::Vec3;
 
-/// The place of hyperelastic voxels among the terms of a body.
-const BRICKS: usize = 2;
-
-/// The strain of every element of a body.
-pub struct Strains<'a> {
-    terms: Vec<Box<dyn Strain + 'a>>,
+/// The strain of every element of a body, as plain data.
+#[derive(Debug, Clone)]
+pub struct Strains {
+    /// In the order of the body's terms; `None` for those that are taken as they are.
+    terms: Vec<Option<Strain>>,
 }
 
-impl<'a> Strains<'a> {
+impl Strains {
     /// The strains that a step `moves` from `positions` leads to, to first order.
-    pub fn predict(body: &'a Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
-        let predict = |term| Self::of_term(term, positions, moves);
+    pub fn predict(body: &Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
+        let predict = |term: &dyn Term| term.predict(positions, moves);
         Self {
             terms: body.terms().map(predict).collect(),
         }
@@ -41,60 +40,46 @@ impl<'a> Strains<'a> {
 
     /// The strains at `positions` with other pressures in the hyperelastic voxels, in Pa, positive in tension: those of
     /// larger voxels there, say.
-    pub fn with_pressures(body: &'a Body, positions: &[Vec3], pressures: &[f64]) -> Self {
-        let bricks = body.brick_term().with_pressures(positions, pressures);
-        let others = body.terms_but_bricks();
-        let as_they_are = others.map(|term| Box::new(AsItIs(term)) as Box<dyn Strain + 'a>);
-        // In the order of the body's terms, in which they are carried on.
-        let mut terms: Vec<_> = as_they_are.collect();
-        terms.insert(BRICKS, bricks);
-        Self { terms }
+    pub fn with_pressures(body: &Body, positions: &[Vec3], pressures: &[f64]) -> Self {
+        let bricks = body.brick_term();
+        let is_bricks = |term: &dyn Term| term.name() == bricks.name();
+        let with = |term| is_bricks(term).then(|| bricks.with_pressures(positions, pressures));
+        Self {
+            terms: body.terms().map(with).collect(),
+        }
     }
 
     /// The same after a further step.
     #[must_use]
-    pub fn carry(mut self, body: &'a Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
+    pub fn carry(mut self, body: &Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
         for (term, strain) in body.terms().zip(&mut self.terms) {
-            if !strain.carry(positions, moves) {
-                *strain = Self::of_term(term, positions, moves);
+            let goes_on = strain
+                .as_mut()
+                .is_some_and(|strain| term.carry(strain, positions, moves));
+            if !goes_on {
+                *strain = term.predict(positions, moves);
             }
         }
         self
     }
 
-    fn of_term(term: &'a dyn Term, positions: &[Vec3], moves: &[Vec3]) -> Box<dyn Strain + 'a> {
-        let strain = term.predict(positions, moves);
-        strain.unwrap_or_else(|| Box::new(AsItIs(term)))
-    }
-
     /// Adds the forces at `positions` of the stress that these strains predict, in N.
-    pub fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        for term in &self.terms {
-            term.add_forces(positions, forces);
+    pub fn add_forces(&self, body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
+        for (term, strain) in body.terms().zip(&self.terms) {
+            match strain {
+                Some(strain) => term.add_predicted_forces(strain, positions, forces),
+                None => term.add_forces(positions, forces),
+            }
         }
     }
 
     /// The tangent at `positions` with the stress of these strains, as many elements at a time as suits.
-    pub fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
-        for term in &self.terms {
-            term.visit_elements(positions, visit);
+    pub fn visit_elements(&self, body: &Body, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+        for (term, strain) in body.terms().zip(&self.terms) {
+            match strain {
+                Some(strain) => term.visit_predicted_elements(strain, positions, visit),
+                None => term.visit_elements(positions, visit),
+            }
         }
-    }
-}
-
-/// A term without strains of its own to carry along.
-struct AsItIs<'a>(&'a dyn Term);
-
-impl Strain for AsItIs<'_> {
-    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        self.0.add_forces(positions, forces);
-    }
-
-    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        self.0.visit_stiffness(positions, visit);
-    }
-
-    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
-        self.0.visit_elements(positions, visit);
     }
 }

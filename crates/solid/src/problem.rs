@@ -17,7 +17,6 @@ pub struct Problem {
     clamps: Vec<Clamp>,
     loads: Vec<Load>,
     floor: Option<Floor>,
-    contact: Option<Arc<dyn Contact>>,
     fluid: Option<Fluid>,
     rigid: Vec<Rigid>,
     /// By clamps.
@@ -75,7 +74,6 @@ impl Problem {
             clamps,
             loads,
             floor,
-            contact: None,
             fluid: None,
             rigid: Vec::new(),
             clamped,
@@ -86,15 +84,15 @@ impl Problem {
     }
 
     /// The same with surfaces that touch. They act on the body as what is attached to it does.
-    pub fn with_contact(self, contact: Arc<dyn Contact>) -> Result<Self, ProblemError> {
-        let term = Arc::clone(&contact) as Arc<dyn Term>;
-        let mut problem = self.with_term(term)?;
-        let mut joined = problem.clamped.clone();
+    pub fn with_contact(mut self, contact: Box<dyn Contact>) -> Result<Self, ProblemError> {
+        let ties = self.body.ties();
+        ties.check_free(contact.name(), |found| contact.visit_pattern(found))?;
+        let mut joined = self.clamped.clone();
         contact.visit_bonded(&mut |vertex| joined[vertex as usize] = [true; 3]);
-        let pressed = problem.pressed();
-        problem.body_mut().warp_unless(&joined, &pressed);
-        problem.contact = Some(contact);
-        Ok(problem)
+        let pressed = self.pressed();
+        self.body_mut().touch(contact)?;
+        self.body_mut().warp_unless(&joined, &pressed);
+        Ok(self)
     }
 
     /// The same with gas or liquid in its chambers; to be added before contact.
@@ -164,9 +162,29 @@ impl Problem {
         &self.rigid
     }
 
-    /// What touches.
+    /// Surfaces that touch.
     pub fn contact(&self) -> Option<&dyn Contact> {
-        self.contact.as_deref()
+        self.body.contact()
+    }
+
+    /// The same, to let them remember.
+    pub fn contact_mut(&mut self) -> Option<&mut dyn Contact> {
+        // What does not touch is not copied for it.
+        self.body.contact()?;
+        Some(&mut **self.body_mut().contact_mut()?)
+    }
+
+    /// Exchanges contact with that of another problem on the same vertices, memory included.
+    pub fn exchange_contact(&mut self, other: &mut Self) {
+        if self.body.contact().is_none() || other.body.contact().is_none() {
+            return;
+        }
+        if let (Some(own), Some(other)) = (
+            self.body_mut().contact_mut(),
+            other.body_mut().contact_mut(),
+        ) {
+            std::mem::swap(own, other);
+        }
     }
 
     /// The body.
@@ -285,7 +303,7 @@ impl Problem {
         Cow::Owned(problem)
     }
 
-    /// All that it remembers, besides contact.
+    /// All that it remembers.
     pub fn memory(&self) -> Memory {
         let tendons = self.loads.iter().filter_map(|load| match &load.kind {
             LoadKind::Tendon(tendon) => Some(tendon.memory().cloned()),
@@ -296,6 +314,7 @@ impl Problem {
             peaks: self.body.brick_term().peaks(),
             tendons: tendons.collect(),
             fluid: self.fluid.as_ref().map(|fluid| fluid.memory().clone()),
+            contact: self.contact().map(Contact::memory),
         }
     }
 
@@ -311,6 +330,25 @@ impl Problem {
         if let (Some(fluid), Some(kept)) = (&mut self.fluid, &memory.fluid) {
             fluid.remember(kept.clone());
         }
+        if let (Some(contact), Some(kept)) = (self.contact_mut(), &memory.contact) {
+            contact.remember(kept);
+        }
+    }
+
+    /// Goes on from all that another problem on the same body remembers, but for contact.
+    pub fn remember_but_contact(&mut self, other: &Self) {
+        self.begin(other.time);
+        if let Some(peaks) = other.body.brick_term().peaks() {
+            self.set_peaks(&peaks);
+        }
+        let kept = other.loads.iter().filter_map(|load| match &load.kind {
+            LoadKind::Tendon(tendon) => Some(tendon.memory().cloned()),
+            _ => None,
+        });
+        for (tendon, kept) in self.tendons_mut().zip(kept) {
+            tendon.remember(kept);
+        }
+        self.fluid.clone_from(&other.fluid);
     }
 
     /// Makes the free stretches of all materials those of a time in s.

@@ -203,7 +203,7 @@ pub(crate) struct Place<'a> {
     pub positions: &'a [Vec3],
     pub point: Point,
     pub unknown: Unknown,
-    pub strains: Option<&'a Strains<'a>>,
+    pub strains: Option<&'a Strains>,
     /// How held coordinates are about to move.
     pub jump: Option<&'a [Vec3]>,
 }
@@ -377,7 +377,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         &self,
         now: &'p Iterate,
         seen: &'p Seen,
-        strains: Option<&'p Strains<'p>>,
+        strains: Option<&'p Strains>,
     ) -> Place<'p> {
         Place {
             positions: &now.positions,
@@ -473,8 +473,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
     /// With strains carried along. Where it is lost, `now` is the best that it came by.
     fn mixed(&mut self, now: &mut Iterate) -> Result<Seen, Failure> {
         let mut at = now.clone();
-        let body = self.equilibrium.problem.shared_body();
-        let mut strains: Option<Strains<'_>> = None;
+        let mut strains: Option<Strains> = None;
         let (mut best, mut lowest, mut since_lowest) = (f64::INFINITY, f64::INFINITY, 0);
         for iteration in 0..=MIXED_ITERATIONS {
             let seen = self.look(&at.positions, at.factor)?;
@@ -522,7 +521,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
                 now.iterations = iteration;
                 return Ok(seen);
             }
-            let body = &*body;
+            let body = self.equilibrium.problem.body();
             strains = Some(match strains.take() {
                 Some(strains) => strains.carry(body, &at.positions, &moves),
                 None => Strains::predict(body, &at.positions, &moves),

@@ -179,16 +179,15 @@ impl Walk {
         let (mut last, mut cuts, mut taken) = (f64::INFINITY, 0, 0);
         while taken < steps {
             let mut length = self.length.min(self.longest / tangent.factor.abs());
-            path.contact()
-                .inspect(|contact| contact.extrapolate(length / last));
+            path.with_contact(|contact| contact.extrapolate(length / last));
             let mut outcome = self.step(path, &tangent, length, settings);
             let lost = matches!(outcome, Err(failure) if failure != Failure::Cancelled);
             if lost
-                && path.contact().is_some()
+                && path.touches()
                 && cuts >= CUTS_TO_A_CORNER
                 && let Some(corner) = tangent.at_corner()
             {
-                path.contact().inspect(|contact| contact.go_back());
+                path.with_contact(|contact| contact.go_back());
                 outcome = self.step(path, &corner, length, settings);
                 if outcome.is_ok() {
                     // Cuts came of the corner, not of what follows.
@@ -213,7 +212,7 @@ impl Walk {
                 }
                 Err(failure) => failure,
             };
-            path.contact().inspect(|contact| contact.go_back());
+            path.with_contact(|contact| contact.go_back());
             if failure == Failure::Cancelled {
                 return Err(failure);
             }
@@ -260,8 +259,8 @@ impl Walk {
         }
         if point.pressure > 1.0 && !path.looking {
             // Contact may depend on the way, which does not lead past the full load and back.
-            if let Some(contact) = path.equilibrium.problem.contact() {
-                contact.go_back();
+            if path.touches() {
+                path.with_contact(|contact| contact.go_back());
                 trial = start.clone();
             }
             point = Point::all(1.0);

@@ -183,17 +183,19 @@ impl DirectSystem {
         problem: &Problem,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
-        strains: Option<&Strains<'_>>,
+        strains: Option<&Strains>,
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
         self.assemble_pieces(jump, residual, |add| {
             match strains {
-                Some(strains) => strains.visit_elements(positions, &mut |elements| {
-                    elements
-                        .iter()
-                        .for_each(|(vertices, matrix)| add(vertices, matrix));
-                }),
+                Some(strains) => {
+                    strains.visit_elements(problem.body(), positions, &mut |elements| {
+                        elements
+                            .iter()
+                            .for_each(|(vertices, matrix)| add(vertices, matrix));
+                    })
+                }
                 None => elastic::visit_stiffness(problem.body(), positions, add),
             }
             problem.visit_load_stiffness(positions, factor_of, add);

@@ -172,11 +172,8 @@ impl<'a> Equilibrium<'a> {
 
     /// Makes room in the tangent for what touches at `positions`, and gives back what is no longer needed.
     pub fn follow_contact(&mut self, positions: &[Vec3]) -> Result<(), FactorError> {
-        if self
-            .problem
-            .contact()
-            .is_some_and(|contact| contact.follow(positions))
-        {
+        let contact = self.problem.contact_mut();
+        if contact.is_some_and(|contact| contact.follow(positions)) {
             self.system = System::new(&self.problem, &self.held, self.means)?;
         }
         Ok(())
@@ -211,14 +208,14 @@ impl<'a> Equilibrium<'a> {
     /// Net forces on free coordinates with the elastic ones that `strains` predict.
     pub fn predicted_forces(
         &self,
-        strains: &Strains<'_>,
+        strains: &Strains,
         positions: &[Vec3],
         point: Point,
     ) -> Vec<f64> {
         let mut net = vec![[0.0; 3]; positions.len()];
         self.problem
             .add_scaled_loads(positions, &point.factor_of(), &mut net);
-        strains.add_forces(positions, &mut net);
+        strains.add_forces(self.problem.body(), positions, &mut net);
         self.system.gather(&net)
     }
 
@@ -328,9 +325,9 @@ impl<'a> Equilibrium<'a> {
         settings: &Settings,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
-        let body = &*self.problem.shared_body();
         let opening = self.opening.take();
-        let mut strains = opening.map(|p| Strains::with_pressures(body, positions, &p));
+        let mut strains =
+            opening.map(|p| Strains::with_pressures(self.problem.body(), positions, &p));
         let stiff = self.problem.fluid().filter(|fluid| fluid.is_stiff());
         let mut carried = stiff.map(Fluid::last_pressures);
         let is_stiff = carried.is_some();
@@ -397,18 +394,19 @@ impl<'a> Equilibrium<'a> {
                 moves = moves.iter().zip(jump).map(|(a, b)| add(*a, *b)).collect();
             }
             let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
-            if !(largest < farthest * body.size() + self.largest_motion) {
+            if !(largest < farthest * self.problem.body().size() + self.largest_motion) {
                 return Err(Failure::Lost);
             }
             if self.stands_still(positions, largest, relative) {
                 return Ok(self.take_last(positions, &moves, point, iteration, relative));
             }
             if let Some(limit) = self.largest_turn.take() {
-                let turn = largest_turn(body, positions, &moves);
+                let turn = largest_turn(self.problem.body(), positions, &moves);
                 if turn > limit {
                     return Err(Failure::Turned(turn));
                 }
             }
+            let body = self.problem.body();
             strains = Some(match strains.take() {
                 Some(strains) => strains.carry(body, positions, &moves),
                 None => Strains::predict(body, positions, &moves),

@@ -133,7 +133,7 @@ impl IterativeSystem {
         problem: &Problem,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
-        strains: Option<&Strains<'_>>,
+        strains: Option<&Strains>,
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
@@ -152,7 +152,7 @@ impl IterativeSystem {
             None => target.add(elements),
         };
         match strains {
-            Some(strains) => strains.visit_elements(positions, &mut add),
+            Some(strains) => strains.visit_elements(problem.body(), positions, &mut add),
             None => elastic::visit_elements(problem.body(), positions, &mut add),
         }
         problem.visit_load_stiffness(positions, factor_of, &mut |vertices, matrices| {

@@ -269,9 +269,7 @@ impl Path<'_, '_> {
                     }
                     Err(failure) => failure,
                 };
-            if let Some(contact) = self.equilibrium.problem.contact() {
-                contact.go_back();
-            }
+            self.with_contact(|contact| contact.go_back());
             self.equilibrium.back_offs += 1;
             (rate, reach) = (rate / FALL, loose.length);
             let hopeless = !matches!(failure, Failure::Lost | Failure::Singular);

@@ -142,10 +142,10 @@ fn follow(
     };
     let along = Along::of(settings.control);
     let goes_on = matches!(along, Along::Time { .. });
-    if let Some(contact) = problem.contact().filter(|_| !goes_on) {
-        contact.start(&positions);
-    }
     if !goes_on {
+        if let Some(contact) = problem.contact_mut() {
+            contact.start(&positions);
+        }
         problem.start_loads();
         problem.start_fluid(&rest, None);
     }
@@ -220,9 +220,22 @@ pub(crate) fn status_of(failure: Failure) -> Status {
 }
 
 impl Path<'_, '_> {
-    /// Contact of its problem.
-    pub fn contact(&self) -> Option<&dyn Contact> {
-        self.equilibrium.problem.contact()
+    /// Whether surfaces touch.
+    pub fn touches(&self) -> bool {
+        self.equilibrium.problem.contact().is_some()
+    }
+
+    /// Lets contact change its memory.
+    pub fn with_contact(&mut self, act: impl FnOnce(&mut dyn Contact)) {
+        if let Some(contact) = self.equilibrium.problem.contact_mut() {
+            act(contact);
+        }
+    }
+
+    /// Whether a snap may be looked for: where surfaces touch, and the path is not recorded.
+    pub fn may_snap(&self) -> bool {
+        let contact = self.equilibrium.problem.contact();
+        contact.is_some_and(|contact| !contact.is_recorded())
     }
 
     fn answer(mut self, ending: Ending, settings: &Settings) -> Answer {
@@ -257,7 +270,7 @@ impl Path<'_, '_> {
 
     pub fn accept(&mut self, positions: Vec<Vec3>, point: Point, iterations: u32, residual: f64) {
         let problem = &mut self.equilibrium.problem;
-        if let Some(contact) = problem.contact() {
+        if let Some(contact) = problem.contact_mut() {
             contact.accept(&positions);
         }
         problem.accept_loads(&positions, &point.factor_of());
@@ -318,7 +331,7 @@ impl Path<'_, '_> {
             Some(_) => f64::min(longest, LONGEST_OF_WORK),
             None => longest,
         };
-        let easy = if self.contact().is_some() {
+        let easy = if self.touches() {
             EASY_WITH_CONTACT
         } else {
             EASY
@@ -338,8 +351,7 @@ impl Path<'_, '_> {
             };
             let point = along.at(next);
             let mut trial = self.positions.clone();
-            self.contact()
-                .inspect(|contact| contact.extrapolate((next - now) / last));
+            self.with_contact(|contact| contact.extrapolate((next - now) / last));
             loose.inspect(|loose| loose.hold(&self.positions, next - now));
             let safe = step <= SAFE_STEP;
             let mut search = AtLoad {
@@ -381,26 +393,25 @@ impl Path<'_, '_> {
                     Failure::Lost
                 }
                 Err(Failure::Turned(turn)) => {
-                    self.contact().inspect(|contact| contact.go_back());
+                    self.with_contact(|contact| contact.go_back());
                     length.set((step * GOOD_TURN / turn).max(settings.least_step));
                     continue;
                 }
                 Err(failure) => failure,
             };
-            self.contact().inspect(|contact| contact.go_back());
+            self.with_contact(|contact| contact.go_back());
             if !matches!(failure, Failure::Lost | Failure::Singular) {
                 return Ending::new(status_of(failure), None, now);
             }
             self.equilibrium.back_offs += 1;
             if self.points.is_empty() && warm {
                 self.positions.clone_from(&cold);
-                self.contact().inspect(|contact| contact.start(&cold));
+                self.with_contact(|contact| contact.start(&cold));
             }
             length.failed(next - now);
             if length.get() < settings.least_step {
                 let point = along.at((now + SNAP).min(1.0));
-                let may_snap = self.contact().is_some_and(|contact| !contact.is_recorded());
-                if may_snap
+                if self.may_snap()
                     && self.snap(
                         &mut AtLoad {
                             point,
@@ -421,13 +432,15 @@ impl Path<'_, '_> {
                 // Contact makes corners in the path, which no tangent foresees; and what fills chambers is not proportional to the
                 // load, so that no direction leads ahead.
                 let fluid = self.equilibrium.problem.fluid();
-                let limit = match self.contact() {
-                    None if fluid.is_none() && along.has_factor() => self.look_ahead(settings),
-                    _ => None,
+                let plain = !self.touches() && fluid.is_none();
+                let limit = if plain && along.has_factor() {
+                    self.look_ahead(settings)
+                } else {
+                    None
                 };
                 // What was held at an equilibrium before does not move freely: contact lost its way.
                 let failure = match failure {
-                    Failure::Singular if self.contact().is_some() && now > 0.0 => Failure::Lost,
+                    Failure::Singular if self.touches() && now > 0.0 => Failure::Lost,
                     other => other,
                 };
                 let status = limit.map_or(status_of(failure), |_| Status::LimitReached);

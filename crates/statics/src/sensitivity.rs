@@ -31,12 +31,10 @@ const ROUNDS: u32 = 30;
 const LARGEST_CHANGE: f64 = 1e-5;
 
 /// A problem with a value of a parameter that is a little off.
-#[derive(Debug, Clone, Copy)]
-pub struct Varied<'a, C> {
+#[derive(Debug, Clone)]
+pub struct Varied {
     /// The problem.
-    pub problem: &'a Problem,
-    /// Its contact.
-    pub contact: &'a C,
+    pub problem: Problem,
     /// By how much the value is off.
     pub offset: f64,
     /// The weight of a number at this value in its derivative.
@@ -50,10 +48,9 @@ pub struct Varied<'a, C> {
 /// The tangent may take `memory` bytes; `stop` is asked between the steps of the work.
 pub fn sensitivities<C: RecordedContact>(
     problem: &Problem,
-    contact: &C,
     moments: &[Moment<C::Memory>],
     factors: &[f64],
-    parameters: &[Vec<Varied<'_, C>>],
+    parameters: &mut [Vec<Varied>],
     memory: u64,
     stop: &mut dyn FnMut() -> bool,
 ) -> Result<Vec<Vec<Vec<Vec3>>>, AdjointError> {
@@ -61,8 +58,9 @@ pub fn sensitivities<C: RecordedContact>(
         solver: LinearSolver::Auto,
         memory,
     };
-    for varied in parameters.iter().flatten() {
-        varied.contact.start(varied.problem.body().rest());
+    for varied in parameters.iter_mut().flatten() {
+        let rest = varied.problem.body().rest().to_vec();
+        contact_of::<C>(&mut varied.problem)?.start(&rest);
     }
     let mut equilibrium = Equilibrium::new(problem.clone(), means)?;
     let mut ends = Vec::new();
@@ -73,9 +71,10 @@ pub fn sensitivities<C: RecordedContact>(
         if std::mem::replace(&mut begins, moment.settled) {
             point = Point::all(*steps.next().unwrap_or(&1.0));
         }
-        if contact.recall(moment) {
-            equilibrium.system = System::new(problem, &equilibrium.held, means)?;
+        if contact_of::<C>(&mut equilibrium.problem)?.recall(moment) {
+            equilibrium.system = System::new(&equilibrium.problem, &equilibrium.held, means)?;
         }
+        let problem = &equilibrium.problem;
         let system = &mut equilibrium.system;
         let mut unused = vec![0.0; system.size()];
         system.assemble(
@@ -95,21 +94,20 @@ pub fn sensitivities<C: RecordedContact>(
             settled: false,
             ..moment.clone()
         };
-        for parameter in parameters {
-            let group: Vec<&C> = parameter.iter().map(|varied| varied.contact).collect();
+        for parameter in parameters.iter_mut() {
             let mut before: Vec<Vec3> = Vec::new();
             let mut round = 0;
             let places = loop {
                 let mut side = vec![0.0; system.size()];
                 let mut places = Vec::with_capacity(parameter.len());
                 let mut carried = 0.0f64;
-                for varied in parameter {
-                    varied.contact.face_as(moment);
+                for varied in parameter.iter_mut() {
+                    contact_of::<C>(&mut varied.problem)?.face_as(moment);
                     let mut positions = moment.positions.clone();
                     varied
                         .problem
                         .place_clamps(point.time, point.dead, &mut positions);
-                    let forces = system.gather(&net_forces(varied.problem, &positions, point));
+                    let forces = system.gather(&net_forces(&varied.problem, &positions, point));
                     for (side, force) in side.iter_mut().zip(forces) {
                         *side += varied.weight * force;
                     }
@@ -138,15 +136,36 @@ pub fn sensitivities<C: RecordedContact>(
                     }
                     break places;
                 }
-                C::follow_on(&group, &places, &again, Some(&again));
+                C::follow_on(
+                    &mut contacts::<C>(parameter)?,
+                    &places,
+                    &again,
+                    Some(&again),
+                );
                 before = slopes;
                 round += 1;
             };
-            C::follow_on(&group, &places, moment, moments.get(number + 1));
+            let next = moments.get(number + 1);
+            C::follow_on(&mut contacts::<C>(parameter)?, &places, moment, next);
             ends.push(places);
         }
     }
     Ok(ends)
+}
+
+/// Contact of a problem, of the kind that was recorded.
+fn contact_of<C: RecordedContact>(problem: &mut Problem) -> Result<&mut C, AdjointError> {
+    let contact = problem.contact_mut().ok_or(AdjointError::Unsettled)?;
+    let found = contact.found_by_mut().downcast_mut();
+    found.ok_or(AdjointError::Unsettled)
+}
+
+/// The contacts of varied problems.
+fn contacts<C: RecordedContact>(group: &mut [Varied]) -> Result<Vec<&mut C>, AdjointError> {
+    group
+        .iter_mut()
+        .map(|varied| contact_of(&mut varied.problem))
+        .collect()
 }
 
 /// The largest change of slopes, as a part of the largest one or of how far clamps and objects are `carried`, beside which

@@ -124,21 +124,21 @@ impl Equilibrium<'_> {
     }
 
     /// Lets bonds go that an equilibrium, whose contact has settled, pulls too hard; whether any did.
-    fn lets_go(&self, positions: &[Vec3]) -> bool {
-        let contact = self.problem.contact();
+    fn lets_go(&mut self, positions: &[Vec3]) -> bool {
+        let contact = self.problem.contact_mut();
         contact.is_some_and(|contact| contact.let_go(positions))
     }
 
     /// Corrects the forces of contact by an equilibrium; whether they have settled.
-    fn is_contact_settled(&self, positions: &[Vec3], point: Point) -> bool {
+    fn is_contact_settled(&mut self, positions: &[Vec3], point: Point) -> bool {
         let precision = if (point.dead, point.pressure) == (1.0, 1.0) {
             self.precision.min(AT_THE_END)
         } else {
             self.precision
         };
-        let settled =
-            |contact: &dyn Contact| contact.correct(positions, self.negligible, precision);
-        self.problem.contact().is_none_or(settled)
+        let negligible = self.negligible;
+        let settled = |contact: &mut dyn Contact| contact.correct(positions, negligible, precision);
+        self.problem.contact_mut().is_none_or(settled)
     }
 }
 

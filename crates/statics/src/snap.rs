@@ -73,7 +73,6 @@ impl Path<'_, '_> {
         let Ok(equilibrium) = Equilibrium::new(damped, means) else {
             return false;
         };
-        contact.save();
         let mut path = Path {
             equilibrium: Equilibrium {
                 precision: self.equilibrium.precision,
@@ -102,9 +101,6 @@ impl Path<'_, '_> {
         let problem = &self.equilibrium.problem;
         let system = System::new(problem, &self.equilibrium.held, self.equilibrium.means);
         let (Status::AtRest, Ok(system)) = (ending.status(), system) else {
-            if let Some(contact) = self.contact() {
-                contact.restore();
-            }
             return false;
         };
         self.equilibrium.system = system;

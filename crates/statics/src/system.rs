@@ -116,7 +116,7 @@ impl System {
         problem: &Problem,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
-        strains: Option<&Strains<'_>>,
+        strains: Option<&Strains>,
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {

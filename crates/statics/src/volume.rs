@@ -112,7 +112,7 @@ impl Growth {
         steps: u32,
         loose: Option<&Loose>,
     ) -> Ending {
-        let touches = path.contact().is_some();
+        let touches = path.touches();
         let (mut longest, mut scale) = (1.0 / f64::from(steps.max(1)), 1);
         if touches {
             scale = WITH_CONTACT;
@@ -126,8 +126,7 @@ impl Growth {
         let (mut part, mut last) = (longest, f64::INFINITY);
         while self.done < 1.0 - 1e-12 {
             let next = (self.done + part).min(1.0);
-            path.contact()
-                .inspect(|contact| contact.extrapolate((next - self.done) / last));
+            path.with_contact(|contact| contact.extrapolate((next - self.done) / last));
             loose.inspect(|loose| loose.hold(&path.positions, next - self.done));
             // What dampers still hold in the end is let go from there.
             path.looking = loose.is_some() && next == 1.0;
@@ -147,15 +146,14 @@ impl Growth {
                 }
                 Err(failure) => failure,
             };
-            path.contact().inspect(|contact| contact.go_back());
+            path.with_contact(|contact| contact.go_back());
             path.equilibrium.back_offs += 1;
             part *= CUT;
             let lost = matches!(failure, Failure::Lost | Failure::Singular);
             if lost && part >= shortest {
                 continue;
             }
-            let may_snap = path.contact().is_some_and(|contact| !contact.is_recorded());
-            if lost && may_snap {
+            if lost && path.may_snap() {
                 let next = (self.done + SNAP).min(1.0);
                 if path.snap(&mut self.search(path, next), settings) {
                     (self.done, part, last) = (next, SNAP.min(longest), f64::INFINITY);

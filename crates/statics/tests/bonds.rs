@@ -5,7 +5,9 @@ mod common;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::touching::{NONE, YOUNG, add_box, add_rigid, corners_of, join, moved};
+use common::touching::{
+    NONE, YOUNG, add_box, add_rigid, corners_of, join, moved, pairs_at, touch_of,
+};
 use common::{block, rubber, vertices_where};
 use voxsoft_contact::touch::bonds::{Bond, Side, Solid};
 use voxsoft_contact::touch::rigid::Frame;
@@ -43,14 +45,14 @@ fn side<'a>(number: u32, surface: &'a Surface, solid: Solid<'a>) -> Side<'a> {
     }
 }
 
-/// A problem of two surfaces that are bonded, and the contact.
+/// A problem of two surfaces that are bonded.
 fn bonded(
     mesh: &Mesh,
     clamps: Vec<Clamp>,
     loads: Vec<Load>,
     (surfaces, bond): (Vec<Surface>, Bond),
     friction: f64,
-) -> (Problem, Arc<Touch>) {
+) -> Problem {
     let body = Body::new(mesh, &[rubber()]).unwrap();
     let description = Description {
         surfaces,
@@ -59,9 +61,9 @@ fn bonded(
         voxel: 3e-3,
         young: YOUNG,
     };
-    let touch = Arc::new(Touch::new(description, &mesh.vertices).unwrap());
+    let touch = Touch::new(description, &mesh.vertices).unwrap();
     let problem = Problem::new(body, clamps, loads, None).unwrap();
-    (problem.with_contact(touch.clone()).unwrap(), touch)
+    problem.with_contact(Box::new(touch)).unwrap()
 }
 
 /// The force of supports on vertices, along z.
@@ -106,7 +108,7 @@ fn bonded_faces_do_not_warp() {
     let first = side(1, &surfaces[1], Solid::Voxels(&high));
     let second = side(0, &surfaces[0], Solid::Voxels(&low));
     let bond = Bond::new(first, second, 2e-3, f64::INFINITY, &mesh.vertices).unwrap();
-    let (problem, _) = bonded(&mesh, vec![], vec![], (surfaces, bond), NONE);
+    let problem = bonded(&mesh, vec![], vec![], (surfaces, bond), NONE);
     let apart = Body::new(&mesh, &[rubber()]).unwrap();
     // Voxels in the middle of the bonded faces have no other face without a neighbor.
     for corner in [[4e-3; 3], [3e-3, 3e-3, 8e-3]] {
@@ -132,11 +134,11 @@ fn bonded_blocks_of_other_voxels_are_one_block() {
             let (first, second) = (side(1, &surfaces[1], fine), side(0, &surfaces[0], coarse));
             let rest = &mesh.vertices;
             let bond = Bond::new(first, second, 2e-3, f64::INFINITY, rest).unwrap();
-            let (problem, touch) = bonded(&mesh, clamps, vec![], (surfaces, bond), NONE);
+            let problem = bonded(&mesh, clamps, vec![], (surfaces, bond), NONE);
             let answer = settle(&problem, |_| {});
             assert_eq!(answer.status, Status::AtRest);
             let found = support(&problem, &answer, &top);
-            let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
+            let [pair] = pairs_at(&problem, &answer).try_into().unwrap();
             assert!((pair.bonded - 144e-6).abs() < 1e-12, "{pair:?}");
             assert!(
                 (pair.force[2] / found - 1.0).abs() < 1e-6,
@@ -167,7 +169,7 @@ fn bonded_blocks_of_other_voxels_are_one_block() {
 
 /// A block of 12 mm that cannot bulge, and a plate on top of it that moves up by 0.45 mm: rubber
 /// that cannot bulge becomes unstable soon after.
-fn pulled_off(strength: f64, see: impl FnMut(&Touch, &Progress<'_>)) -> (Answer, Arc<Touch>) {
+fn pulled_off(strength: f64, see: impl FnMut(&Progress<'_>)) -> (Problem, Answer) {
     let mut mesh = block([4, 4, 4], 3e-3);
     let count = mesh.vertices.len() as u32;
     let (low, high) = ([-1e-3, -1e-3, 12e-3], [13e-3, 13e-3, 15e-3]);
@@ -191,10 +193,9 @@ fn pulled_off(strength: f64, see: impl FnMut(&Touch, &Progress<'_>)) -> (Answer,
     let first = side(0, &surfaces[0], Solid::Voxels(body.voxels()));
     let second = side(1, &surfaces[1], Solid::Rigid(&frame, count));
     let bond = Bond::new(first, second, 1.5e-3, strength, &mesh.vertices).unwrap();
-    let (problem, touch) = bonded(&mesh, clamps, vec![], (surfaces, bond), 0.3);
-    let mut see = see;
-    let answer = settle(&problem, |now| see(&touch, now));
-    (answer, touch)
+    let problem = bonded(&mesh, clamps, vec![], (surfaces, bond), 0.3);
+    let answer = settle(&problem, see);
+    (problem, answer)
 }
 
 #[test]
@@ -202,14 +203,14 @@ fn a_bond_lets_go_at_its_strength() {
     let area = 144e-6;
     let forces = |strength: f64| {
         let mut forces = vec![];
-        let (answer, touch) = pulled_off(strength, |touch, now| {
+        let (problem, answer) = pulled_off(strength, |now| {
             if now.record {
-                let pairs = touch.pairs(now.positions);
+                let pairs = touch_of(now.problem).pairs(now.positions);
                 forces.push(pairs.first().map_or(0.0, |pair| pair.force[2]));
             }
         });
         assert_eq!(answer.status, Status::AtRest);
-        (forces, touch.pairs(&answer.positions))
+        (forces, pairs_at(&problem, &answer))
     };
     let (whole, pairs) = forces(f64::INFINITY);
     let end = whole.last().unwrap();
@@ -250,14 +251,14 @@ fn what_hangs_on_a_bond_pulls_with_its_weight() {
     let bond = Bond::new(above, below, 1.5e-3, f64::INFINITY, &mesh.vertices).unwrap();
     let loads = vec![Load::gravity([0.3 * GRAVITY, 0.0, -GRAVITY])];
     let clamps = vec![Clamp::fixed(ceiling)];
-    let (problem, touch) = bonded(&mesh, clamps, loads, (surfaces, bond), NONE);
+    let problem = bonded(&mesh, clamps, loads, (surfaces, bond), NONE);
     let springs = frame.springs(first, frame.stiffness(&frame.vertices(), YOUNG, 3e-3));
     let problem = problem
         .with_term(Arc::new(Springs(springs.to_vec())))
         .unwrap();
     let answer = settle(&problem, |_| {});
     assert_eq!(answer.status, Status::AtRest);
-    let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
+    let [pair] = pairs_at(&problem, &answer).try_into().unwrap();
     let expected = scale(mass * GRAVITY, [0.3, 0.0, -1.0]);
     assert!(
         norm(sub(pair.force, expected)) < 1e-6 * norm(expected),
@@ -277,15 +278,16 @@ fn ties_keep_the_laws_of_terms() {
     let first = side(1, &surfaces[1], Solid::Voxels(&high));
     let second = side(0, &surfaces[0], Solid::Voxels(&low));
     let bond = Bond::new(first, second, 2e-3, f64::INFINITY, &mesh.vertices).unwrap();
-    let (_, touch) = bonded(&mesh, vec![], vec![], (surfaces, bond), NONE);
+    let problem = bonded(&mesh, vec![], vec![], (surfaces, bond), NONE);
     let mut positions = mesh.vertices.clone();
     for (x, rest) in positions.iter_mut().zip(&mesh.vertices) {
         if rest[2] > 8.05e-3 {
             *x = [rest[0] + 1e-4, rest[1] * 1.01, rest[2] + 3e-4];
         }
     }
+    let mut touch = touch_of(&problem).clone();
     touch.follow(&positions);
-    check_term(&*touch, &mesh.vertices, &positions).unwrap();
+    check_term(&touch, &mesh.vertices, &positions).unwrap();
 }
 
 #[test]

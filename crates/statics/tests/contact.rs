@@ -4,7 +4,7 @@ mod common;
 
 use std::ops::ControlFlow;
 
-use common::touching::{NONE, add_box, join, moved, touching};
+use common::touching::{NONE, add_box, join, moved, pairs_at, touching};
 use common::{block, mesh_of, rubber, vertices_where};
 use voxsoft_contact::touch::{PairReport, Surface};
 use voxsoft_solid::balance::balance;
@@ -70,13 +70,13 @@ fn a_uniform_pressure_passes_between_voxels_of_different_sizes() {
     let (low, high): (Vec<_>, Vec<_>) = body.voxels().iter().partition(|v| v[0] < upper);
     let surfaces = vec![Surface::of_voxels(&low, 2), Surface::of_voxels(&high, 2)];
     let friction = vec![vec![NONE, 0.0], vec![0.0, NONE]];
-    let (problem, touch) = touching(&mesh, clamps, vec![], surfaces, friction, 3e-3);
+    let problem = touching(&mesh, clamps, vec![], surfaces, friction, 3e-3);
     let answer = settle(&problem);
     for (rest, now) in mesh.vertices.iter().zip(&answer.positions) {
         let off = now[2] - rest[2] - press / 14e-3 * rest[2];
         assert!(off.abs() < 5e-3 * press.abs(), "{rest:?}: {off:e}");
     }
-    let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
+    let [pair] = pairs_at(&problem, &answer).try_into().unwrap();
     assert!((pair.area - 144e-6).abs() < 1e-12, "{pair:?}");
     // One block without contact in between, which needs no other voxels for a uniform state.
     let one = block([6, 6, 7], 2e-3);
@@ -107,9 +107,9 @@ fn plate(layers: usize, way: Vec3, friction: f64) -> (PairReport, Problem, Answe
     let body = Body::new(&mesh, &[rubber()]).unwrap();
     let surfaces = vec![Surface::of_voxels(body.voxels(), 2), plate];
     let table = vec![vec![0.0, friction], vec![friction, NONE]];
-    let (problem, touch) = touching(&mesh, clamps, vec![], surfaces, table, 4e-3);
+    let problem = touching(&mesh, clamps, vec![], surfaces, table, 4e-3);
     let answer = settle(&problem);
-    let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
+    let [pair] = pairs_at(&problem, &answer).try_into().unwrap();
     (pair, problem, answer)
 }
 
@@ -191,9 +191,9 @@ fn the_lips_of_a_slit_meet() {
     };
     let body = Body::new(&mesh, &[rubber()]).unwrap();
     let surfaces = vec![Surface::of_voxels(body.voxels(), 2)];
-    let (problem, touch) = touching(&mesh, clamps(), vec![], surfaces, vec![vec![0.0]], side);
+    let problem = touching(&mesh, clamps(), vec![], surfaces, vec![vec![0.0]], side);
     let answer = settle(&problem);
-    let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
+    let [pair] = pairs_at(&problem, &answer).try_into().unwrap();
     assert!(pair.gap > 0.0 && pair.gap < 1e-3 * side, "{pair:?}");
     assert!(pair.pressed > 0.0 && norm(pair.force) == 0.0, "{pair:?}");
     // Without contact the lips pass through each other with less force.

@@ -9,9 +9,9 @@ mod common;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::touching::{NONE, add_box, moved, touching};
+use common::touching::{NONE, add_box, moved, pairs_at, touching};
 use common::{block, vertices_where};
-use voxsoft_contact::touch::{Surface, Touch};
+use voxsoft_contact::touch::Surface;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Clamp, History, Load, Mesh, Pressure, Problem, Spring, Springs, Status};
 use voxsoft_statics::{Answer, Control, Settings, Start, solve};
@@ -127,16 +127,13 @@ fn on_a_truss(push: &Push) -> (Mesh, Vec<Clamp>, Vec<Load>, Vec<Spring>, Surface
     (mesh, clamps, loads, springs, plate)
 }
 
-fn guided(push: &Push) -> (Problem, Arc<Touch>) {
+fn guided(push: &Push) -> Problem {
     let (mesh, clamps, loads, springs, plate) = on_a_truss(push);
     let body = Body::new(&mesh, &[common::rubber()]).unwrap();
     let surfaces = vec![Surface::of_voxels(body.voxels(), 2), plate];
     let table = vec![vec![NONE, 0.0], vec![0.0, NONE]];
-    let (problem, touch) = touching(&mesh, clamps, loads, surfaces, table, SIDE);
-    (
-        problem.with_term(Arc::new(Springs(springs))).unwrap(),
-        touch,
-    )
+    let problem = touching(&mesh, clamps, loads, surfaces, table, SIDE);
+    problem.with_term(Arc::new(Springs(springs))).unwrap()
 }
 
 /// Half of the pressure in the box between the block and its base.
@@ -199,8 +196,8 @@ fn follow(problem: &Problem, control: Control) -> (Answer, Vec<Seen>) {
 }
 
 /// The force on the block.
-fn force(touch: &Touch, answer: &Answer) -> f64 {
-    let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
+fn force(problem: &Problem, answer: &Answer) -> f64 {
+    let [pair] = pairs_at(problem, answer).try_into().unwrap();
     pair.force[2]
 }
 
@@ -212,7 +209,7 @@ const CLEARANCE: f64 = 2.2e-4 * SIDE;
 #[test]
 fn an_arc_leads_past_a_limit_and_onto_a_plate() {
     let weight = 1.5 * largest();
-    let (problem, touch) = guided(&Push::Weight(weight));
+    let problem = guided(&Push::Weight(weight));
     let (answer, seen) = follow(&problem, Control::ArcLength { steps: 200 });
     assert_eq!(answer.status, Status::AtRest);
     assert!(answer.stable && answer.factor == 1.0, "{answer:?}");
@@ -231,15 +228,15 @@ fn an_arc_leads_past_a_limit_and_onto_a_plate() {
     // On the plate it carries the rest.
     let way = -answer.positions[0][2];
     assert!((way - FREE).abs() < CLEARANCE, "{way}");
-    let off = force(&touch, &answer) - (weight - truss(way));
+    let off = force(&problem, &answer) - (weight - truss(way));
     assert!(off.abs() < EXACT * weight, "{off}");
     // Load control knows the end only, to which it jumps.
-    let (problem, touch) = guided(&Push::Weight(weight));
+    let problem = guided(&Push::Weight(weight));
     let (snapped, jumps) = follow(&problem, Control::Load);
     assert_eq!(snapped.status, Status::AtRest);
     let on_way = |(_, z): &Seen| -z > 0.5 * HEIGHT && -z < FREE - CLEARANCE;
     assert!(!jumps.iter().any(on_way));
-    let off = force(&touch, &snapped) - (weight - truss(way));
+    let off = force(&problem, &snapped) - (weight - truss(way));
     assert!(off.abs() < 1e-4 * weight, "{off}");
 }
 
@@ -278,7 +275,7 @@ fn load_control_reports_the_limit_that_it_crossed() {
 #[test]
 fn a_path_over_time_follows_the_history_of_its_load() {
     let history = History::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, 0.25]).unwrap();
-    let (problem, _) = guided(&Push::Slowly(0.9 * largest(), history.clone()));
+    let problem = guided(&Push::Slowly(0.9 * largest(), history.clone()));
     let mut start = None;
     let mut from = None;
     for to in [0.5, 1.0, 1.5, 2.0] {
@@ -309,7 +306,7 @@ fn a_path_over_time_follows_the_history_of_its_load() {
 #[test]
 fn an_arc_follows_a_clamp_that_has_to_go_back() {
     let all = 6e-3;
-    let (problem, touch) = guided(&Push::Clamp(all));
+    let problem = guided(&Push::Clamp(all));
     let (answer, seen) = follow(&problem, Control::ArcLength { steps: 200 });
     assert_eq!(answer.status, Status::AtRest);
     assert!(answer.stable && answer.factor == 1.0, "{answer:?}");
@@ -328,13 +325,13 @@ fn an_arc_follows_a_clamp_that_has_to_go_back() {
     assert!(lowest < 0.95, "{lowest}");
     let way = -answer.positions[0][2];
     assert!((way - FREE).abs() < CLEARANCE, "{way}");
-    let off = force(&touch, &answer) - (PULLER * (all - way) - truss(way));
+    let off = force(&problem, &answer) - (PULLER * (all - way) - truss(way));
     assert!(off.abs() < EXACT * largest(), "{off}");
 }
 
 #[test]
 fn a_volume_pushes_past_a_limit_and_against_a_plate() {
-    let (problem, touch) = guided(&Push::Chamber);
+    let problem = guided(&Push::Chamber);
     // A hundredth of the block's height farther than to the plate.
     let way = FREE + 0.01 * SIDE;
     let control = Control::Volume {
@@ -354,7 +351,7 @@ fn a_volume_pushes_past_a_limit_and_against_a_plate() {
     // The volume says where the bottom is, and pressure carries what truss and plate do not.
     let bottom = answer.positions[0][2];
     assert!((bottom - way).abs() < 1e-8 * way, "{bottom}");
-    let pressed = -force(&touch, &answer);
+    let pressed = -force(&problem, &answer);
     let off = push(answer.factor) - truss(way) - pressed;
     assert!(off.abs() < EXACT * pressed, "{off} {pressed}");
     // Held at its sides, rubber has the modulus E (1 − ν)/((1 + ν)(1 − 2ν)); to first order in a strain of a hundredth.
@@ -383,7 +380,7 @@ fn a_run_that_is_stopped_ends_at_its_last_point() {
             ..Settings::default()
         };
         for stop in 1.. {
-            let (problem, _) = guided(&push);
+            let problem = guided(&push);
             let (mut last, mut after) = (problem.body().rest().to_vec(), 0);
             let answer = solve(&problem, None, &settings, &mut |now| {
                 if now.record {

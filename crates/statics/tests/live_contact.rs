@@ -61,7 +61,7 @@ impl Scene {
         self
     }
 
-    fn problem(self, loads: Vec<Load>, friction: f64) -> (Problem, Arc<LiveTouch>) {
+    fn problem(self, loads: Vec<Load>, friction: f64) -> Problem {
         let Self {
             mesh,
             clamps,
@@ -82,22 +82,21 @@ impl Scene {
             voxel: SIDE,
             young: YOUNG,
         };
-        let touch = Arc::new(LiveTouch::new(description, body.rest()).unwrap());
+        let touch = LiveTouch::new(description, body.rest()).unwrap();
         let springs = frames.iter().flat_map(|(frame, first)| {
             let stiffness = frame.stiffness(&frame.vertices(), YOUNG, SIDE);
             frame.springs(*first, stiffness)
         });
         let springs = Springs(springs.collect());
         let rigid = frames.iter().map(|(_, f)| Rigid([*f, f + 1, f + 2, f + 3]));
-        let problem = Problem::new(body, clamps, loads, None)
+        Problem::new(body, clamps, loads, None)
             .unwrap()
             .with_term(Arc::new(springs))
             .unwrap()
             .with_rigid(rigid.collect())
             .unwrap()
-            .with_contact(touch.clone())
-            .unwrap();
-        (problem, touch)
+            .with_contact(Box::new(touch))
+            .unwrap()
     }
 }
 
@@ -129,8 +128,14 @@ fn mean(vectors: &[Vec3]) -> Vec3 {
 }
 
 /// The force on the body, N.
-fn force_on_body(touch: &LiveTouch, positions: &[Vec3]) -> Vec3 {
-    let pairs = touch.touch().pairs(positions);
+/// The contact of a run.
+fn live(run: &Implicit) -> &LiveTouch {
+    let contact = run.problem().contact().unwrap();
+    contact.found_by().downcast_ref().unwrap()
+}
+
+fn force_on_body(run: &Implicit) -> Vec3 {
+    let pairs = live(run).touch().pairs(&run.state().positions);
     pairs
         .iter()
         .fold([0.0; 3], |sum, pair| add(sum, pair.force))
@@ -143,7 +148,7 @@ fn what_falls_lies_on_an_object_and_gains_no_energy() {
     for (height, step) in heights.chain([(0.02, 1.0 / 600.0)]) {
         let plate = ([-0.02, -0.02, -0.01], [0.04, 0.04, 0.0]);
         let scene = Scene::of(lifted([3, 3, 3], height)).fixed(plate.0, plate.1);
-        let (problem, touch) = scene.problem(gravity(), 0.3);
+        let problem = scene.problem(gravity(), 0.3);
         let mut run = Implicit::new(problem.clone(), undamped(step));
         let weight = problem.body().total_mass() * GRAVITY;
         let mut least = f64::INFINITY;
@@ -152,10 +157,10 @@ fn what_falls_lies_on_an_object_and_gains_no_energy() {
             assert_eq!(look.status, LiveStatus::Moving, "{look:?}");
             let positions = &run.state().positions;
             // What contact is allowed within a step.
-            assert!(touch.depth(positions) < 0.05 * SIDE);
-            let touching = touch.energy(positions);
+            assert!(live(&run).depth(positions) < 0.05 * SIDE);
+            let touching = live(&run).energy(positions);
             let potential = problem.load_potential(positions, &|_| 1.0);
-            let stored = elastic::energy(problem.body(), positions) - touching;
+            let stored = elastic::energy(run.problem().body(), positions) - touching;
             let energy = look.kinetic + stored + potential;
             // A hundredth of the fall.
             assert!(
@@ -165,7 +170,7 @@ fn what_falls_lies_on_an_object_and_gains_no_energy() {
             least = least.min(energy);
         }
         let state = run.state();
-        let force = force_on_body(&touch, &state.positions);
+        let force = force_on_body(&run);
         // The rest of the shaking after a quarter of a second.
         assert!((force[2] / weight - 1.0).abs() < 1e-2, "{force:?} {weight}");
         let lowest = state.positions.iter().take(64).map(|x| x[2]);
@@ -179,7 +184,7 @@ fn on_a_slope(tangent: f64, friction: f64, step: f64, seconds: f64) -> Vec<(f64,
     let angle = tangent.atan();
     let pull = [GRAVITY * angle.sin(), 0.0, -GRAVITY * angle.cos()];
     let scene = Scene::of(block([3, 3, 3], SIDE)).fixed([-0.02, -0.02, -0.01], [0.2, 0.04, 0.0]);
-    let (problem, _) = scene.problem(vec![Load::gravity(pull)], friction);
+    let problem = scene.problem(vec![Load::gravity(pull)], friction);
     let mut run = Implicit::new(problem, undamped(step));
     let mut places = vec![];
     while run.state().time < seconds {
@@ -215,7 +220,7 @@ fn what_sticks_stays_and_what_slips_slides_as_coulomb_says() {
 }
 
 /// Two pads whose backs close on a free box, whose weight comes on then.
-fn pinched() -> (Problem, Arc<LiveTouch>) {
+fn pinched() -> Problem {
     let (pad, width) = (2.0 * SIDE, 0.012);
     let mut mesh = block([2, 3, 3], SIDE);
     join(&mut mesh, block([2, 3, 3], SIDE), [pad + width, 0.0, 0.0]);
@@ -247,7 +252,7 @@ fn pinched() -> (Problem, Arc<LiveTouch>) {
 
 #[test]
 fn what_is_pinched_is_held() {
-    let (problem, touch) = pinched();
+    let problem = pinched();
     let box_of = |run: &Implicit| mean(&run.state().positions[problem.body().rest().len() - 4..]);
     let mut run = Implicit::new(problem.clone(), undamped(1.0 / 60.0));
     run.advance(60);
@@ -257,7 +262,7 @@ fn what_is_pinched_is_held() {
     // A thousandth of a voxel in half a second, while multipliers still settle.
     let crept = norm(sub(box_of(&run), before));
     assert!(crept < 1e-3 * SIDE, "{crept:e}");
-    let held = force_on_body(&touch, &run.state().positions)[2];
+    let held = force_on_body(&run)[2];
     // The box rests on the pads, whose weight is not theirs to carry.
     assert!((-held / (0.02 * GRAVITY) - 1.0).abs() < 1e-2, "{held}");
     // It stays the box that it is.
@@ -276,7 +281,7 @@ fn threads_do_not_change_a_bit() {
     let run_on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         pool.build().unwrap().install(|| {
-            let (problem, _) = pinched();
+            let problem = pinched();
             let mut run = Implicit::new(problem, undamped(1.0 / 60.0));
             run.advance(20);
             run.state().positions.clone()

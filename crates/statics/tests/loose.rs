@@ -5,10 +5,10 @@ mod common;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::touching::{NONE, YOUNG, add_box, add_rigid, corners_of, moved, touching};
+use common::touching::{NONE, YOUNG, add_box, add_rigid, corners_of, moved, pairs_at, touching};
 use common::{block, rubber, vertices_where};
+use voxsoft_contact::touch::Surface;
 use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Surface, Touch};
 use voxsoft_solid::matrix::IDENTITY;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{Body, Clamp, Load, Mesh, Problem, Springs, Status};
@@ -52,7 +52,7 @@ fn middle(answer: &Answer, first: u32) -> Vec3 {
 }
 
 /// A cube of 10 mm that begins 5 mm above a block of 18 mm, 12 mm high.
-fn cube_on_block(friction: f64) -> (Problem, Arc<Touch>, u32) {
+fn cube_on_block(friction: f64) -> (Problem, u32) {
     let voxel = 6e-3;
     let mut mesh = block([3, 3, 2], voxel);
     let bottom = vertices_where(&mesh, |x| x[2] < 1e-9);
@@ -65,7 +65,7 @@ fn cube_on_block(friction: f64) -> (Problem, Arc<Touch>, u32) {
     let surfaces = vec![Surface::of_voxels(body.voxels(), 2), cube];
     let table = vec![vec![NONE, friction], vec![friction, NONE]];
     let loads = vec![Load::gravity([0.0, 0.0, -GRAVITY])];
-    let (problem, touch) = touching(
+    let problem = touching(
         &mesh,
         vec![Clamp::fixed(bottom)],
         loads,
@@ -73,7 +73,7 @@ fn cube_on_block(friction: f64) -> (Problem, Arc<Touch>, u32) {
         table,
         voxel,
     );
-    (with_frame(problem, &frame, first, voxel), touch, first)
+    (with_frame(problem, &frame, first, voxel), first)
 }
 
 #[test]
@@ -82,10 +82,10 @@ fn a_cube_that_starts_above_a_block_comes_to_lie_on_it() {
     // 0.3 % under the whole load, and the balance is off by as much at most.
     let off = 3e-4;
     for friction in [0.5, 0.2] {
-        let (problem, touch, first) = cube_on_block(friction);
+        let (problem, first) = cube_on_block(friction);
         let answer = settle(&problem);
         assert_eq!(answer.status, Status::AtRest, "{friction}");
-        let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
+        let [pair] = pairs_at(&problem, &answer).try_into().unwrap();
         assert!(answer.residual < off, "{} {pair:?}", answer.residual);
         assert!(answer.stable);
         let weight = MASS * GRAVITY;
@@ -99,7 +99,7 @@ fn a_cube_that_starts_above_a_block_comes_to_lie_on_it() {
 }
 
 /// A rigid block between two pads of rubber, each 6 mm thick, that close by 0.4 mm each.
-fn pinched(friction: f64) -> (Problem, Arc<Touch>, u32) {
+fn pinched(friction: f64) -> (Problem, u32) {
     let voxel = 6e-3;
     let mut mesh = block([1, 2, 2], voxel);
     let other = common::touching::join(&mut mesh, block([1, 2, 2], voxel), [16.2e-3, 0.0, 0.0]);
@@ -115,25 +115,25 @@ fn pinched(friction: f64) -> (Problem, Arc<Touch>, u32) {
     let surfaces = vec![Surface::of_voxels(body.voxels(), 2), bar];
     let table = vec![vec![NONE, friction], vec![friction, NONE]];
     let loads = vec![Load::gravity([0.0, 0.0, -GRAVITY])];
-    let (problem, touch) = touching(&mesh, clamps, loads, surfaces, table, voxel);
-    (with_frame(problem, &frame, first, voxel), touch, first)
+    let problem = touching(&mesh, clamps, loads, surfaces, table, voxel);
+    (with_frame(problem, &frame, first, voxel), first)
 }
 
 #[test]
 fn what_is_pinched_is_held_by_friction_or_falls() {
     let weight = MASS * GRAVITY;
-    let (problem, touch, first) = pinched(0.8);
+    let (problem, first) = pinched(0.8);
     let answer = settle(&problem);
     assert_eq!(answer.status, Status::AtRest, "{}", answer.residual);
-    let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
+    let [pair] = pairs_at(&problem, &answer).try_into().unwrap();
     assert!((pair.force[2] / -weight - 1.0).abs() < 1e-6, "{pair:?}");
     // It has sunk by what the pads give way, and by half a length of contact while the grip closed.
     let sunk = 6e-3 - middle(&answer, first)[2];
     assert!(sunk > 0.0 && sunk < 3e-3, "{sunk}");
-    let (problem, touch, first) = pinched(0.02);
+    let (problem, first) = pinched(0.02);
     let answer = settle(&problem);
     assert_eq!(answer.status, Status::NotAtRest, "{}", answer.residual);
-    assert!(touch.pairs(&answer.positions).is_empty());
+    assert!(pairs_at(&problem, &answer).is_empty());
     assert!(norm(sub(middle(&answer, first), [11.1e-3, 6e-3, 6e-3])) > 0.05);
 }
 
@@ -149,10 +149,10 @@ fn a_body_without_clamps_comes_to_lie_on_what_is_below() {
         let table = vec![vec![NONE, friction], vec![friction, NONE]];
         let hold = Clamp::fixed((count..count + 4).collect());
         let loads = vec![Load::gravity([0.0, 0.0, -GRAVITY])];
-        let (problem, touch) = touching(&mesh, vec![hold], loads, surfaces, table, 6e-3);
+        let problem = touching(&mesh, vec![hold], loads, surfaces, table, 6e-3);
         let answer = settle(&problem);
         assert_eq!(answer.status, Status::AtRest, "{friction}");
-        let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
+        let [pair] = pairs_at(&problem, &answer).try_into().unwrap();
         let weight = GRAVITY * problem.body().total_mass();
         assert!((pair.force[2] / weight - 1.0).abs() < 1e-6, "{pair:?}");
     }

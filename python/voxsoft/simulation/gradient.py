@@ -109,7 +109,7 @@ def gradient(
     refuse_softening(result.design, "derivatives, which depend on the way then")
     setup = Setup(result.design, result.mesh)
     taut = tuple(result.tendons[each.name].tension > 0.0 for each in setup.tendons)
-    base = _State(setup, result.positions, taut)
+    base = _State(setup, result.positions, taut=taut)
     _check_positions(base)
     _check_way(setup, result)
     varied = [_variation(base, name) for name in names]
@@ -151,7 +151,7 @@ class _State(LoadedState):
     @cached_property
     def net_forces(self) -> Floats:
         """Elastic plus external force on every vertex [N], (n, 3)."""
-        return self.setup.problem.net_forces(self.positions, [*self.taut])
+        return self.problem.net_forces(self.positions, [*self.taut])
 
     @cached_property
     def _cut(self) -> CutVoxels:
@@ -259,7 +259,7 @@ def _state_with(base: _State, design: Design, name: str) -> _State:
             "move the ends of the clamp's region away from half a voxel",
         )
     shift = held_positions(setup) - held_positions(before)
-    return _State(setup, base.positions + np.where(held, shift, 0.0), base.taut)
+    return _State(setup, base.positions + np.where(held, shift, 0.0), taut=base.taut)
 
 
 def _shapes(design: Design) -> tuple[object, ...]:

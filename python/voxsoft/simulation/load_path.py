@@ -242,6 +242,7 @@ def follow(
     tolerance = {"tolerance": method.tolerance} if isinstance(method, LoadControl) else {}
     statics = LoadControl(**tolerance)
     results: list[Result] = []
+    problem = solved.problem
     start: Start | None = None
     before: float | None = None
     share = max(1, len(instants) - 1)
@@ -258,20 +259,21 @@ def follow(
         if number < len(results):
             continue
         started = time.perf_counter()
-        own = None
         if swells:
             own = core_materials(designs[number], setup.materials, solved.mesh, solved.origin)
+            problem = problem.with_materials(own)
         used, report = find_equilibrium(
             solved,
             statics,
             progress,
-            None if own is None else solved.problem.with_materials(own),
+            problem,
             start=start,
             stretch=Stretch(before, instant, min(1.0, _LONGEST * share)),
         )
         used["refine"] = solver.refine
         result = result_of(solved, used, report, time.perf_counter() - started)
-        start, before = Start(result.positions), instant
+        # The next equilibrium goes on from all that this one remembers.
+        problem, start, before = report.answer.problem, Start(result.positions), instant
         whole = result if part is None else part.unfolded(result)
         results.append(replace(whole, design=designs[number]))
         path = LoadPath(given, asked, tuple(results))

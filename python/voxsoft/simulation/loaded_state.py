@@ -43,10 +43,18 @@ class LoadedState:
         The design made ready.
     positions
         Its vertices, (n, 3), m. The reaction supposes that they are in equilibrium.
+    at
+        The problem with what it remembers there; None where it remembers nothing.
     """
 
     setup: Setup
     positions: Floats
+    at: _core.Problem | None = None
+
+    @property
+    def problem(self) -> _core.Problem:
+        """The problem with what it remembers there."""
+        return self.at or self.setup.problem
 
     @property
     def design(self) -> Design:
@@ -66,11 +74,11 @@ class LoadedState:
     @property
     def mass(self) -> float:
         """In kg."""
-        return self.setup.problem.mass
+        return self.problem.mass
 
     @cached_property
     def _elastic(self) -> tuple[float, Floats]:
-        return self.setup.problem.elastic(self.positions)
+        return self.problem.elastic(self.positions)
 
     @property
     def elastic_energy(self) -> float:
@@ -85,12 +93,12 @@ class LoadedState:
     @cached_property
     def fields(self) -> Fields:
         """Stress and strain."""
-        return fields_of(self.design, self.mesh, self.positions, self.setup.problem)
+        return fields_of(self.design, self.mesh, self.positions, self.problem)
 
     @cached_property
     def net_forces(self) -> Floats:
         """Elastic and external force on every vertex, (n, 3), N."""
-        return self.setup.problem.net_forces(self.positions)
+        return self.problem.net_forces(self.positions)
 
     @property
     def reaction(self) -> tuple[float, float, float]:
@@ -126,7 +134,7 @@ class LoadedState:
         touching = self.setup.touching
         if touching is None:
             return ()
-        return touching.contacts(_core.contacts_at(self.setup.problem, self.positions))
+        return touching.contacts(_core.contacts_at(self.problem, self.positions))
 
     @property
     def cavity_pressures(self) -> tuple[float, ...]:
@@ -142,7 +150,7 @@ class LoadedState:
     def tendons(self) -> dict[str, TendonState]:
         """The tendons by name, as if they had been pulled here at once."""
         own = self.setup.tendons
-        found = self.setup.problem.tendons(self.positions) if own else []
+        found = self.problem.tendons(self.positions) if own else []
         return {each.name: each.state(one) for each, one in zip(own, found, strict=True)}
 
     def gap_to(self, name: str) -> float:

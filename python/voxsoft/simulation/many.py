@@ -233,8 +233,7 @@ def simulate_many(
         )
     solver = setup.design.solver
     found: list[Settled | None] = [None] * count
-    with setup.lock.held():
-        ensemble = Ensemble.of(setup) if _is_plain(solver) else None
+    ensemble = Ensemble.of(setup) if _is_plain(solver) else None
     if ensemble is not None:
         asked = tolerance or solver.tolerance or DEFAULT_STATICS_TOLERANCE
         found = ensemble.settle(chosen, factors, asked)

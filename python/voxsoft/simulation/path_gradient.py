@@ -98,8 +98,8 @@ def path_gradient(
         raise SimulationError("gradient", what, hint)
     for name, variation in variations.items():
         _check_surfaces(setup, variation, name)
-    factors = _recorded_path(setup, result)
-    ends = _ends(setup.problem, factors, list(variations.values()))
+    problem, factors = _recorded_path(setup, result)
+    ends = _ends(problem, factors, list(variations.values()))
     return {
         target_name: {
             name: _derivative(target, variation, places)
@@ -119,12 +119,11 @@ def _check_surfaces(setup: Setup, variation: Variation, name: str) -> None:
             )
 
 
-def _recorded_path(setup: Setup, result: Result) -> list[float]:
-    """The load factors of the steps of a path, which the contact of the setup has recorded."""
+def _recorded_path(setup: Setup, result: Result) -> tuple[_core.Problem, list[float]]:
+    """The problem at the end of a path that its contact has recorded, and the load factors."""
     used = result.solver
     settings = LoadControl(tolerance=used["tolerance"], first_step=used["first_step"])
-    _core.record_contact(setup.problem)
-    _, report = find_equilibrium(setup, settings, None)
+    _, report = find_equilibrium(setup, settings, None, _core.recording(setup.problem))
     off = float(np.abs(report.answer.positions - result.positions).max())
     if not off <= _SAME * setup.design.voxel_size:
         raise SimulationError(
@@ -135,7 +134,7 @@ def _recorded_path(setup: Setup, result: Result) -> list[float]:
     points = path_of(report.answer).points
     # Not that of the result: anchors of friction have come along since.
     check_residual(float(points[-1, 2]))
-    precise, slip, later = _core.recorded_contact(setup.problem)
+    precise, slip, later = _core.recorded_contact(report.answer.problem)
     if not precise:
         raise SimulationError(
             "gradient",
@@ -164,7 +163,7 @@ def _recorded_path(setup: Setup, result: Result) -> list[float]:
             f"solve with a tolerance of {LARGEST_WITH_FRICTION:g} or less",
         )
     factors: list[float] = points[:, 0].tolist()
-    return factors
+    return report.answer.problem, factors
 
 
 def has_friction(design: Design) -> bool:
@@ -192,7 +191,7 @@ def check_residual(residual: float) -> None:
 
 def _ends(
     problem: _core.Problem, factors: list[float], variations: Sequence[Variation]
-) -> list[list[Floats]]:
+) -> list[list[tuple[Floats, _core.Problem]]]:
     varied = [
         [
             (state.setup.problem, offset, weight)
@@ -203,11 +202,13 @@ def _ends(
     return _core.sensitivities(problem, factors, varied, memory=memory_limit())
 
 
-def _derivative(target: Target, variation: Variation, places: Sequence[Floats]) -> float:
+def _derivative(
+    target: Target, variation: Variation, ends: Sequence[tuple[Floats, _core.Problem]]
+) -> float:
     value = metric_named(target.metric).value
     return sum(
-        weight * value(LoadedState(state.setup, positions), target)
-        for state, weight, positions in zip(
-            variation.states, variation.weights, places, strict=True
+        weight * value(LoadedState(state.setup, positions, problem), target)
+        for state, weight, (positions, problem) in zip(
+            variation.states, variation.weights, ends, strict=True
         )
     )

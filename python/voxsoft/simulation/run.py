@@ -111,18 +111,16 @@ def simulate(
         _check_refinement(setup, settings)
     else:
         setup = Setup.of(given, allow_loose=not method.to_rest, refine=solver.refine)
-    progress = setup.lock.reported(progress)
-    with setup.lock.held():
-        started = time.perf_counter()
-        part = SectorSetup.part_of(setup)
-        solved = setup if part is None else part
-        if isinstance(method, LoadControl) and coarser is not None:
-            start = nested(coarser, solved)
-            used, report = find_equilibrium(solved, method, progress, frames=frames, start=start)
-        else:
-            used, report = method.solve(solved, Watch(progress, record_interval, frames))
-        used["refine"] = refinement(setup)
-        result = result_of(solved, used, report, time.perf_counter() - started)
+    started = time.perf_counter()
+    part = SectorSetup.part_of(setup)
+    solved = setup if part is None else part
+    if isinstance(method, LoadControl) and coarser is not None:
+        start = nested(coarser, solved)
+        used, report = find_equilibrium(solved, method, progress, frames=frames, start=start)
+    else:
+        used, report = method.solve(solved, Watch(progress, record_interval, frames))
+    used["refine"] = refinement(setup)
+    result = result_of(solved, used, report, time.perf_counter() - started)
     return result if part is None else part.unfolded(result)
 
 
@@ -146,9 +144,8 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
     refuse_refinement(setup.design, "relaxation")
     started = time.perf_counter()
     used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance, "max_steps": max_steps}
-    with setup.lock.held():
-        answer = problem.relax(tolerance=tolerance, max_steps=max_steps)
-        return result_of(setup, used, Report.of(answer), time.perf_counter() - started)
+    answer = problem.relax(tolerance=tolerance, max_steps=max_steps)
+    return result_of(setup, used, Report.of(answer), time.perf_counter() - started)
 
 
 def balance(setup: Setup, problem: _core.Problem, tolerance: float) -> Result:
@@ -164,9 +161,8 @@ def balance(setup: Setup, problem: _core.Problem, tolerance: float) -> Result:
         Largest relative residual.
     """
     started = time.perf_counter()
-    with setup.lock.held():
-        used, report = find_equilibrium(setup, LoadControl(tolerance=tolerance), None, problem)
-        return result_of(setup, used, report, time.perf_counter() - started)
+    used, report = find_equilibrium(setup, LoadControl(tolerance=tolerance), None, problem)
+    return result_of(setup, used, report, time.perf_counter() - started)
 
 
 def _settings(own: Solver, changes: dict[str, Any]) -> Solver:
@@ -253,7 +249,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
             for tendon, found in zip(setup.tendons, answer.tendons, strict=True)
         },
         supplies=() if fluids is None else fluids.states(answer.chambers),
-        peaks=setup.problem.peaks(),
+        peaks=answer.problem.peaks(),
     )
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final, TypeVar
 
@@ -49,7 +49,6 @@ from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.sector_bodies import kinds_of
 from voxsoft.simulation.sector_parts import SectorParts
 from voxsoft.simulation.sector_touching import SectorTouching
-from voxsoft.simulation.solve_lock import SolveLock
 from voxsoft.simulation.supports import clamped_vertices
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.tendons import ResolvedTendon, resolve_tendons
@@ -93,7 +92,6 @@ class Setup:
 
     design: Design
     mesh: Mesh
-    lock: SolveLock = field(default_factory=SolveLock, init=False, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return f"Setup({self.design.name!r}, {self.mesh!r})"

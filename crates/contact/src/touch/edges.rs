@@ -274,7 +274,7 @@ mod tests {
     #[test]
     fn crossed_edges_press_each_other_though_no_point_is_behind_a_face() {
         let (apart, positions) = (crossed(0.01), crossed(-0.01));
-        let touch = touch(0.0, &apart);
+        let mut touch = touch(0.0, &apart);
         touch.follow(&positions);
         assert!(touch.pairs(&positions).is_empty());
         assert!(!touch.correct(&positions, 0.0, 1.0));
@@ -290,7 +290,7 @@ mod tests {
     fn edges_keep_the_laws_of_terms() {
         // By no more than pressures that are believed take.
         let (apart, positions) = (crossed(0.05), crossed(-0.0004));
-        let touch = touch(0.0, &crossed(0.0));
+        let mut touch = touch(0.0, &crossed(0.0));
         touch.follow(&positions);
         for _ in 0..2 {
             assert!(!touch.correct(&positions, 0.0, 1.0));
@@ -303,7 +303,7 @@ mod tests {
     #[test]
     fn edges_hold_each_other_up_to_the_bound_of_friction() {
         let positions = crossed(-0.0004);
-        let touch = touch(0.4, &crossed(0.0));
+        let mut touch = touch(0.4, &crossed(0.0));
         touch.follow(&positions);
         for _ in 0..2 {
             touch.correct(&positions, 0.0, 1.0);
@@ -319,7 +319,7 @@ mod tests {
         assert!(held.pressure > 0.0 && norm(held.friction) < 1e-9 * held.pressure);
         // The first one is carried along.
         let slipping = slip(0.05);
-        let bound: f64 = touch.read().now.iter().map(|memory| memory.bound).sum();
+        let bound: f64 = touch.state.now.iter().map(|memory| memory.bound).sum();
         assert!(bound > 0.0 && (norm(slipping.friction) / bound - 1.0).abs() < 1e-9);
         assert!(slipping.friction[0] > 0.99 * norm(slipping.friction));
         assert!(slipping.slipping == 1.0 && held.slipping == 0.0);
@@ -328,9 +328,9 @@ mod tests {
     #[test]
     fn an_edge_does_not_face_what_is_behind_it() {
         let positions = crossed(-1.0);
-        let touch = touch(0.0, &positions);
+        let mut touch = touch(0.0, &positions);
         touch.correct(&positions, 0.0, 1.0);
-        let state = touch.read();
+        let state = &touch.state;
         let across = |facing: &&Option<Facing>| matches!(facing, Some(Facing::Across(..)));
         assert_eq!(state.facing.iter().filter(across).count(), 0);
     }

@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn what_lies_beside_an_inner_edge_has_not_gone_through_it() {
         let (touch, positions) = angle();
-        let mut state = touch.read().clone();
+        let mut state = touch.state.clone();
         state.accepted_points = touch.points_at(&positions);
         // The inner edge is that of the points 3 and 9, at (1, 1); its normal is along x + y.
         let (triangle, weights) = (4, [0.0, 0.5, 0.5]);

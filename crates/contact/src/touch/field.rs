@@ -57,7 +57,7 @@ impl Touch {
     /// What touches bodies at `positions`, with the multipliers of the last correction. Their vertices are the first
     /// `count`. With planes of symmetry, of all images.
     pub fn field(&self, positions: &[Vec3], count: usize, flips: &[Flip]) -> ContactField {
-        let state = self.read();
+        let state = &self.state;
         let mut pressed = vec![0.0; count];
         let mut direction = vec![[0.0; 3]; count];
         let mut friction = vec![[0.0; 3]; count];
@@ -192,7 +192,7 @@ mod tests {
             voxel: 1.0,
             young: 2.0,
         };
-        let touch = Touch::new(description, &rest).unwrap();
+        let mut touch = Touch::new(description, &rest).unwrap();
         for x in &mut rest[8..] {
             x[2] += 0.002;
         }

@@ -11,14 +11,13 @@
 //! - Candidates are listed anew only where something has moved by half of their reach, and energies and forces go through
 //!   the samples that have some.
 
+use std::any::Any;
 use std::collections::BTreeSet;
-use std::sync::atomic::Ordering;
-use std::sync::{RwLock, RwLockReadGuard};
 
 use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::brick::Tangent;
 use voxsoft_solid::vector::{Vec3, scale};
-use voxsoft_solid::{Contact, ProblemError, Term};
+use voxsoft_solid::{Contact, ContactMemory, ProblemError, Term};
 
 use super::friction::Friction;
 use super::state::{Memory, State};
@@ -36,14 +35,14 @@ const DEEPEST: f64 = 0.8 * listing::DEPTH;
 const REFUSALS: u32 = 2;
 
 /// Contact of surfaces, for live motion.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct LiveTouch {
     touch: Touch,
-    /// What it remembers beside the state of `touch`.
-    run: RwLock<Run>,
+    /// Memory beside the state of `touch`.
+    run: Run,
 }
 
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 struct Run {
     /// The samples that face something.
     near: Vec<u32>,
@@ -61,18 +60,12 @@ impl LiveTouch {
     /// Makes contact ready for a problem with the vertices `rest` (m).
     pub fn new(description: Description, rest: &[Vec3]) -> Result<Self, ProblemError> {
         let touch = Touch::new(description, rest)?.without_edges(rest);
-        let live = Self {
+        let mut live = Self {
             touch,
-            run: RwLock::default(),
+            run: Run::default(),
         };
-        Contact::start(&live, rest);
+        Contact::start(&mut live, rest);
         Ok(live)
-    }
-
-    fn set_penalty(&self, penalty: f64) {
-        self.touch
-            .penalty
-            .store(penalty.to_bits(), Ordering::Relaxed);
     }
 
     /// The contact with the multipliers of the last step: what touches, and the fields of contact.
@@ -83,22 +76,18 @@ impl LiveTouch {
     /// The same where it is more than contact lets it in a step; from then on, too, where something had to be let go that
     /// was too deep to be held.
     pub fn excess_depth(&self, positions: &[Vec3]) -> Option<f64> {
-        let depth = self.depth(positions).max(self.run().lost);
+        let depth = self.depth(positions).max(self.run.lost);
         Some(depth).filter(|depth| *depth > DEEP * self.touch.description.voxel)
     }
 
     /// How deep the deepest sample is in what it faces at `positions`, m.
     pub fn depth(&self, positions: &[Vec3]) -> f64 {
-        let state = self.touch.read();
+        let state = &self.touch.state;
         let mut deepest = 0.0f64;
-        self.each_near(&state, positions, |meeting| {
+        self.each_near(state, positions, |meeting| {
             deepest = deepest.max(-meeting.gap);
         });
         deepest
-    }
-
-    fn run(&self) -> RwLockReadGuard<'_, Run> {
-        self.run.read().expect("no holder of the lock panics")
     }
 
     fn corners(&self, triangle: u32, positions: &[Vec3]) -> [Vec3; 3] {
@@ -112,7 +101,7 @@ impl LiveTouch {
 
     /// Hands over every sample that faces something.
     fn each_near(&self, state: &State, positions: &[Vec3], mut take: impl FnMut(&Meeting)) {
-        for &sample in &self.run().near {
+        for &sample in &self.run.near {
             let Some(facing) = state.facing[sample as usize] else {
                 continue;
             };
@@ -153,7 +142,7 @@ impl LiveTouch {
         positions: &[Vec3],
         mut take: impl FnMut(u32, Friction),
     ) {
-        for &sample in &self.run().near {
+        for &sample in &self.run.near {
             if let Some(friction) = self.friction(state, sample, positions) {
                 take(sample, friction);
             }
@@ -173,14 +162,14 @@ impl LiveTouch {
     }
 
     /// Notes which samples face something, or hold on to something.
-    fn note_near(&self, state: &State) {
+    fn note_near(&mut self) {
+        let state = &self.touch.state;
         let near = |sample: &u32| {
             let sample = *sample as usize;
             state.facing[sample].is_some() || state.now[sample].bound > 0.0
         };
         let all = 0..self.touch.samples.len() as u32;
-        let mut run = self.run.write().expect("no holder of the lock panics");
-        run.near = all.filter(near).collect();
+        self.run.near = all.filter(near).collect();
     }
 
     /// What a sample remembers after a step that ended with a pressure on it.
@@ -219,55 +208,78 @@ impl Contact for LiveTouch {
         self.touch.visit_bonded(visit);
     }
 
-    fn start(&self, positions: &[Vec3]) {
-        self.set_penalty(PENALTY);
+    fn boxed(&self) -> Box<dyn Contact> {
+        Box::new(self.clone())
+    }
+
+    fn found_by(&self) -> &dyn Any {
+        self
+    }
+
+    fn found_by_mut(&mut self) -> &mut dyn Any {
+        self
+    }
+
+    fn memory(&self) -> ContactMemory {
+        let Touch { penalty, state, .. } = &self.touch;
+        ContactMemory::new((*penalty, state.clone(), self.run.clone()))
+    }
+
+    fn remember(&mut self, memory: &ContactMemory) {
+        if let Some((penalty, state, run)) = memory.get::<(f64, State, Run)>() {
+            self.touch.penalty = *penalty;
+            self.touch.state.clone_from(state);
+            self.run.clone_from(run);
+        }
+    }
+
+    fn start(&mut self, positions: &[Vec3]) {
+        self.touch.penalty = PENALTY;
         self.touch.start(positions);
-        let mut state = self.touch.write();
-        state.stick = STICK;
-        self.note_near(&state);
-        let mut run = self.run.write().expect("no holder of the lock panics");
+        self.touch.state.stick = STICK;
+        self.note_near();
+        let run = &mut self.run;
         run.borne = vec![0.0; self.touch.samples.len()];
         (run.refused, run.lost) = (0, 0.0);
         run.pattern.clear();
     }
 
-    fn follow(&self, positions: &[Vec3]) -> bool {
-        let mut state = self.touch.write();
-        let points = self.touch.points_at(positions);
-        let moved = self.touch.farthest_from_listed(&state, &points);
-        if !(moved <= listing::REACH / 2.0) {
-            self.touch.list(&mut state, points);
-            state.listed_at_rest = false;
-        }
-        let all = state.looks > 0;
-        state.looks = state.looks.saturating_sub(1);
-        self.touch.face(&mut state, positions, all);
-        self.note_near(&state);
-        let pairs = self.pairs_of_stiffness(&state, positions);
-        let mut run = self.run.write().expect("no holder of the lock panics");
-        let outgrown = !pairs.is_subset(&run.pattern);
+    fn follow(&mut self, positions: &[Vec3]) -> bool {
+        self.touch.change(|touch, state| {
+            let points = touch.points_at(positions);
+            let moved = touch.farthest_from_listed(state, &points);
+            if !(moved <= listing::REACH / 2.0) {
+                touch.list(state, points);
+                state.listed_at_rest = false;
+            }
+            let all = state.looks > 0;
+            state.looks = state.looks.saturating_sub(1);
+            touch.face(state, positions, all);
+        });
+        self.note_near();
+        let pairs = self.pairs_of_stiffness(&self.touch.state, positions);
+        let outgrown = !pairs.is_subset(&self.run.pattern);
         if outgrown {
-            run.pattern = pairs;
+            self.run.pattern = pairs;
         }
         outgrown
     }
 
-    fn look_anew(&self) {
-        self.touch.write().looks = LOOKS;
+    fn look_anew(&mut self) {
+        self.touch.state.looks = LOOKS;
     }
 
-    fn stiffen(&self, positions: &[Vec3]) -> bool {
+    fn stiffen(&mut self, positions: &[Vec3]) -> bool {
         if self.depth(positions) <= DEEP * self.touch.description.voxel {
             return false;
         }
-        let penalty = f64::from_bits(self.touch.penalty.load(Ordering::Relaxed));
-        self.set_penalty(STIFFER * penalty);
+        self.touch.penalty *= STIFFER;
         true
     }
 
-    fn correct(&self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
+    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
         let settled = self.touch.correct(positions, negligible, precision);
-        self.touch.write().stick = STICK;
+        self.touch.state.stick = STICK;
         settled
     }
 
@@ -276,7 +288,7 @@ impl Contact for LiveTouch {
     }
 
     /// Bonds do not move live: designs with them wait for a solution.
-    fn let_go(&self, _positions: &[Vec3]) -> bool {
+    fn let_go(&mut self, _positions: &[Vec3]) -> bool {
         false
     }
 
@@ -285,67 +297,59 @@ impl Contact for LiveTouch {
     }
 
     /// A step begins with the multipliers that the last one ended with.
-    fn extrapolate(&self, _ratio: f64) {}
+    fn extrapolate(&mut self, _ratio: f64) {}
 
-    fn accept(&self, positions: &[Vec3]) {
+    fn accept(&mut self, positions: &[Vec3]) {
         self.touch.accept(positions);
-        self.note_near(&self.touch.read());
+        self.note_near();
     }
 
-    fn take_step(&self, positions: &[Vec3]) -> bool {
+    fn take_step(&mut self, positions: &[Vec3]) -> bool {
         let depth = self.depth(positions);
-        if depth > DEEPEST * self.touch.description.voxel {
-            let mut run = self.run.write().expect("no holder of the lock panics");
-            run.refused += 1;
-            if run.refused <= REFUSALS {
+        let deepest = DEEPEST * self.touch.description.voxel;
+        if depth > deepest {
+            self.run.refused += 1;
+            if self.run.refused <= REFUSALS {
                 return false;
             }
-            run.lost = run.lost.max(depth);
+            self.run.lost = self.run.lost.max(depth);
         }
-        let mut state = self.touch.write();
         let mut moved = vec![Memory::default(); self.touch.samples.len()];
         let mut pressures = vec![0.0; moved.len()];
-        let deepest = DEEPEST * self.touch.description.voxel;
-        let borne = std::mem::take(
-            &mut self
-                .run
-                .write()
-                .expect("no holder of the lock panics")
-                .borne,
-        );
-        self.each_pressed(&state, positions, |meeting, pressure| {
+        let state = &self.touch.state;
+        self.each_pressed(state, positions, |meeting, pressure| {
             let sample = meeting.sample as usize;
             if -meeting.gap > deepest {
-                return; // It is let go, and told of.
+                return; // It is let go, and `excess_depth` says so.
             }
             pressures[sample] = pressure;
-            let both = (pressure, borne[sample]);
-            moved[sample] = self.remembered(&state, meeting, both, positions);
+            let both = (pressure, self.run.borne[sample]);
+            moved[sample] = self.remembered(state, meeting, both, positions);
         });
-        state.accepted_points = self.touch.points_at(positions);
+        let points = self.touch.points_at(positions);
+        let state = &mut self.touch.state;
+        state.accepted_points = points;
         state.accepted.clone_from(&moved);
         state.now = moved;
         state.looks = LOOKS;
-        drop(state);
-        self.set_penalty(PENALTY);
-        let mut run = self.run.write().expect("no holder of the lock panics");
-        (run.borne, run.refused) = (pressures, 0);
+        self.touch.penalty = PENALTY;
+        (self.run.borne, self.run.refused) = (pressures, 0);
         true
     }
 
     fn is_touching(&self, positions: &[Vec3]) -> bool {
-        let state = self.touch.read();
+        let state = &self.touch.state;
         let mut touching = false;
-        self.each_pressed(&state, positions, |_, _| touching = true);
+        self.each_pressed(state, positions, |_, _| touching = true);
         touching
     }
 
-    fn go_back(&self) {
-        let mut state = self.touch.write();
+    fn go_back(&mut self) {
+        let state = &mut self.touch.state;
         state.now = state.accepted.clone();
         state.looks = LOOKS;
-        self.set_penalty(PENALTY);
-        self.note_near(&state);
+        self.touch.penalty = PENALTY;
+        self.note_near();
     }
 }
 
@@ -359,28 +363,28 @@ impl Term for LiveTouch {
     }
 
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
-        for &pair in &self.run().pattern {
+        for &pair in &self.run.pattern {
             self.touch.visit_pair(pair, visit);
         }
     }
 
     fn energy(&self, positions: &[Vec3]) -> f64 {
-        let state = self.touch.read();
+        let state = &self.touch.state;
         let mut energy = 0.0;
-        self.each_pressed(&state, positions, |meeting, pressure| {
+        self.each_pressed(state, positions, |meeting, pressure| {
             energy += pressure * pressure / (2.0 * self.touch.penalty(meeting.sample));
         });
-        self.each_friction(&state, positions, |_, friction| energy += friction.energy);
+        self.each_friction(state, positions, |_, friction| energy += friction.energy);
         energy
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        let state = self.touch.read();
-        self.each_pressed(&state, positions, |meeting, pressure| {
+        let state = &self.touch.state;
+        self.each_pressed(state, positions, |meeting, pressure| {
             let force = scale(pressure, meeting.normal);
             self.touch.add_force(force, meeting.spot(), forces);
         });
-        self.each_friction(&state, positions, |sample, friction| {
+        self.each_friction(state, positions, |sample, friction| {
             self.touch
                 .add_force(friction.force, friction.spot(sample), forces);
         });
@@ -393,14 +397,14 @@ impl Term for LiveTouch {
     /// Without how normals turn under pressures, whatever is asked for: so it is positive, and serves longer. Pairs for
     /// which the pattern has no room are left out; the search learns of them as it goes.
     fn visit_tangent(&self, positions: &[Vec3], _: Tangent, visit: Visitor<'_>) {
-        let state = self.touch.read();
-        let pattern = self.run().pattern.clone();
-        self.each_pressed(&state, positions, |meeting, _| {
+        let state = &self.touch.state;
+        let pattern = &self.run.pattern;
+        self.each_pressed(state, positions, |meeting, _| {
             if pattern.contains(&(meeting.sample, meeting.triangle)) {
                 self.touch.visit_gap(meeting, 0.0, &[], visit);
             }
         });
-        self.each_friction(&state, positions, |sample, friction| {
+        self.each_friction(state, positions, |sample, friction| {
             if pattern.contains(&(sample, friction.anchor.0)) {
                 self.touch.visit_friction(sample, &friction, visit);
             }

@@ -40,9 +40,6 @@ mod state;
 pub(crate) mod surface;
 mod term;
 
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
-
 use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
 use voxsoft_solid::{Contact, ProblemError};
 
@@ -107,7 +104,7 @@ pub struct Description {
 }
 
 /// Contact of surfaces.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Touch {
     description: Description,
     samples: Vec<Sample>,
@@ -139,11 +136,9 @@ pub struct Touch {
     around: Vec<Vec<u32>>,
     /// For each sample the ties that it is in, with the surface that they are to.
     ties_at: Vec<Vec<(u32, u32)>>,
-    /// The penalty in units of Young's modulus over the voxel size, as the bits of a number: live contact changes it.
-    penalty: AtomicU64,
-    state: RwLock<State>,
-    /// The copy of it that was asked for.
-    saved: RwLock<Option<State>>,
+    /// The penalty in units of Young's modulus over the voxel size, which live contact changes.
+    penalty: f64,
+    state: State,
 }
 
 /// A sample and what it is in front of.
@@ -290,12 +285,11 @@ impl Touch {
             surface_of,
             around,
             ties_at: Vec::new(),
-            penalty: AtomicU64::new(PENALTY.to_bits()),
-            state: RwLock::default(),
-            saved: RwLock::default(),
+            penalty: PENALTY,
+            state: State::default(),
         };
         touch.ties_at = touch.ties_at(&first_sample, touch.points.len());
-        Contact::start(&touch, rest);
+        Contact::start(&mut touch, rest);
         Ok(touch)
     }
 
@@ -315,7 +309,7 @@ impl Touch {
     pub fn with_still(mut self, still: Vec<[bool; 3]>, rest: &[Vec3]) -> Self {
         let points = self.points_at(rest);
         let near = |point: &u32| {
-            let facing = self.read().facing[*point as usize];
+            let facing = self.state.facing[*point as usize];
             let meeting = facing.and_then(|facing| self.meeting(*point, facing, &points));
             meeting.is_some_and(|meeting| meeting.gap < self.clearance(*point))
         };
@@ -359,7 +353,7 @@ impl Touch {
     /// Leaves edges to themselves: only points are kept out of surfaces.
     pub(super) fn without_edges(mut self, rest: &[Vec3]) -> Self {
         self.samples.truncate(self.points.len());
-        Contact::start(&self, rest);
+        Contact::start(&mut self, rest);
         self
     }
 
@@ -374,12 +368,12 @@ impl Touch {
         self.shares.get(point).unwrap_or(&self.points[point])
     }
 
-    fn read(&self) -> RwLockReadGuard<'_, State> {
-        self.state.read().expect("no holder of the lock panics")
-    }
-
-    fn write(&self) -> RwLockWriteGuard<'_, State> {
-        self.state.write().expect("no holder of the lock panics")
+    /// Changes the state by what the surfaces say of it.
+    fn change<T>(&mut self, act: impl FnOnce(&Self, &mut State) -> T) -> T {
+        let mut state = std::mem::take(&mut self.state);
+        let outcome = act(self, &mut state);
+        self.state = state;
+        outcome
     }
 
     fn points_at(&self, positions: &[Vec3]) -> Vec<Vec3> {
@@ -402,8 +396,7 @@ impl Touch {
 
     /// N/m; both sides of a contact have samples.
     fn penalty(&self, sample: u32) -> f64 {
-        let penalty = f64::from_bits(self.penalty.load(Ordering::Relaxed));
-        let per_area = penalty * self.description.young / self.description.voxel;
+        let per_area = self.penalty * self.description.young / self.description.voxel;
         per_area * self.stiff_area(sample) / 2.0
     }
 

@@ -1,9 +1,10 @@
 //! Contact along a load path: who faces whom, corrections of multipliers, anchors that come along.
 
+use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet};
 
-use voxsoft_solid::Contact;
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
+use voxsoft_solid::{Contact, ContactMemory};
 
 use super::bonds::Hold;
 use super::gap::{self, normal};
@@ -23,6 +24,28 @@ const MANY: usize = 100;
 const LONGEST_EXTRAPOLATION: f64 = 2.0;
 
 impl Contact for Touch {
+    fn boxed(&self) -> Box<dyn Contact> {
+        Box::new(self.clone())
+    }
+
+    fn found_by(&self) -> &dyn Any {
+        self
+    }
+
+    fn found_by_mut(&mut self) -> &mut dyn Any {
+        self
+    }
+
+    fn memory(&self) -> ContactMemory {
+        ContactMemory::new(self.state.clone())
+    }
+
+    fn remember(&mut self, memory: &ContactMemory) {
+        if let Some(state) = memory.get::<State>() {
+            self.state.clone_from(state);
+        }
+    }
+
     fn visit_bonded(&self, visit: &mut dyn FnMut(u32)) {
         for (_, tie) in self.ties() {
             for side in [&tie.first, &tie.second] {
@@ -31,107 +54,111 @@ impl Contact for Touch {
         }
     }
 
-    fn start(&self, positions: &[Vec3]) {
-        let points = self.points_at(positions);
-        let nothing = vec![Memory::default(); self.samples.len()];
-        let untouched = vec![Hold::default(); self.ties().count()];
-        let mut state = self.write();
-        *state = State {
-            accepted_points: points.clone(),
-            accepted_facing: vec![None; self.samples.len()],
-            accepted: nothing.clone(),
-            before: nothing.clone(),
-            now: nothing,
-            accepted_holds: untouched.clone(),
-            holds: untouched,
-            stick: STICK[0],
-            crept: f64::INFINITY,
-            recording: state.recording.is_some().then(Recording::default),
-            ..State::default()
-        };
-        self.list_from_accepted(&mut state, points);
-        self.face(&mut state, positions, true);
+    fn start(&mut self, positions: &[Vec3]) {
+        self.change(|touch, state| {
+            let points = touch.points_at(positions);
+            let nothing = vec![Memory::default(); touch.samples.len()];
+            let untouched = vec![Hold::default(); touch.ties().count()];
+            *state = State {
+                accepted_points: points.clone(),
+                accepted_facing: vec![None; touch.samples.len()],
+                accepted: nothing.clone(),
+                before: nothing.clone(),
+                now: nothing,
+                accepted_holds: untouched.clone(),
+                holds: untouched,
+                stick: STICK[0],
+                crept: f64::INFINITY,
+                recording: state.recording.is_some().then(Recording::default),
+                ..State::default()
+            };
+            touch.list_from_accepted(state, points);
+            touch.face(state, positions, true);
+        })
     }
 
-    fn follow(&self, positions: &[Vec3]) -> bool {
-        let mut state = self.write();
-        let points = self.points_at(positions);
-        if !(self.farthest_from_listed(&state, &points) <= listing::REACH / 2.0) {
-            self.list(&mut state, points);
-            state.listed_at_rest = false;
-        }
-        let all = state.looks > 0;
-        state.looks = state.looks.saturating_sub(1);
-        self.face(&mut state, positions, all);
-        let before = state.pattern.len();
-        let pairs = self.pairs_of_stiffness(&state, positions);
-        state.pattern.extend(pairs);
-        let shrank = std::mem::take(&mut state.pattern_shrank);
-        state.pattern.len() > before || shrank
-    }
-
-    fn look_anew(&self) {
-        self.write().looks = LOOKS;
-    }
-
-    fn correct(&self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
-        let mut state = self.write();
-        state.keep_moment(positions);
-        let now = self.corrected(&state, positions);
-        state.corrections += 1;
-        let patient = state.corrections <= PATIENCE;
-        let mut largest =
-            self.off_bounds(&state.now, &now, BOUND[usize::from(!patient)], negligible);
-        let mut farthest = 0.0f64;
-        for (sample, (old, new)) in state.now.iter().zip(&now).enumerate() {
-            if old == new {
-                continue;
+    fn follow(&mut self, positions: &[Vec3]) -> bool {
+        self.change(|touch, state| {
+            let points = touch.points_at(positions);
+            if !(touch.farthest_from_listed(state, &points) <= listing::REACH / 2.0) {
+                touch.list(state, points);
+                state.listed_at_rest = false;
             }
-            let unit = self.penalty(sample as u32) * self.description.voxel;
-            let pressed = (new.normal - old.normal) / unit;
-            let crept = norm(sub(new.friction, old.friction)) / (state.stick * unit);
-            largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
-            farthest = farthest.max(crept / CREEP);
-        }
-        let (holds, off) = self.corrected_ties(&state, positions);
-        largest = largest.max(farthest).max(off);
-        let enough = if state.corrections <= PRECISE {
-            precision
-        } else {
-            1.0
-        };
-        if farthest > enough && farthest > state.crept / STIFFER {
-            state.stick = (STIFFER * state.stick).min(STICK[1]);
-        }
-        state.crept = farthest;
-        // The forces of a settled state are those of its equilibrium, not of multipliers that came after.
-        // Edges look once points have settled: where these are still too deep, the edges beside them are so too.
-        let settled = largest <= enough && !(patient && self.face_edges(&mut state, positions));
-        if settled {
-            state.settle_moment(enough <= precision);
-        } else {
-            state.now = now;
-            state.holds = holds;
-            state.looks = u32::from(patient);
-        }
-        settled
+            let all = state.looks > 0;
+            state.looks = state.looks.saturating_sub(1);
+            touch.face(state, positions, all);
+            let before = state.pattern.len();
+            let pairs = touch.pairs_of_stiffness(state, positions);
+            state.pattern.extend(pairs);
+            let shrank = std::mem::take(&mut state.pattern_shrank);
+            state.pattern.len() > before || shrank
+        })
+    }
+
+    fn look_anew(&mut self) {
+        self.state.looks = LOOKS;
+    }
+
+    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
+        self.change(|touch, state| {
+            state.keep_moment(positions);
+            let now = touch.corrected(state, positions);
+            state.corrections += 1;
+            let patient = state.corrections <= PATIENCE;
+            let mut largest =
+                touch.off_bounds(&state.now, &now, BOUND[usize::from(!patient)], negligible);
+            let mut farthest = 0.0f64;
+            for (sample, (old, new)) in state.now.iter().zip(&now).enumerate() {
+                if old == new {
+                    continue;
+                }
+                let unit = touch.penalty(sample as u32) * touch.description.voxel;
+                let pressed = (new.normal - old.normal) / unit;
+                let crept = norm(sub(new.friction, old.friction)) / (state.stick * unit);
+                largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
+                farthest = farthest.max(crept / CREEP);
+            }
+            let (holds, off) = touch.corrected_ties(state, positions);
+            largest = largest.max(farthest).max(off);
+            let enough = if state.corrections <= PRECISE {
+                precision
+            } else {
+                1.0
+            };
+            if farthest > enough && farthest > state.crept / STIFFER {
+                state.stick = (STIFFER * state.stick).min(STICK[1]);
+            }
+            state.crept = farthest;
+            // The forces of a settled state are those of its equilibrium, not of multipliers that came after.
+            // Edges look once points have settled: where these are still too deep, the edges beside them are so too.
+            let settled = largest <= enough && !(patient && touch.face_edges(state, positions));
+            if settled {
+                state.settle_moment(enough <= precision);
+            } else {
+                state.now = now;
+                state.holds = holds;
+                state.looks = u32::from(patient);
+            }
+            settled
+        })
     }
 
     fn length(&self) -> f64 {
         self.description.voxel
     }
 
-    fn let_go(&self, positions: &[Vec3]) -> bool {
-        let mut state = self.write();
-        let any = self.break_ties(&mut state, positions);
-        if any {
-            // What held until now may touch.
-            let points = self.points_at(positions);
-            self.list(&mut state, points);
-            (state.listed_at_rest, state.corrections) = (false, 0);
-            state.looks = LOOKS;
-        }
-        any
+    fn let_go(&mut self, positions: &[Vec3]) -> bool {
+        self.change(|touch, state| {
+            let any = touch.break_ties(state, positions);
+            if any {
+                // What held until now may touch.
+                let points = touch.points_at(positions);
+                touch.list(state, points);
+                (state.listed_at_rest, state.corrections) = (false, 0);
+                state.looks = LOOKS;
+            }
+            any
+        })
     }
 
     fn depends_on_way(&self) -> bool {
@@ -145,67 +172,53 @@ impl Contact for Touch {
                 .any(|bond| bond.strength.is_finite())
     }
 
-    fn accept(&self, positions: &[Vec3]) {
-        let mut state = self.write();
-        let moved = self.carried_on(&state, positions);
-        state.keep_step();
-        let pairs = self.pairs_of_stiffness(&state, positions);
-        if state.pattern.len() > WASTE * pairs.len().max(MANY) {
-            state.pattern = pairs;
-            state.pattern_shrank = true;
-        }
-        let points = self.points_at(positions);
-        state.accepted_points.clone_from(&points);
-        state.accepted_facing = state.facing.clone();
-        state.before = std::mem::replace(&mut state.accepted, moved.clone());
-        state.now = moved;
-        state.accepted_holds = state.holds.clone();
-        (state.crept, state.corrections) = (f64::INFINITY, 0);
-        self.list_from_accepted(&mut state, points);
+    fn accept(&mut self, positions: &[Vec3]) {
+        self.change(|touch, state| {
+            let moved = touch.carried_on(state, positions);
+            state.keep_step();
+            let pairs = touch.pairs_of_stiffness(state, positions);
+            if state.pattern.len() > WASTE * pairs.len().max(MANY) {
+                state.pattern = pairs;
+                state.pattern_shrank = true;
+            }
+            let points = touch.points_at(positions);
+            state.accepted_points.clone_from(&points);
+            state.accepted_facing = state.facing.clone();
+            state.before = std::mem::replace(&mut state.accepted, moved.clone());
+            state.now = moved;
+            state.accepted_holds = state.holds.clone();
+            (state.crept, state.corrections) = (f64::INFINITY, 0);
+            touch.list_from_accepted(state, points);
+        })
     }
 
-    fn go_back(&self) {
-        let mut state = self.write();
-        state.drop_step();
-        state.extrapolated = None;
-        state.now = state.accepted.clone();
-        state.facing = state.accepted_facing.clone();
-        if state
-            .holds
-            .iter()
-            .zip(&state.accepted_holds)
-            .any(|(a, b)| a.broken != b.broken)
-        {
-            state.listed_at_rest = false;
-        }
-        state.holds = state.accepted_holds.clone();
-        (state.stick, state.crept, state.corrections) = (STICK[0], f64::INFINITY, 0);
-        let points = state.accepted_points.clone();
-        self.list_from_accepted(&mut state, points);
-    }
-
-    fn save(&self) {
-        let copy = self.read().clone();
-        *self.saved.write().expect("no holder of the lock panics") = Some(copy);
-    }
-
-    fn restore(&self) {
-        let saved = self
-            .saved
-            .write()
-            .expect("no holder of the lock panics")
-            .take();
-        if let Some(saved) = saved {
-            *self.write() = saved;
-        }
+    fn go_back(&mut self) {
+        self.change(|touch, state| {
+            state.drop_step();
+            state.extrapolated = None;
+            state.now = state.accepted.clone();
+            state.facing = state.accepted_facing.clone();
+            if state
+                .holds
+                .iter()
+                .zip(&state.accepted_holds)
+                .any(|(a, b)| a.broken != b.broken)
+            {
+                state.listed_at_rest = false;
+            }
+            state.holds = state.accepted_holds.clone();
+            (state.stick, state.crept, state.corrections) = (STICK[0], f64::INFINITY, 0);
+            let points = state.accepted_points.clone();
+            touch.list_from_accepted(state, points);
+        })
     }
 
     fn is_recorded(&self) -> bool {
-        self.read().recording.is_some()
+        self.state.recording.is_some()
     }
 
-    fn extrapolate(&self, ratio: f64) {
-        let mut state = self.write();
+    fn extrapolate(&mut self, ratio: f64) {
+        let state = &mut self.state;
         state.extrapolated = Some(ratio);
         let ratio = ratio.min(LONGEST_EXTRAPOLATION);
         let State {
@@ -213,7 +226,7 @@ impl Contact for Touch {
             accepted,
             before,
             ..
-        } = &mut *state;
+        } = state;
         for (now, (last, before)) in now.iter_mut().zip(accepted.iter().zip(before)) {
             if !(last.normal > 0.0 && before.normal > 0.0) {
                 continue;

@@ -10,49 +10,22 @@
 //! less `k ∂g·δ` where a sample was pressed, none elsewhere (a semi-smooth Newton method; Hintermüller, Ito and Kunisch 2002,
 //! doi 10.1137/S1052623401383558). The equilibrium is the same.
 
-use voxsoft_solid::Strain;
-use voxsoft_solid::Term;
-use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::vector::{Vec3, axpy, dot};
 
 use super::Touch;
 
-/// The pressure of every sample in N, to first order, where a step ends.
-pub(super) struct PredictedPressures<'a> {
-    touch: &'a Touch,
-    pressures: Vec<f64>,
-}
-
-impl<'a> PredictedPressures<'a> {
-    /// Those that a step `moves` (m) from `positions` leads to.
-    pub fn new(touch: &'a Touch, positions: &[Vec3], moves: &[Vec3]) -> Self {
-        let mut pressures = vec![0.0; touch.samples.len()];
-        let state = touch.read();
-        touch.each_contact(&state, positions, |meeting, pressure, _| {
+impl Touch {
+    /// The pressure of every sample in N, to first order, where a step `moves` (m) from `positions` ends.
+    pub(super) fn predicted_pressures(&self, positions: &[Vec3], moves: &[Vec3]) -> Vec<f64> {
+        let mut pressures = vec![0.0; self.samples.len()];
+        self.each_contact(&self.state, positions, |meeting, pressure, _| {
             let mut relative = [0.0; 3];
-            for (factor, point) in touch.relative(meeting.spot()) {
-                axpy(
-                    &mut relative,
-                    factor,
-                    touch.points[point as usize].at(moves),
-                );
+            for (factor, point) in self.relative(meeting.spot()) {
+                axpy(&mut relative, factor, self.points[point as usize].at(moves));
             }
-            let closing = touch.penalty(meeting.sample) * dot(meeting.normal, relative);
+            let closing = self.penalty(meeting.sample) * dot(meeting.normal, relative);
             pressures[meeting.sample as usize] = (pressure - closing).max(0.0);
         });
-        Self { touch, pressures }
-    }
-}
-
-impl Strain for PredictedPressures<'_> {
-    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        self.touch.add_forces(positions, forces);
-    }
-
-    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        let state = self.touch.read();
-        let predicted = |sample: usize, _| self.pressures[sample];
-        self.touch
-            .visit_stiffness_under(&state, positions, predicted, visit);
+        pressures
     }
 }

@@ -12,7 +12,7 @@ use super::{CREEP, Touch};
 const FLUSH: f64 = 1.0 - 1e-6;
 
 /// What all samples held at an equilibrium, before it corrected them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Held {
     now: Vec<Memory>,
     facing: Vec<Option<Facing>>,
@@ -22,7 +22,7 @@ pub struct Held {
 }
 
 /// A path as far as it was recorded.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Recording {
     accepted: Vec<Moment<Held>>,
     /// Since the last accepted state.
@@ -78,12 +78,12 @@ impl State {
 impl RecordedContact for Touch {
     type Memory = Held;
 
-    fn record(&self) {
-        self.write().recording = Some(Recording::default());
+    fn record(&mut self) {
+        self.state.recording = Some(Recording::default());
     }
 
-    fn take_recorded(&self) -> Vec<Moment<Held>> {
-        let recording = self.write().recording.take();
+    fn take_recorded(&mut self) -> Vec<Moment<Held>> {
+        let recording = self.state.recording.take();
         let mut moments = recording.map_or_else(Vec::new, |recording| recording.accepted);
         for moment in &mut moments {
             self.turn_with_planes(moment);
@@ -91,25 +91,26 @@ impl RecordedContact for Touch {
         moments
     }
 
-    fn recall(&self, moment: &Moment<Held>) -> bool {
+    fn recall(&mut self, moment: &Moment<Held>) -> bool {
         self.face_as(moment);
-        let mut state = self.write();
-        state.now.clone_from(&moment.memory.now);
-        state.retraces = true;
-        let pairs = self.pairs_of_stiffness(&state, &moment.positions);
-        let before = state.pattern.len();
-        state.pattern.extend(pairs);
-        state.pattern.len() > before
+        self.change(|touch, state| {
+            state.now.clone_from(&moment.memory.now);
+            state.retraces = true;
+            let pairs = touch.pairs_of_stiffness(state, &moment.positions);
+            let before = state.pattern.len();
+            state.pattern.extend(pairs);
+            state.pattern.len() > before
+        })
     }
 
-    fn face_as(&self, moment: &Moment<Held>) {
-        let mut state = self.write();
+    fn face_as(&mut self, moment: &Moment<Held>) {
+        let state = &mut self.state;
         state.facing.clone_from(&moment.memory.facing);
         state.stick = moment.memory.stick;
     }
 
     fn follow_on(
-        group: &[&Self],
+        group: &mut [&mut Self],
         positions: &[Vec<Vec3>],
         moment: &Moment<Held>,
         next: Option<&Moment<Held>>,
@@ -117,8 +118,8 @@ impl RecordedContact for Touch {
         let since = |memory: &Memory| memory.since;
         let given: Vec<f64> =
             next.map_or_else(Vec::new, |next| next.memory.now.iter().map(since).collect());
-        for (touch, positions) in group.iter().zip(positions) {
-            touch.write().given_since.clone_from(&given);
+        for (touch, positions) in group.iter_mut().zip(positions) {
+            touch.state.given_since.clone_from(&given);
             touch.follow_to(positions, moment.settled);
             if moment.settled
                 && let Some(ratio) = next.and_then(|next| next.memory.extrapolated)
@@ -127,7 +128,7 @@ impl RecordedContact for Touch {
             }
         }
         let Some(next) = next else { return };
-        let mut states: Vec<_> = group.iter().map(|touch| touch.write()).collect();
+        let mut states: Vec<_> = group.iter_mut().map(|touch| &mut touch.state).collect();
         for (sample, own) in next.memory.now.iter().enumerate() {
             let mut of_sample: Vec<&mut Memory> = states
                 .iter_mut()
@@ -179,14 +180,14 @@ fn bring_around(around: &mut [&mut Memory], own: &Memory) {
 
 impl Touch {
     /// Corrects what samples hold, or where contact has `settled` accepts the state.
-    fn follow_to(&self, positions: &[Vec3], settled: bool) {
-        let points = self.points_at(positions);
-        let mut state = self.write();
+    fn follow_to(&mut self, positions: &[Vec3], settled: bool) {
         if !settled {
-            state.now = self.corrected(&state, positions);
+            self.state.now = self.corrected(&self.state, positions);
             return;
         }
-        let moved = self.carried_on(&state, positions);
+        let points = self.points_at(positions);
+        let moved = self.carried_on(&self.state, positions);
+        let state = &mut self.state;
         state.accepted_points = points;
         state.before = std::mem::replace(&mut state.accepted, moved.clone());
         state.now = moved;
@@ -203,7 +204,7 @@ impl Touch {
 
     /// Whether contact has settled as precisely as was asked for in all recorded steps.
     pub fn recorded_precisely(&self) -> bool {
-        let state = self.read();
+        let state = &self.state;
         let mut moments = state
             .recording
             .iter()
@@ -214,7 +215,7 @@ impl Touch {
     /// The largest part of the pressure between surfaces with friction under which something has slipped, of the recorded
     /// steps: by more than what sticks may creep.
     pub fn recorded_slip(&self) -> f64 {
-        let state = self.read();
+        let state = &self.state;
         let moments = state
             .recording
             .iter()
@@ -226,7 +227,7 @@ impl Touch {
     /// The largest part of the pressure between surfaces with friction on what was not yet in contact after the first of the
     /// recorded steps.
     pub fn recorded_touching_later(&self) -> f64 {
-        let state = self.read();
+        let state = &self.state;
         let moments = state
             .recording
             .iter()

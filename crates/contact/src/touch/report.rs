@@ -59,7 +59,7 @@ impl Touch {
     /// What touches at `positions`, with the multipliers of the last correction; ascending. With planes of symmetry what
     /// counts of it, to which the caller adds the images.
     pub fn pairs(&self, positions: &[Vec3]) -> Vec<PairReport> {
-        let state = self.read();
+        let state = &self.state;
         let mut found: BTreeMap<[u32; 2], (PairReport, [f64; 2])> = BTreeMap::new();
         let mut pressed_samples = vec![false; self.samples.len()];
         self.each_contact(&state, positions, |meeting, pressure, points| {

@@ -50,7 +50,7 @@ impl Facing {
 }
 
 /// The state of all samples.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct State {
     /// The points of all surfaces at the last accepted state, m.
     pub accepted_points: Vec<Vec3>,

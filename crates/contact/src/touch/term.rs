@@ -8,7 +8,6 @@ use voxsoft_solid::{ProblemError, Strain, Term};
 
 use super::friction::Friction;
 use super::gap::{barycentric_gradients, crossing};
-use super::predicted::PredictedPressures;
 use super::state::{Facing, State};
 use super::{Meeting, Spot, Touch, edges};
 
@@ -30,7 +29,7 @@ impl Term for Touch {
     }
 
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
-        for &pair in &self.read().pattern {
+        for &pair in &self.state.pattern {
             self.visit_pair(pair, visit);
         }
         for (_, tie) in self.ties() {
@@ -39,28 +38,28 @@ impl Term for Touch {
     }
 
     fn energy(&self, positions: &[Vec3]) -> f64 {
-        let state = self.read();
+        let state = &self.state;
         let mut energy = 0.0;
-        self.each_contact(&state, positions, |meeting, pressure, _| {
+        self.each_contact(state, positions, |meeting, pressure, _| {
             energy += pressure * pressure / (2.0 * self.penalty(meeting.sample));
         });
-        self.each_friction(&state, positions, |_, friction| energy += friction.energy);
-        self.each_tie(&state, positions, |_, tie, force| {
+        self.each_friction(state, positions, |_, friction| energy += friction.energy);
+        self.each_tie(state, positions, |_, tie, force| {
             energy += dot(force, force) / (2.0 * self.tie_penalty(tie));
         });
         energy
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        let state = self.read();
-        self.each_contact(&state, positions, |meeting, pressure, _| {
+        let state = &self.state;
+        self.each_contact(state, positions, |meeting, pressure, _| {
             let force = scale(pressure, meeting.normal);
             self.add_force(force, meeting.spot(), forces);
         });
-        self.each_friction(&state, positions, |sample, friction| {
+        self.each_friction(state, positions, |sample, friction| {
             self.add_force(friction.force, friction.spot(sample), forces);
         });
-        self.each_tie(&state, positions, |_, tie, force| {
+        self.each_tie(state, positions, |_, tie, force| {
             tie.first.add_force(1.0, force, forces);
             tie.second.add_force(-1.0, force, forces);
         });
@@ -71,7 +70,7 @@ impl Term for Touch {
     }
 
     fn visit_tangent(&self, positions: &[Vec3], tangent: Tangent, visit: Visitor<'_>) {
-        let state = self.read();
+        let state = &self.state;
         let believed = |sample: usize, pressure: f64| {
             let more = SPURIOUS * self.description.young * self.stiff_area(sample as u32);
             match tangent {
@@ -80,11 +79,17 @@ impl Term for Touch {
                 Tangent::Stressless => 0.0,
             }
         };
-        self.visit_stiffness_under(&state, positions, believed, visit);
+        self.visit_stiffness_under(state, positions, believed, visit);
     }
 
-    fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
-        Some(Box::new(PredictedPressures::new(self, positions, moves)))
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
+        Some(Strain::Numbers(self.predicted_pressures(positions, moves)))
+    }
+
+    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+        let pressures = strain.numbers();
+        let predicted = |sample: usize, _| pressures[sample];
+        self.visit_stiffness_under(&self.state, positions, predicted, visit);
     }
 }
 

@@ -207,13 +207,15 @@ impl Check<'_> {
             return Ok(());
         };
         let mut forces = still.clone();
-        strain.add_forces(x, &mut forces);
+        self.term.add_predicted_forces(&strain, x, &mut forces);
         let expected = self.forces(x);
         let (off, allowed) = (distance(&forces, &expected), ROUNDING * size(&expected));
         self.subject
             .at_most(law, "the force of strains at hand", off, allowed)?;
         let direction = random(x.len(), 7);
-        let product = product_of(&direction, |visit| strain.visit_stiffness(x, visit));
+        let product = product_of(&direction, |visit| {
+            self.term.visit_predicted_stiffness(&strain, x, visit);
+        });
         let expected = self.stiffness_times(x, &direction);
         let (off, allowed) = (distance(&product, &expected), ROUNDING * size(&expected));
         self.subject

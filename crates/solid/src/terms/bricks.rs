@@ -143,20 +143,13 @@ impl Bricks {
     }
 
     /// The strains at `positions` with other pressures in Pa, one for each voxel.
-    pub(crate) fn with_pressures<'a>(
-        &'a self,
-        positions: &[Vec3],
-        pressures: &[f64],
-    ) -> Box<dyn Strain + 'a> {
+    pub(crate) fn with_pressures(&self, positions: &[Vec3], pressures: &[f64]) -> Strain {
         let positions = &*self.ties.seen(positions);
         let pairs = self.bricks.iter().zip(pressures);
         let state = |(brick, &pressure): (&Brick, &f64)| {
             brick.with_pressure(self.material_of(brick), positions, pressure)
         };
-        Box::new(Predicted {
-            block: self,
-            states: pairs.map(state).collect(),
-        })
+        Strain::Voxels(pairs.map(state).collect())
     }
 
     /// The voxels from `first` on, with what is carried of them.
@@ -242,8 +235,8 @@ impl Bricks {
         );
     }
 
-    /// What is carried after a step `moves`, see [`Brick::carry`].
-    fn carry(
+    /// Strains after a step `moves`, see [`Brick::carry`].
+    fn carried(
         &self,
         positions: &[Vec3],
         before: Option<&[Carried]>,
@@ -314,41 +307,33 @@ impl Term for Bricks {
         self.visit_elements_of(positions, None, visit);
     }
 
-    fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
-        Some(Box::new(Predicted {
-            block: self,
-            states: self.carry(positions, None, moves),
-        }))
-    }
-}
-
-/// Predicted strains and pressures.
-struct Predicted<'a> {
-    block: &'a Bricks,
-    states: Vec<Carried>,
-}
-
-impl Strain for Predicted<'_> {
-    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        self.block
-            .add_forces_of(positions, Some(&self.states), forces);
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
+        Some(Strain::Voxels(self.carried(positions, None, moves)))
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        self.visit_elements(positions, &mut |elements| {
+    fn add_predicted_forces(&self, strain: &Strain, positions: &[Vec3], forces: &mut [Vec3]) {
+        self.add_forces_of(positions, strain.voxels(), forces);
+    }
+
+    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+        self.visit_predicted_elements(strain, positions, &mut |elements| {
             elements
                 .iter()
                 .for_each(|(vertices, matrix)| visit(vertices, matrix));
         });
     }
 
-    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
-        self.block
-            .visit_elements_of(positions, Some(&self.states), visit);
+    fn visit_predicted_elements(
+        &self,
+        strain: &Strain,
+        positions: &[Vec3],
+        visit: ElementsVisitor<'_>,
+    ) {
+        self.visit_elements_of(positions, strain.voxels(), visit);
     }
 
-    fn carry(&mut self, positions: &[Vec3], moves: &[Vec3]) -> bool {
-        self.states = self.block.carry(positions, Some(&self.states), moves);
+    fn carry(&self, strain: &mut Strain, positions: &[Vec3], moves: &[Vec3]) -> bool {
+        *strain = Strain::Voxels(self.carried(positions, strain.voxels(), moves));
         true
     }
 }

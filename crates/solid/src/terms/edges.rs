@@ -106,32 +106,18 @@ impl Term for Edges {
         }
     }
 
-    fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
         let changes = self.0.iter().map(|edge| {
             let (change, gradient) = edge.evaluate(positions);
             let [a, b] = edge.vertices.map(|v| moves[v as usize]);
             change + dot(gradient, sub(a, b))
         });
-        Some(Box::new(Changes {
-            edges: self,
-            changes: changes.collect(),
-        }))
-    }
-}
-
-/// Predicted changes of length. A constraint is linear in its strain, so its forces are the true ones.
-struct Changes<'a> {
-    edges: &'a Edges,
-    changes: Vec<f64>,
-}
-
-impl Strain for Changes<'_> {
-    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        self.edges.add_forces(positions, forces);
+        Some(Strain::Numbers(changes.collect()))
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        for (edge, change) in self.edges.0.iter().zip(&self.changes) {
+    /// A constraint is linear in its strain, so that its forces are the true ones.
+    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+        for (edge, change) in self.0.iter().zip(strain.numbers()) {
             let matrix = edge.hessian(positions, Some(*change));
             visit(&edge.vertices, matrix.as_flattened());
         }

@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Strain, Term};
 use crate::assembly::{Visitor, add_product, add_row_sums};
-use crate::membrane::{Membrane, Plane};
+use crate::membrane::Membrane;
 use crate::vector::Vec3;
 
 /// All membranes of a body.
@@ -67,30 +67,19 @@ impl Term for Membranes {
         });
     }
 
-    fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
         let strain = |membrane: &Membrane| membrane.predict_strain(positions, moves);
-        Some(Box::new(Predicted {
-            membranes: &self.0,
-            strains: self.0.iter().map(strain).collect(),
-        }))
+        Some(Strain::Planes(self.0.iter().map(strain).collect()))
     }
-}
 
-/// Predicted strains.
-struct Predicted<'a> {
-    membranes: &'a [Membrane],
-    strains: Vec<Plane>,
-}
-
-impl Strain for Predicted<'_> {
-    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        for (membrane, strain) in self.membranes.iter().zip(&self.strains) {
+    fn add_predicted_forces(&self, strain: &Strain, positions: &[Vec3], forces: &mut [Vec3]) {
+        for (membrane, strain) in self.0.iter().zip(strain.planes()) {
             membrane.add_predicted_forces(*strain, positions, forces);
         }
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        for (membrane, strain) in self.membranes.iter().zip(&self.strains) {
+    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+        for (membrane, strain) in self.0.iter().zip(strain.planes()) {
             let matrix = membrane.stiffness(positions, Some(*strain));
             visit(&membrane.vertices(), matrix.as_flattened());
         }

@@ -20,7 +20,8 @@ use serde::{Deserialize, Serialize};
 use crate::assembly::{
     Elements, ElementsVisitor, Visitor, add_product, add_row_sums, check_indices,
 };
-use crate::brick::Tangent;
+use crate::brick::{Carried, Tangent};
+use crate::membrane::Plane;
 use crate::vector::Vec3;
 use crate::{Mirrored, ProblemError};
 
@@ -106,8 +107,40 @@ pub trait Term: Debug + Send + Sync {
 
     /// The strains that a step `moves` from `positions` leads to, to first order, as [`crate::mixed`] carries
     /// them along; `None` for a term that is taken as it is where the step ends.
-    fn predict<'a>(&'a self, _positions: &[Vec3], _moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
+    fn predict(&self, _positions: &[Vec3], _moves: &[Vec3]) -> Option<Strain> {
         None
+    }
+
+    /// Adds the forces in N at `positions` of the stress of predicted strains.
+    fn add_predicted_forces(&self, _strain: &Strain, positions: &[Vec3], forces: &mut [Vec3]) {
+        self.add_forces(positions, forces);
+    }
+
+    /// Hands over the tangent in N/m at `positions` with the stress of predicted strains.
+    fn visit_predicted_stiffness(&self, _strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+        self.visit_stiffness(positions, visit);
+    }
+
+    /// The same, as many elements at a time as suits.
+    fn visit_predicted_elements(
+        &self,
+        strain: &Strain,
+        positions: &[Vec3],
+        visit: ElementsVisitor<'_>,
+    ) {
+        self.visit_predicted_stiffness(strain, positions, &mut |vertices, matrix| {
+            visit(Elements {
+                width: vertices.len(),
+                vertices,
+                matrices: matrix,
+            });
+        });
+    }
+
+    /// Carries strains on by a step `moves` from `positions`; `false` where [`Term::predict`] there says all that there is
+    /// to know.
+    fn carry(&self, _strain: &mut Strain, _positions: &[Vec3], _moves: &[Vec3]) -> bool {
+        false
     }
 }
 
@@ -150,28 +183,38 @@ impl std::ops::Deref for Attachment {
     }
 }
 
-/// The strains of all elements of a term, unknowns of their own ([`crate::mixed`]).
-pub trait Strain {
-    /// Adds the forces at `positions` of the stress that these strains predict, in N.
-    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]);
+/// Predicted strains of all elements of a term, unknowns of their own ([`crate::mixed`]): plain data that only the term knows
+/// how to read.
+#[derive(Debug, Clone)]
+pub enum Strain {
+    /// A number for each element: a change of length or of volume, a pressure.
+    Numbers(Vec<f64>),
+    /// The strain of each membrane.
+    Planes(Vec<Plane>),
+    /// Strain and pressure of each hyperelastic voxel.
+    Voxels(Vec<Carried>),
+}
 
-    /// Hands over the tangent at `positions` with the stress of these strains.
-    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>);
-
-    /// The same, as many elements at a time as suits.
-    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
-        self.visit_stiffness(positions, &mut |vertices, matrix| {
-            visit(Elements {
-                width: vertices.len(),
-                vertices,
-                matrices: matrix,
-            });
-        });
+impl Strain {
+    /// The numbers of a term that predicts one for each element; none of another term's.
+    pub fn numbers(&self) -> &[f64] {
+        match self {
+            Self::Numbers(numbers) => numbers,
+            Self::Planes(_) | Self::Voxels(_) => &[],
+        }
     }
 
-    /// Goes on by a step `moves` from `positions`; `false` where what [`Term::predict`] says there is all that there is
-    /// to know.
-    fn carry(&mut self, _positions: &[Vec3], _moves: &[Vec3]) -> bool {
-        false
+    fn planes(&self) -> &[Plane] {
+        match self {
+            Self::Planes(planes) => planes,
+            Self::Numbers(_) | Self::Voxels(_) => &[],
+        }
+    }
+
+    fn voxels(&self) -> Option<&[Carried]> {
+        match self {
+            Self::Voxels(voxels) => Some(voxels),
+            Self::Numbers(_) | Self::Planes(_) => None,
+        }
     }
 }

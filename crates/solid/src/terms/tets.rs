@@ -148,32 +148,18 @@ impl Term for Tets {
         }
     }
 
-    fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
         let changes = self.0.iter().map(|tet| {
             let (change, gradients) = tet.evaluate(positions);
             let along = tet.vertices.into_iter().zip(gradients);
             change + along.map(|(v, g)| dot(g, moves[v as usize])).sum::<f64>()
         });
-        Some(Box::new(Changes {
-            tets: self,
-            changes: changes.collect(),
-        }))
-    }
-}
-
-/// Predicted changes of volume. A constraint is linear in its strain, so its forces are the true ones.
-struct Changes<'a> {
-    tets: &'a Tets,
-    changes: Vec<f64>,
-}
-
-impl Strain for Changes<'_> {
-    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        self.tets.add_forces(positions, forces);
+        Some(Strain::Numbers(changes.collect()))
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        for (tet, change) in self.tets.0.iter().zip(&self.changes) {
+    /// A constraint is linear in its strain, so that its forces are the true ones.
+    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+        for (tet, change) in self.0.iter().zip(strain.numbers()) {
             let matrix = tet.hessian(positions, Some(*change));
             visit(&tet.vertices, matrix.as_flattened());
         }

@@ -24,7 +24,7 @@ pub(super) const DEEP_ROUNDS: u32 = 4;
 impl Implicit {
     /// Lets all samples look for what they face at `positions`.
     pub(super) fn face(&mut self, positions: &[Vec3], anew: bool) {
-        if let Some(contact) = self.problem.contact() {
+        if let Some(contact) = self.problem.contact_mut() {
             if anew {
                 contact.look_anew();
             }
@@ -50,12 +50,17 @@ impl Implicit {
     }
 
     /// Lets contact resist more where something is too deep at `positions`; whether anything is.
-    pub(super) fn stiffens(&self, goal: Goal<'_>, positions: &[Vec3], value: &mut Value) -> bool {
-        let problem = &self.problem;
-        let contact = problem.contact();
+    pub(super) fn stiffens(
+        &mut self,
+        goal: Goal<'_>,
+        positions: &[Vec3],
+        value: &mut Value,
+    ) -> bool {
+        let contact = self.problem.contact_mut();
         if !contact.is_some_and(|contact| contact.stiffen(positions)) {
             return false;
         }
+        let problem = &self.problem;
         Objective { problem, goal }.evaluate(positions, value);
         true
     }

@@ -382,7 +382,7 @@ impl Implicit {
         self.before = None;
         self.stage = Stage::First;
         self.met = false;
-        if let Some(contact) = self.problem.contact() {
+        if let Some(contact) = self.problem.contact_mut() {
             contact.start(&self.state.positions);
         }
         self.problem.start_loads();

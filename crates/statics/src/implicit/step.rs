@@ -131,7 +131,7 @@ impl Implicit {
         }
         let taken = self
             .problem
-            .contact()
+            .contact_mut()
             .is_none_or(|contact| contact.take_step(&next.positions));
         if !taken {
             self.go_back();
@@ -157,8 +157,8 @@ impl Implicit {
     }
 
     /// Forgets what contact has learned since the state.
-    fn go_back(&self) {
-        if let Some(contact) = self.problem.contact() {
+    fn go_back(&mut self) {
+        if let Some(contact) = self.problem.contact_mut() {
             contact.go_back();
         }
     }

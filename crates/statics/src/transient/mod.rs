@@ -103,7 +103,7 @@ impl Transient {
     pub fn follow(&self, problem: &Problem, start: State, observer: &mut Observer<'_>) -> Solution {
         let inertia = Arc::new(Inertia::new(problem.body().masses()));
         let mut problem = problem.clone().with_held_loads();
-        if let Some(contact) = problem.contact() {
+        if let Some(contact) = problem.contact_mut() {
             contact.start(&start.positions);
         }
         problem.start_loads();
@@ -267,9 +267,7 @@ impl Run<'_> {
                 }
                 Err(failure) => failure,
             };
-            if let Some(contact) = self.problem.contact() {
-                contact.go_back();
-            }
+            self.go_back();
             let hopeless = matches!(
                 failure,
                 Stop::Failed(Failure::Memory(_) | Failure::Cancelled)
@@ -318,16 +316,21 @@ impl Run<'_> {
             if !self.gains_energy(&next, &found) {
                 return self.accept(next, found);
             }
-            if let Some(contact) = self.problem.contact() {
-                contact.go_back();
-            }
+            self.go_back();
         }
         let (next, found) = self.find(step, None, observer)?;
         self.accept(next, found)
     }
 
+    /// Forgets what contact has learned since the last accepted state.
+    fn go_back(&mut self) {
+        if let Some(contact) = self.problem.contact_mut() {
+            contact.go_back();
+        }
+    }
+
     fn accept(&mut self, next: State, found: Now) -> Result<(), Stop> {
-        if let Some(contact) = self.problem.contact() {
+        if let Some(contact) = self.problem.contact_mut() {
             contact.accept(&next.positions);
         }
         let factor_of = |load: &Load| load.history.at(next.time);
@@ -339,7 +342,7 @@ impl Run<'_> {
                 fluid.take_step(&next.positions);
             }
         }
-        self.equilibrium.problem.remember(&self.problem.memory());
+        self.equilibrium.problem.remember_but_contact(&self.problem);
         if self.settings.damping == Damping::Critical {
             self.damping_rate = 2.0 * self.frequency(&next, &found);
         }

@@ -26,6 +26,21 @@ impl Run<'_> {
         observer: &mut Observer<'_>,
     ) -> Result<(State, Now), Stop> {
         let start = Start::new(&self.state, before, step, self.stage);
+        // Contact has one memory, which the problem with inertia borrows while it looks for the end.
+        self.problem.exchange_contact(&mut self.equilibrium.problem);
+        let positions = self.find_positions(step, before, &start, observer);
+        self.problem.exchange_contact(&mut self.equilibrium.problem);
+        self.state_at(positions?, step, &start)
+    }
+
+    /// The positions at the end of a step.
+    fn find_positions(
+        &mut self,
+        step: f64,
+        before: Option<&State>,
+        start: &Start,
+        observer: &mut Observer<'_>,
+    ) -> Result<Vec<Vec3>, Stop> {
         let braked = start.rate + self.damping_rate;
         let coast = |(x, v): (&Vec3, &Vec3)| add(*x, scale(1.0 / braked, *v));
         let free = start.positions.iter().zip(&start.velocities).map(coast);
@@ -41,6 +56,17 @@ impl Run<'_> {
         let point = Point::at(time);
         let mut positions = self.best_prediction(step, before, point)?;
         self.settle(&mut positions, point, observer)?;
+        Ok(positions)
+    }
+
+    /// The state at the end of a step, with its forces and energies.
+    fn state_at(
+        &self,
+        positions: Vec<Vec3>,
+        step: f64,
+        start: &Start,
+    ) -> Result<(State, Now), Stop> {
+        let time = self.state.time + step;
         let pairs = positions.iter().zip(&start.positions);
         let velocities = pairs.map(|(x, from)| scale(start.rate, sub(*x, *from)));
         let next = State {
@@ -102,8 +128,8 @@ impl Run<'_> {
         Ok(best.1)
     }
 
-    fn look_anew(&self) {
-        if let Some(contact) = self.problem.contact() {
+    fn look_anew(&mut self) {
+        if let Some(contact) = self.equilibrium.problem.contact_mut() {
             contact.look_anew();
         }
     }

@@ -1,11 +1,10 @@
 //! Bodies that touch.
 
-use std::sync::Arc;
-
 use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Carried, Description, Surface, Touch};
+use voxsoft_contact::touch::{Carried, Description, PairReport, Surface, Touch};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Clamp, History, Load, Mesh, Motion, Problem};
+use voxsoft_statics::Answer;
 
 use super::rubber;
 
@@ -71,7 +70,7 @@ pub fn add_rigid(mesh: &mut Mesh, corners: &[Vec3], frame: &Frame) -> Surface {
     }
 }
 
-/// A problem with contact, and the contact.
+/// A problem with contact.
 pub fn touching(
     mesh: &Mesh,
     clamps: Vec<Clamp>,
@@ -79,7 +78,7 @@ pub fn touching(
     surfaces: Vec<Surface>,
     friction: Vec<Vec<f64>>,
     voxel: f64,
-) -> (Problem, Arc<Touch>) {
+) -> Problem {
     let body = Body::new(mesh, &[rubber()]).unwrap();
     let young = YOUNG;
     let description = Description {
@@ -89,7 +88,20 @@ pub fn touching(
         voxel,
         young,
     };
-    let touch = Arc::new(Touch::new(description, &mesh.vertices).unwrap());
+    let touch = Touch::new(description, &mesh.vertices).unwrap();
     let problem = Problem::new(body, clamps, loads, None).unwrap();
-    (problem.with_contact(touch.clone()).unwrap(), touch)
+    problem.with_contact(Box::new(touch)).unwrap()
+}
+
+/// The contact of a problem.
+pub fn touch_of(problem: &Problem) -> &Touch {
+    let contact = problem.contact().unwrap();
+    contact.found_by().downcast_ref().unwrap()
+}
+
+/// All that touches at an answer.
+pub fn pairs_at(problem: &Problem, answer: &Answer) -> Vec<PairReport> {
+    let mut there = problem.clone();
+    there.remember(&answer.memory);
+    touch_of(&there).pairs(&answer.positions)
 }
