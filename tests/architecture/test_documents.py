@@ -23,6 +23,14 @@ def test_a_path_named_in_a_document_exists(path):
     assert (ROOT / path).exists()
 
 
+def test_no_document_holds_two_sides_of_a_merge():
+    sides = re.compile(r"^(?:<{7} |={7}$|>{7} )", re.MULTILINE)
+    documents = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "tests").glob("*.md")]
+    found = [path.name for path in documents if sides.search(path.read_text(encoding="utf-8"))]
+    assert not found
+    assert sides.search("a\n<<<<<<< HEAD\nb")
+
+
 def test_there_are_paths_to_check():
     assert len(list(named_paths())) > 20
 
