@@ -105,7 +105,7 @@ impl PyScene {
         let mechanics = problem.now();
         let scene = Scene {
             notes: String::new(),
-            mesh: Mesh::clone(&problem.mesh),
+            mesh: (*problem.mesh).clone(),
             materials: problem.materials.to_vec(),
             clamps: mechanics.clamps().to_vec(),
             loads: mechanics.loads().to_vec(),
