@@ -466,8 +466,8 @@ impl Rotated {
 
     /// The Hessian by `S` and `p̂` (rows 0–5 and `6 + 3 mode + axis`).
     ///
-    /// The part without the mean change of volume counts `share` times, the geometric part of the mean change of volume
-    /// and of the relief of free faces `curvature` times.
+    /// The part without the mean change of volume counts `share` times. The geometric part of the mean change of
+    /// volume, of the relief of free faces and of the modes at clamps counts `curvature` times.
     pub fn hessian(
         &self,
         material: &HyperelasticMaterial,

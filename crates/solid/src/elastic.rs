@@ -70,8 +70,8 @@ pub fn row_sums(body: &Body, positions: &[Vec3], sums: &mut [f64]) {
         .for_each(|term| term.add_row_sums(positions, sums));
 }
 
-/// Adds the product of the tangent stiffness of all terms but membranes with `direction`; for membranes see
-/// [`add_taut_product`].
+/// Adds the product of the stiffness matrix at `positions` with `direction`, without the geometric part of edges and
+/// tetrahedra, and without membranes, for which see [`add_taut_product`].
 pub fn add_stiffness_product(
     body: &Body,
     positions: &[Vec3],

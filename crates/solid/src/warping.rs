@@ -1,4 +1,4 @@
-//! How the free faces of a voxel warp: what makes a twisted bar of two voxels across as soft as it is.
+//! Warping of the free faces of a voxel, without which a twisted bar of two voxels across would be too stiff.
 //!
 //! # Small strain
 //!
@@ -45,33 +45,33 @@ use crate::hyperelastic::symmetric::{Response, Sym};
 
 const SQRT_2: f64 = std::f64::consts::SQRT_2;
 
-/// `c` of a plate: what Reissner's factor 5/6 leaves out.
+/// `c` of a plate: the rest of Reissner's factor 5/6.
 const PLATE: f64 = 1.0 / 6.0;
 
-/// The parts `cⱼ, cₖ` of the shear of each pair of axes by which free faces make a voxel softer. Pairs are named by the
-/// axis that is not in them, `j` and `k` come after it in turn.
+/// The parts `cⱼ, cₖ` of the shear of each pair of axes by which free faces soften a voxel. Pairs are named by the axis
+/// that is not in them, `j` and `k` come after it in turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Warping {
     parts: [[f64; 2]; 3],
-    /// How it draws in at a clamp, in place of the parts.
+    /// Lateral contraction at a clamp, in place of the parts.
     pub(crate) clamped: Option<Clamped>,
 }
 
-/// The faces of a voxel at the two sides of each axis.
+/// Classification of the faces of a voxel at the two sides of each axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Faces {
-    /// Nothing is joined to them, and nothing holds them.
+    /// Free faces: nothing is joined to them, and nothing holds them.
     pub free: [[bool; 2]; 3],
-    /// They must not move along their axis but with their corners.
+    /// Stiff faces, which must not move along their axis except with their corners.
     pub stiff: [[bool; 2]; 3],
-    /// A clamp or something stiffer holds them in full.
+    /// Faces held in full by a clamp or a stiffer material.
     pub held: [[bool; 2]; 3],
-    /// A pressure acts on them.
+    /// Faces under pressure.
     pub pressed: [[bool; 2]; 3],
 }
 
 impl Warping {
-    /// No free face.
+    /// No warping: no free face.
     pub const NONE: Self = Self {
         parts: [[0.0; 2]; 3],
         clamped: None,
@@ -82,7 +82,7 @@ impl Warping {
         self.parts
     }
 
-    /// That of a full voxel of isotropic rubber.
+    /// The warping of a full voxel of isotropic rubber.
     pub fn of(faces: &Faces) -> Self {
         let clamped = Clamped::of(faces);
         if clamped.is_some() {
@@ -94,7 +94,7 @@ impl Warping {
         let free = faces.free.map(|sides| sides.map(u8::from).iter().sum());
         let stiff = faces.stiff.map(|[low, high]| low || high);
         let parts = AXES.map(|(b, j, k)| {
-            // What the faces of one axis do moves those of the other.
+            // Modes of the faces of one axis move those of the other.
             let counts = [(j, k), (k, j)].map(|(n, t)| if stiff[t] { 0 } else { free[n] });
             let thin = [free[j], free[k]].map(|count| count == 2);
             match thin {
@@ -116,7 +116,7 @@ impl Warping {
         }
     }
 
-    /// The stretch that the isochoric energy is that of.
+    /// The relieved stretch, at which the isochoric energy is evaluated.
     fn relieved(&self, stretch: &Sym) -> Sym {
         let mut relieved = *stretch;
         for (pair, (b, j, k)) in self.parts.iter().zip(AXES) {
@@ -128,7 +128,7 @@ impl Warping {
         relieved
     }
 
-    /// The derivatives of that stretch (rows) by the stretch.
+    /// The derivatives of the relieved stretch (rows) by the stretch.
     fn slopes(&self, stretch: &Sym) -> [Sym; 6] {
         let mut slopes = [[0.0; 6]; 6];
         for axis in 0..3 {
@@ -146,7 +146,7 @@ impl Warping {
         slopes
     }
 
-    /// Adds the second derivatives of that stretch, each component times its `force`.
+    /// Adds the second derivatives of the relieved stretch, each component times its `force`.
     fn add_curvature(&self, stretch: &Sym, force: &Sym, hessian: &mut [[f64; SHAPE]; SHAPE]) {
         for (pair, (b, j, k)) in self.parts.iter().zip(AXES) {
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
@@ -162,8 +162,8 @@ impl Warping {
     }
 }
 
-/// How much thinner a voxel gets across a free face that shears, `a s²/(a b + s²)` with the shear `s` and the stretches
-/// `a` across the face and `b` along it: `s²/b` for small shears, and less than `a` for any.
+/// Loss of thickness across a free face that shears, `a s²/(a b + s²)` with the shear `s` and the stretches `a` across
+/// the face and `b` along it: `s²/b` for small shears, and less than `a` for any.
 struct Thinning {
     value: f64,
     shear: f64,
@@ -174,7 +174,7 @@ struct Thinning {
 }
 
 impl Thinning {
-    /// From the places of the shear (Mandel) and of the stretches across and along.
+    /// The thinning from the indices of the shear (Mandel) and of the stretches across and along.
     fn of(stretch: &Sym, shear: usize, across: usize, along: usize) -> Self {
         let shear = stretch[shear] / SQRT_2;
         let (across, along) = (positive(stretch[across]), positive(stretch[along]));
@@ -188,7 +188,7 @@ impl Thinning {
         }
     }
 
-    /// By the shear (Mandel) and the stretches across and along.
+    /// Derivatives by the shear (Mandel) and the stretches across and along.
     fn gradient(&self) -> [f64; 3] {
         let (s, [a, to_a, _], [b, to_b, _]) = (self.shear, self.across, self.along);
         let square = self.size * self.size;
@@ -199,7 +199,7 @@ impl Thinning {
         ]
     }
 
-    /// The second derivatives by the same.
+    /// Second derivatives by the shear (Mandel) and the stretches across and along.
     fn hessian(&self) -> [[f64; 3]; 3] {
         let s = self.shear;
         let ([a, to_a, turn_a], [b, to_b, turn_b]) = (self.across, self.along);
@@ -227,8 +227,8 @@ fn condensed([j, k]: [u8; 2]) -> [f64; 2] {
 }
 
 impl Rotated {
-    /// [`Rotated::mean`] for the stretch that free faces leave, with derivatives where `second` says how often what the
-    /// stress adds to the second ones counts.
+    /// [`Rotated::mean`] for the stretch relieved by free faces; `second` asks for the Hessian, with the geometric part
+    /// of the relief weighed by that factor.
     pub(crate) fn warped_mean(
         &self,
         thinning: f64,
