@@ -26,19 +26,19 @@
 //!
 //! `Φ = U(J) + ⅙ Σ W(S ± Ĥ) + ⅙ K Σ ((1−2ν)/(1−ν))² (H₁₁ + H₂₂)² + E/18 |p₄|² + fibers(S)`
 //!
-//! A voxel that the surface cuts knows where its material is ([`Filling`]). `F₀` is the mean gradient over the material,
-//! of the motion as it is, with its shears:
+//! A voxel that the surface cuts knows where its material is ([`Filling`]). `F₀` is the mean gradient over the
+//! material, of the motion as it is, with its shears:
 //!
 //! `F₀ e₁ = f₁ + p₂⟨ζ⟩ + p₃⟨η⟩ + p₄⟨ηζ⟩`, and so on around,
 //!
-//! as the mean strain decides whether a uniform stress is in equilibrium with an oblique surface. `Ĥ` is
-//! the deviation from the center of the material, and becomes `σ Ĥ` with its spread `σ` along each axis, which integrates
-//! the energy to second order.
+//! as the mean strain decides whether a uniform stress is in equilibrium with an oblique surface. `Ĥ` is the deviation
+//! from the center of the material, and becomes `σ Ĥ` with its spread `σ` along each axis, which integrates the energy
+//! to second order.
 //!
-//! A voxel whose free stretch varies across it ([`crate::Growth`]) has `h` times their mean in place of `h`, and in all of the
-//! above its hourglass modes without those that it has free of stress: `p̂₂·e₁ − b₃` and `p̂₁·e₂ − b₃` along ζ, with half the
-//! difference `b₃` of the free stretches at `ζ = ±1` over their mean. (`b₃ S` would be right for large elastic strain as well;
-//! the difference is of the order of `b (S − 1)`, and `b` is one of the voxel size.)
+//! A voxel whose free stretch varies across it ([`crate::Growth`]) has `h` times their mean in place of `h`, and in all
+//! of the above its hourglass modes without those that it has free of stress: `p̂₂·e₁ − b₃` and `p̂₁·e₂ − b₃` along ζ,
+//! with half the difference `b₃` of the free stretches at `ζ = ±1` over their mean. (`b₃ S` would be right for large
+//! elastic strain as well; the difference is of the order of `b (S − 1)`, and `b` is one of the voxel size.)
 //!
 //! If faces of a voxel are free, `W` sees less of its mean shear: `S̃` in place of `S`, see [`Warping`] and
 //! [`crate::warping`].

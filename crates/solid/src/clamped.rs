@@ -25,8 +25,9 @@
 //!
 //! `(A + k b bᵀ) q = −(B + k b cᵀ) s` ,  `k = K/2G` ,
 //!
-//! with `A` and `B` the mean products of the deviators of modes with modes and with the voxel's strains `s`, and `b` and `c` the
-//! mean changes of volume: one pressure for each voxel, as in [`crate::brick`]. So `q = Q s`, and with `P = A⁻¹B`, `r = A⁻¹b`, `β = bᵀr`,
+//! with `A` and `B` the mean products of the deviators of modes with modes and with the voxel's strains `s`, and `b`
+//! and `c` the mean changes of volume: one pressure for each voxel, as in [`crate::brick`]. So `q = Q s`, and with `P =
+//! A⁻¹B`, `r = A⁻¹b`, `β = bᵀr`,
 //!
 //! `Q = −P − ζ r (cᵀ − bᵀP)` ,  `ζ = k/(1 + k β)` .
 //!
@@ -55,7 +56,8 @@
 //! test holds there at large strain too. The neglected terms are of second order in the strain, as the energy is
 //! stationary in `q`.
 //!
-//! The modes take no load. As a pressure works on those that move along its face's normal, a free face under pressure has `b eₜ` alone.
+//! The modes take no load. As a pressure works on those that move along its face's normal, a free face under pressure
+//! has `b eₜ` alone.
 
 use std::sync::OnceLock;
 

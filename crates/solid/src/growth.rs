@@ -83,7 +83,8 @@ impl GrowthFactor {
     }
 }
 
-/// A free stretch that changes over time: the product of powers of histories, such as the cube root of a change of volume.
+/// A free stretch that changes over time: the product of powers of histories, such as the cube root of a change of
+/// volume.
 ///
 /// A body must call [`Growth::begin`] before it is evaluated at an instant; until then the stretch is the final one.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,37 +2,39 @@
 //!
 //! # Small strain
 //!
-//! The section of a twisted bar warps within a voxel as well, and between its nodes: no mode inside the voxel that keeps
-//! its mean shear helps. On a face with the normal `n` (at `ξₙ = s`) that nothing is joined to, two displacements do,
+//! The section of a twisted bar warps within a voxel as well, and between its nodes: no mode inside the voxel that
+//! keeps its mean shear helps. On a face with the normal `n` (at `ξₙ = s`) that nothing is joined to, two displacements
+//! do,
 //!
 //! `eₜ (1 + s ξₙ)/2 (1 − ξ_b²)`   and   `e_b (1 + s ξₙ)/2 (1 − ξₜ²)` ,
 //!
 //! which change no volume and are constant along the way they move, so that a uniform stress which leaves the face free
-//! does no work on them. The first has the shears `γₜₙ = a s/2 (1 − ξ_b²)` and `γₜ_b = −a (1 + s ξₙ) ξ_b`. Of the voxel's
-//! own shears, a mean and parts linear in the third coordinate, they meet the mean `γₜₙ` alone, with `⟨s/2 (1 − ξ_b²)⟩ = s/3`.
-//! Among each other modes meet only within a pair of axes: with themselves in `2/15 + 4/9 = 26/45`, with that of the
-//! opposite face in `−4/45` and with those of the other axis of the pair in `6/45` (signs `s s'` taken out). So they
-//! condense, with `mⱼ` free faces on the axis `j` and `mₖ` on `k`, to
+//! does no work on them. The first has the shears `γₜₙ = a s/2 (1 − ξ_b²)` and `γₜ_b = −a (1 + s ξₙ) ξ_b`. Of the
+//! voxel's own shears, a mean and parts linear in the third coordinate, they meet the mean `γₜₙ` alone, with `⟨s/2 (1 −
+//! ξ_b²)⟩ = s/3`. Among each other modes meet only within a pair of axes: with themselves in `2/15 + 4/9 = 26/45`, with
+//! that of the opposite face in `−4/45` and with those of the other axis of the pair in `6/45` (signs `s s'` taken
+//! out). So they condense, with `mⱼ` free faces on the axis `j` and `mₖ` on `k`, to
 //!
 //! `½ G γⱼₖ² (1 − c)`,  `c = cⱼ + cₖ`,  `cⱼ = mⱼ 5 (30 − 10 mₖ)/((30 − 4 mⱼ)(30 − 4 mₖ) − 36 mⱼ mₖ)` ,
 //!
 //! a number for each of the three mean shears and nothing else; it does not depend on the material.
 //!
-//! A wall one voxel thick, free on both faces, has these shears at its ends only (`b` with one free face). Elsewhere it is a
-//! plate, whose shear across is 5/6 of the uniform one (Reissner 1945): `c = 1/6`.
+//! A wall one voxel thick, free on both faces, has these shears at its ends only (`b` with one free face). Elsewhere it
+//! is a plate, whose shear across is 5/6 of the uniform one (Reissner 1945): `c = 1/6`.
 //!
 //! # Large strain
 //!
-//! In the mean such a motion is a simple shear along the face, `F (1 + a eₜ ⊗ eₙ)`, which keeps the volume and thins the
-//! voxel across the face. So the isochoric energy is that of a stretch with less shear and less thickness,
+//! In the mean such a motion is a simple shear along the face, `F (1 + a eₜ ⊗ eₙ)`, which keeps the volume and thins
+//! the voxel across the face. So the isochoric energy is that of a stretch with less shear and less thickness,
 //!
 //! `S̃ⱼₖ = √(1 − c) Sⱼₖ` ,   `S̃ⱼⱼ = Sⱼⱼ − Σₖ cⱼ Sⱼⱼ Sⱼₖ²/(Sⱼⱼ Sₖₖ + Sⱼₖ²)` ,
 //!
-//! and the volume stays that of `S`. `S̃ⱼⱼ` keeps a part of `Sⱼⱼ` under any shear: with `Sⱼₖ²/Sₖₖ` alone, which is the same to
-//! second order, a voxel that an impact shears far has negative stretches and gains energy. It has no unknowns, is bounded below as the material is, and to second order in a
-//! shear takes the part `c` of `(τₖ − τⱼ)/(λₖ (λₖ − λⱼ))` per `Sⱼₖ²`, `τ` the Kirchhoff stresses: positive by the
-//! inequality of Baker and Ericksen, and the stiffness that is there where the face `j` is free, so that `1 − c` of it is
-//! left at any stretch. A pressure on the face shifts both `τ` alike and drops out. Without the thinning a bar drawn to
+//! and the volume stays that of `S`. `S̃ⱼⱼ` keeps a part of `Sⱼⱼ` under any shear: with `Sⱼₖ²/Sₖₖ` alone, which is the
+//! same to second order, a voxel that an impact shears far has negative stretches and gains energy. It has no unknowns,
+//! is bounded below as the material is, and to second order in a shear takes the part `c` of `(τₖ − τⱼ)/(λₖ (λₖ − λⱼ))`
+//! per `Sⱼₖ²`, `τ` the Kirchhoff stresses: positive by the inequality of Baker and Ericksen, and the stiffness that is
+//! there where the face `j` is free, so that `1 − c` of it is left at any stretch. A pressure on the face shifts both
+//! `τ` alike and drops out. Without the thinning a bar drawn to
 //! 2.4 of its length would lose its stiffness against shear.
 //!
 //! The mean stress at a free face has no shear there; in an isotropic material then `S` has none either, and `S̃ = S`:

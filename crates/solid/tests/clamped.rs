@@ -103,8 +103,8 @@ fn uniform_stretch_has_the_forces_of_a_voxel_without_clamp() {
     }
 }
 
-/// Simple shear of the held face against the one across, and of the free face along the third axis: the states in which a uniform
-/// stress leaves the face `y` free.
+/// Simple shear of the held face against the one across, and of the free face along the third axis: the states in which
+/// a uniform stress leaves the face `y` free.
 #[test]
 fn shear_without_traction_on_the_free_face_is_not_relieved() {
     let material = rubber(0.49);
@@ -159,8 +159,8 @@ fn is_positive(mut matrix: [[f64; 12]; 12]) -> bool {
     })
 }
 
-/// A face that bends out of plane and turns by 0.1: with a linear relief of the volume the energy grows with the bulk modulus. Larger
-/// strains fade the modes, and the voxel keeps its volume as others do.
+/// A face that bends out of plane and turns by 0.1: with a linear relief of the volume the energy grows with the bulk
+/// modulus. Larger strains fade the modes, and the voxel keeps its volume as others do.
 #[test]
 fn bending_does_not_lock_without_compression() {
     let bent = corners(|x| {

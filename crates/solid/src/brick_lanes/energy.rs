@@ -1,8 +1,8 @@
 //! The energy's gradient and Hessian by the generalized coordinates, one voxel in each lane; the formulas stand in
 //! [`crate::brick_energy`], [`crate::warping`] and [`crate::hyperelastic`].
 //!
-//! The mean of `det` over two points `S ± r Ĥ` is `det S + r² S : cof Ĥ` without remainder, so that the change of volume
-//! needs no points.
+//! The mean of `det` over two points `S ± r Ĥ` is `det S + r² S : cof Ĥ` without remainder, so that the change of
+//! volume needs no points.
 //!
 //! Long because gradient and Hessian are one derivation, part by part of the energy.
 
@@ -173,8 +173,8 @@ impl<S: Simd> Variation<S> {
         ]
     }
 
-    /// Adds the derivatives of a function of `S` and `Ĥₙ`: `moment` is its gradient by `Ĥₙ`, `mixed` its second derivatives
-    /// by `S` and `Ĥₙ`, `square` those by `Ĥₙ` alone.
+    /// Adds the derivatives of a function of `S` and `Ĥₙ`: `moment` is its gradient by `Ĥₙ`, `mixed` its second
+    /// derivatives by `S` and `Ĥₙ`, `square` those by `Ĥₙ` alone.
     #[inline(always)]
     fn add_hessian(
         &self,

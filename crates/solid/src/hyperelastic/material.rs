@@ -147,8 +147,8 @@ impl HyperelasticMaterial {
         !self.windings.is_empty() || self.growths().iter().any(|growth| growth.is_field())
     }
 
-    /// The material as it is at a place (m) in a voxel of a side (m) with edges along `axes` (unit vectors row by row), the
-    /// `block`th: wound fibers have one direction there, and growth that is a field is that of the voxel.
+    /// The material as it is at a place (m) in a voxel of a side (m) with edges along `axes` (unit vectors row by row),
+    /// the `block`th: wound fibers have one direction there, and growth that is a field is that of the voxel.
     pub(crate) fn at(
         &self,
         block: usize,

@@ -26,8 +26,8 @@ pub struct Winding {
 }
 
 impl Winding {
-    /// The fibers at a place (m) in a voxel of a side (m) whose edges are along `axes` (unit vectors row by row), to which
-    /// their direction refers.
+    /// The fibers at a place (m) in a voxel of a side (m) whose edges are along `axes` (unit vectors row by row), to
+    /// which their direction refers.
     ///
     /// Within a side of the axis the direction around it turns by more than a radian from one end of a voxel to the
     /// other: no single direction would stand for the voxel.

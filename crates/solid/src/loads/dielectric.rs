@@ -10,15 +10,16 @@ use crate::vector::{Vec3, axpy, cross, dot, scale};
 /// stays finite during iterations, also inside out.
 const LEAST_VOLUME: f64 = 0.1;
 
-/// The squeeze of a dielectric between compliant electrodes whose voltage is held. With the field `E` as drawn along the unit
-/// vector `n` across the undeformed sheet, and the permittivity `ε`, the potential of sheet and battery on a volume at rest is
+/// The squeeze of a dielectric between compliant electrodes whose voltage is held. With the field `E` as drawn along
+/// the unit vector `n` across the undeformed sheet, and the permittivity `ε`, the potential of sheet and battery on a
+/// volume at rest is
 ///
 /// ```text
 /// Π = −½ ε E² J n·C⁻¹·n = −½ ε E² |F t₁ × F t₂|²/J,   J = (F t₁ × F t₂)·F n,
 /// ```
 ///
-/// where `t₁, t₂, n` are orthonormal: a capacitor whose area has grown by `|F t₁ × F t₂|` and whose thickness is
-/// `J/|F t₁ × F t₂|` of the drawn one. `F` is the mean gradient over an element. The factor of a load multiplies the field.
+/// where `t₁, t₂, n` are orthonormal: a capacitor whose area has grown by `|F t₁ × F t₂|` and whose thickness is `J/|F
+/// t₁ × F t₂|` of the drawn one. `F` is the mean gradient over an element. The factor of a load multiplies the field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Dielectric {
     /// The voxels of the sheet.

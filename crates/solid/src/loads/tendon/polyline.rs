@@ -65,7 +65,8 @@ impl Polyline {
 
     /// The derivatives of the angle of bend `bend` by the three points around it.
     ///
-    /// With `cos θ = u·v`, `dθ = −(e·du + g·dv)`, where `e` is `v` across `u`, and `g` is `u` across `v`, both of length 1.
+    /// With `cos θ = u·v`, `dθ = −(e·du + g·dv)`, where `e` is `v` across `u`, and `g` is `u` across `v`, both of
+    /// length 1.
     pub fn angle_slopes(&self, bend: usize) -> [Vec3; 3] {
         let (u, v) = (self.along[bend], self.along[bend + 1]);
         let (sine, cosine) = (norm(cross(u, v)), dot(u, v));
