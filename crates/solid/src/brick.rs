@@ -168,8 +168,8 @@ impl Carried {
 /// A dense stiffness matrix of a voxel; row and column `3 corner + axis`.
 pub type BrickMatrix = [[f64; 24]; 24];
 
-/// Matrix of the spin of `R` when `F₀` changes: with `B = Rᵀ dF₀`, `Rᵀ dR = [w]×` and `G w = axial(B − Bᵀ)`, `G = tr S
-/// − S`.
+/// Matrix of the spin of `R` when `F₀` changes: with `B = Rᵀ dF₀`, `Rᵀ dR = [w]×` and `G w = axial(B − Bᵀ)`,
+/// `G = tr S − S`.
 fn spin_matrix(stretch: &Mat3) -> Mat3 {
     let trace = stretch[0][0] + stretch[1][1] + stretch[2][2];
     std::array::from_fn(|i| {

@@ -197,7 +197,7 @@ impl Rotated {
         }
     }
 
-    /// The same frame, evaluated at another strain.
+    /// This state with another strain in the same frame.
     pub fn with_strain(&self, strain: &BrickStrain) -> Self {
         Self {
             filling: self.filling,

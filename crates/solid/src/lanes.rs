@@ -61,7 +61,7 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// Adds `factor · value` to what is stored.
+    /// Adds `factor · value` to the stored values.
     ///
     /// # Safety
     ///

@@ -10,10 +10,10 @@
 //!
 //! which change no volume and are constant along the way they move, so that a uniform stress which leaves the face free
 //! does no work on them. The first has the shears `γₜₙ = a s/2 (1 − ξ_b²)` and `γₜ_b = −a (1 + s ξₙ) ξ_b`. Of the
-//! voxel's own shears, a mean and parts linear in the third coordinate, they meet the mean `γₜₙ` alone, with `⟨s/2 (1 −
-//! ξ_b²)⟩ = s/3`. Among each other modes meet only within a pair of axes: with themselves in `2/15 + 4/9 = 26/45`, with
-//! that of the opposite face in `−4/45` and with those of the other axis of the pair in `6/45` (signs `s s'` taken
-//! out). So they condense, with `mⱼ` free faces on the axis `j` and `mₖ` on `k`, to
+//! voxel's own shears, a mean and parts linear in the third coordinate, they meet the mean `γₜₙ` alone, with
+//! `⟨s/2 (1 − ξ_b²)⟩ = s/3`. Among each other modes meet only within a pair of axes: with themselves in
+//! `2/15 + 4/9 = 26/45`, with that of the opposite face in `−4/45` and with those of the other axis of the pair in
+//! `6/45` (signs `s s'` taken out). So they condense, with `mⱼ` free faces on the axis `j` and `mₖ` on `k`, to
 //!
 //! `½ G γⱼₖ² (1 − c)`,  `c = cⱼ + cₖ`,  `cⱼ = mⱼ 5 (30 − 10 mₖ)/((30 − 4 mⱼ)(30 − 4 mₖ) − 36 mⱼ mₖ)` ,
 //!
@@ -34,8 +34,8 @@
 //! is bounded below as the material is, and to second order in a shear takes the part `c` of `(τₖ − τⱼ)/(λₖ (λₖ − λⱼ))`
 //! per `Sⱼₖ²`, `τ` the Kirchhoff stresses: positive by the inequality of Baker and Ericksen, and the stiffness that is
 //! there where the face `j` is free, so that `1 − c` of it is left at any stretch. A pressure on the face shifts both
-//! `τ` alike and drops out. Without the thinning a bar drawn to
-//! 2.4 of its length would lose its stiffness against shear.
+//! `τ` alike and drops out. Without the thinning a bar drawn to 2.4 of its length would lose its
+//! stiffness against shear.
 //!
 //! The mean stress at a free face has no shear there; in an isotropic material then `S` has none either, and `S̃ = S`:
 //! the patch test holds at any strain.

@@ -69,7 +69,7 @@ pub enum Law {
     Reactions,
     /// A cancelled solution reports so and returns a finite state.
     Cancellation,
-    /// The same start gives the same bits, also after other runs.
+    /// Runs from one start give the same bits, also after other runs.
     Repetition,
     /// Changes of loads and grabs during a run take effect, and nothing else does.
     Changes,

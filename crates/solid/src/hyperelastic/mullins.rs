@@ -5,8 +5,8 @@
 //!
 //! `η = 1 − 1/r erf((P − W)/(m + β P))` ,   `η = 1` where `W ≥ P` .
 //!
-//! At a constant peak `P`, stress comes from a potential, `ψ' = η`: with `s = m + β P`, `x = (P − W)/s` and `G(x) = x
-//! erf x + exp(−x²)/√π`, whose derivative is `erf`,
+//! At a constant peak `P`, stress comes from a potential, `ψ' = η`: with `s = m + β P`, `x = (P − W)/s` and
+//! `G(x) = x erf x + exp(−x²)/√π`, whose derivative is `erf`,
 //!
 //! `ψ(W) = W − s/r (G(P/s) − G(x))` ,   `ψ'' = 2/(r s √π) exp(−x²)` .
 //!

@@ -18,8 +18,9 @@ const LEAST_VOLUME: f64 = 0.1;
 /// Π = −½ ε E² J n·C⁻¹·n = −½ ε E² |F t₁ × F t₂|²/J,   J = (F t₁ × F t₂)·F n,
 /// ```
 ///
-/// where `t₁, t₂, n` are orthonormal: a capacitor whose area has grown by `|F t₁ × F t₂|` and whose thickness is `J/|F
-/// t₁ × F t₂|` of the drawn one. `F` is the mean gradient over an element. The factor of a load multiplies the field.
+/// where `t₁, t₂, n` are orthonormal: a capacitor whose area has grown by `|F t₁ × F t₂|` and whose thickness is
+/// `J/|F t₁ × F t₂|` of the drawn one. `F` is the mean gradient over an element. The factor of a load multiplies the
+/// field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Dielectric {
     /// The voxels of the sheet.

@@ -10,8 +10,8 @@
 //! Nodes of the grid are sorted by `(i, j mod 2, k mod 2, j, k)`, with `k` along the body's longest axis. The split
 //! into five tetrahedra repeats every second voxel, and so do the corners of a kind: all even nodes of a row come
 //! first, then all odd ones. Neighboring rows with the same ends follow each other without a break, so that short rows
-//! of a block still fill the lanes. Constraints of one strip share no vertex: corners of a constraint differ in `(i, j
-//! mod 2, k mod 2)`, or two constraints would hold the same slot.
+//! of a block still fill the lanes. Constraints of one strip share no vertex: corners of a constraint differ in
+//! `(i, j mod 2, k mod 2)`, or two constraints would hold the same slot.
 //!
 //! A small body has all nodes of one parity along each axis in a box instead, as many as it would have
 //! if it filled its bounds, so that strips run on over rows and layers of any length.

@@ -1,9 +1,9 @@
 //! Friction during a time step: with bounds from the state before, it has a potential.
 //!
-//! At bend `i` the friction force is `q_i = T_i − T_{i+1}`, and the line slides toward the motor by `s_i = −Σ_{j>i}
-//! (l_j − l_jⁿ)`, the shortening of the path beyond. Coulomb's law with the bounds of the state before is the
-//! derivative of `φ(s)`, `φ' = min(max(qⁿ + k s, low), high)`, which is convex: the return mapping of a step and its
-//! energy.
+//! At bend `i` the friction force is `q_i = T_i − T_{i+1}`, and the line slides toward the motor by
+//! `s_i = −Σ_{j>i} (l_j − l_jⁿ)`, the shortening of the path beyond. Coulomb's law with the bounds of the state before
+//! is the derivative of `φ(s)`, `φ' = min(max(qⁿ + k s, low), high)`, which is convex: the return mapping of a step and
+//! its energy.
 
 use super::capstan::{Hold, Tensions};
 use super::polyline::Polyline;
