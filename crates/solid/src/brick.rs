@@ -26,7 +26,7 @@
 //!
 //! `Φ = U(J) + ⅙ Σ W(S ± Ĥ) + ⅙ K Σ ((1−2ν)/(1−ν))² (H₁₁ + H₂₂)² + E/18 |p₄|² + fibers(S)`
 //!
-//! A voxel that the surface cuts knows where its material is ([`Filling`]). `F₀` is the mean gradient over the
+//! A voxel cut by the surface has a distribution of its material ([`Filling`]). `F₀` is the mean gradient over the
 //! material, of the motion as it is, with its shears:
 //!
 //! `F₀ e₁ = f₁ + p₂⟨ζ⟩ + p₃⟨η⟩ + p₄⟨ηζ⟩`, and so on around,

@@ -6,7 +6,7 @@ use crate::vector::{Vec3, add, rotate, scale, sub};
 pub struct Clamp {
     /// The vertices.
     pub vertices: Vec<u32>,
-    /// Which axes (x, y, z) are held.
+    /// The held axes (x, y, z).
     pub axes: [bool; 3],
     /// The prescribed motion; `None` holds the rest position.
     pub motion: Option<Motion>,

@@ -165,7 +165,7 @@ pub trait RecordedContact: Contact {
     /// Takes the recorded moments of the accepted path, and stops recording.
     fn take_recorded(&mut self) -> Vec<Moment<Self::Memory>>;
 
-    /// Restores a moment of its own. Returns whether the pattern of the stiffness has to be extended.
+    /// Restores a moment of its own recording. Returns whether the pattern of the stiffness has grown.
     fn recall(&mut self, moment: &Moment<Self::Memory>) -> bool;
 
     /// Takes over the contact pairs that another contact had at a moment.

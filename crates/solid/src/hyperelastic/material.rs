@@ -30,7 +30,7 @@ pub enum Model {
         terms: [(f64, f64); 3],
     },
     /// `−μ Jₘ/2 ln(1 − (Ī₁ − 3)/Jₘ)`; the initial shear modulus is `μ`. Past
-    /// [`Model::GENT_REACH`] of the limit the logarithm goes on as its Taylor polynomial.
+    /// [`Model::GENT_REACH`] of the limit the logarithm is continued as its Taylor polynomial.
     Gent {
         /// `μ`.
         shear: f64,

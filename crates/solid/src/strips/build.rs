@@ -248,7 +248,7 @@ impl<'a> Lattice<'a> {
             v[2] * w[0] - v[0] * w[2],
             v[0] * w[1] - v[1] * w[0],
         ];
-        // The axes may have changed hands, so the sign says nothing.
+        // The order of the axes may be left-handed, so the sign carries no information.
         let six_volumes = (0..3).map(|axis| u[axis] * across[axis]).sum::<i32>().abs();
         Kind::Tet(self.side.powi(3) / 6.0 * f64::from(six_volumes))
     }
