@@ -233,8 +233,8 @@ impl Problem {
         self.add_scaled_loads(positions, &|load| load.history.at(time), forces);
     }
 
-    /// Adds external forces except length-controlled tendons, whose stiffness would take a prescribed motion for a
-    /// vibration. Forces of a fluid are not added.
+    /// Adds the external forces (N) at `time` (s) except those of length-controlled tendons, whose stiffness would take a
+    /// prescribed motion for a vibration. Forces of a fluid are not added.
     pub fn add_soft_loads(&self, positions: &[Vec3], time: f64, forces: &mut [Vec3]) {
         let positions = &*self.seen(positions);
         let on = self.vertices(positions);
