@@ -1,4 +1,4 @@
-//! Element matrices on their way into a matrix, and what can be done with them on the way.
+//! Element matrices handed to visitors before assembly, and operations on them.
 
 use crate::ProblemError;
 use crate::vector::Vec3;
@@ -10,7 +10,7 @@ pub type Visitor<'a> = &'a mut dyn FnMut(&[u32], &[f64]);
 /// Matrices of elements with the same number of vertices.
 #[derive(Clone, Copy)]
 pub struct Elements<'a> {
-    /// How many vertices each element has.
+    /// Number of vertices of each element.
     pub width: usize,
     /// The vertices of one element after the other.
     pub vertices: &'a [u32],
@@ -22,7 +22,7 @@ pub struct Elements<'a> {
 pub type ElementsVisitor<'a> = &'a mut dyn FnMut(Elements<'_>);
 
 impl<'a> Elements<'a> {
-    /// One element after the other.
+    /// Iterates over the elements: vertices and matrix of each.
     pub fn iter(self) -> impl Iterator<Item = (&'a [u32], &'a [f64])> {
         let matrices = self.matrices.chunks(9 * self.width * self.width);
         self.vertices.chunks(self.width).zip(matrices)

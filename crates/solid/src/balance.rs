@@ -1,37 +1,37 @@
-//! Balance of forces: the residual that tells rest from motion, reactions and moments.
+//! Balance of forces: the residual that separates rest from motion, reactions and moments.
 
 use crate::vector::{Vec3, add, axpy, cross, dot};
 use crate::{Load, Problem, elastic};
 
-/// A strain that counts as none: ten times the rounding of a coordinate a thousand voxels away,
-/// in units of the voxel, would be 1e-12; measured strains are never better known than 1e-5.
+/// Strain below which a body counts as unstrained: ten times the rounding of a coordinate a thousand voxels away, in
+/// units of the voxel, would be 1e-12; measured strains are never better known than 1e-5.
 pub const NEGLIGIBLE_STRAIN: f64 = 1e-8;
 
-/// Forces on all vertices of a body, sorted by who carries them.
+/// Forces on all vertices of a body, split into residual, reactions and net force.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Balance {
-    /// Norm of the forces left over on free vertices in N.
+    /// Norm of the unbalanced forces on free axes, N.
     pub residual: f64,
-    /// Norm against which the residual counts, in N: that of the external forces and of what is attached to the
-    /// body, or, where there are none (a motion is prescribed), that of the reactions. Reactions of a cantilever are
-    /// many times its load, so a residual small against them would still leave it unbent. Never
-    /// below the forces of a [`NEGLIGIBLE_STRAIN`], so that a body without any force is at rest.
+    /// Reference norm for the residual, N: that of the external forces and of attached terms, or, where there are none
+    /// (a motion is prescribed), that of the reactions. Reactions of a cantilever are many times its load, so a
+    /// residual small against them would still leave it unbent. Never below the forces of a [`NEGLIGIBLE_STRAIN`], so
+    /// that a body without any force is at rest.
     pub scale: f64,
-    /// The larger of that of external and attached forces and that of the reactions in N.
+    /// The larger of two norms, N: of the external and attached forces, and of the reactions.
     pub largest: f64,
     /// Elastic plus external force on every vertex in N.
     pub net: Vec<Vec3>,
-    /// What clamps and floor answer with: minus the net force on held axes, N.
+    /// Reactions of clamps and floor: minus the net force on held axes, N.
     pub reactions: Vec<Vec3>,
 }
 
 impl Balance {
-    /// The residual without units.
+    /// The relative residual: residual over `scale`, without unit.
     pub fn relative_residual(&self) -> f64 {
         self.residual / self.scale
     }
 
-    /// The residual over the largest forces there are: beyond all bounds only in a step that blows up.
+    /// Residual over `largest`, the largest forces: it exceeds all bounds only in a step that blows up.
     pub fn excess(&self) -> f64 {
         self.residual / self.largest
     }
@@ -50,12 +50,12 @@ impl Balance {
     }
 }
 
-/// The balance of a body at `positions` under its loads at `time` (s).
+/// Computes the balance of a body at `positions` under its loads at `time` (s).
 pub fn balance(problem: &Problem, positions: &[Vec3], time: f64) -> Balance {
     balance_under(problem, positions, &|load| load.history.at(time))
 }
 
-/// The balance of a body at `positions` with a factor of the caller's on each load.
+/// Computes the balance of a body at `positions` with a load factor of the caller's on each load.
 pub fn balance_under(
     problem: &Problem,
     positions: &[Vec3],
@@ -68,8 +68,8 @@ pub fn balance_under(
     balance_of_forces(problem, positions, &external, net)
 }
 
-/// The balance of a body at `positions` under external forces (N) and forces that are elastic plus
-/// external (N), for callers that have them.
+/// Computes the balance of a body at `positions` from external forces (N) and net forces (elastic plus external, N),
+/// for callers that have them.
 pub fn balance_of_forces(
     problem: &Problem,
     positions: &[Vec3],
@@ -78,7 +78,8 @@ pub fn balance_of_forces(
 ) -> Balance {
     let count = positions.len();
     let mut reactions = vec![[0.0; 3]; count];
-    // Squares apart: a spring that carries all of a load is as large as the load, not nothing with it.
+    // Squares are summed apart: a spring that carries all of a load must count as large as the load, not cancel with
+    // it.
     let (mut residual, mut applied, mut supported) =
         (0.0, attached_square(problem, positions), 0.0);
     for vertex in 0..count {
@@ -108,7 +109,7 @@ pub fn balance_of_forces(
     }
 }
 
-/// The square of the norm of the forces of what is attached to the body, N².
+/// The squared norm of the forces of attached terms, N².
 fn attached_square(problem: &Problem, positions: &[Vec3]) -> f64 {
     let mut terms = problem.body().attached().peekable();
     if terms.peek().is_none() {
@@ -119,7 +120,7 @@ fn attached_square(problem: &Problem, positions: &[Vec3]) -> f64 {
     forces.iter().map(|force| dot(*force, *force)).sum()
 }
 
-/// The floor carries a vertex that touches it and is pressed down.
+/// Tests whether the floor carries a vertex on this axis: it touches the floor and is pressed down.
 pub fn rests_on_floor(
     problem: &Problem,
     vertex: usize,
@@ -133,14 +134,14 @@ pub fn rests_on_floor(
             .is_some_and(|floor| floor.carries(positions[vertex][2], force))
 }
 
-/// Whether the kinetic energy (J) is below `tolerance` times the elastic energy at `positions`, or
-/// times that of a [`NEGLIGIBLE_STRAIN`].
+/// Tests whether the kinetic energy (J) is below `tolerance` times the elastic energy at `positions`, or times that of
+/// a [`NEGLIGIBLE_STRAIN`].
 pub fn is_still(problem: &Problem, positions: &[Vec3], kinetic: f64, tolerance: f64) -> bool {
     let elastic = elastic::energy(problem.body(), positions);
     is_still_with(problem, elastic, kinetic, tolerance)
 }
 
-/// The same for callers that know the elastic energy (J).
+/// Variant of [`is_still`] for callers that know the elastic energy (J).
 pub fn is_still_with(problem: &Problem, elastic: f64, kinetic: f64, tolerance: f64) -> bool {
     let negligible = NEGLIGIBLE_STRAIN.powi(2) * problem.body().unit_strain_energy();
     kinetic <= tolerance * elastic.max(negligible)
@@ -157,13 +158,13 @@ pub fn cavity_volume(triangles: &[[u32; 3]], positions: &[Vec3]) -> f64 {
     six_volumes / 6.0
 }
 
-/// The external force (N) and moment about the origin (N m) of all loads, and of what ties the body to fixed
-/// points: what the supports answer to.
+/// The total external force (N) and its moment about the origin (N m): of all loads, and of attached terms that tie the
+/// body to fixed points. The reactions of the supports balance it.
 pub fn total_load(problem: &Problem, positions: &[Vec3], time: f64) -> (Vec3, Vec3) {
     total_load_under(problem, positions, &|load| load.history.at(time))
 }
 
-/// The same with a factor of the caller's on each load.
+/// Variant of [`total_load`] with a load factor of the caller's on each load.
 pub fn total_load_under(
     problem: &Problem,
     positions: &[Vec3],

@@ -1,15 +1,15 @@
-//! Work on many pieces on all threads, whose results are taken in the order of the pieces, so that sums
-//! have the same bits for any number of threads.
+//! Work on many items on all threads, whose results are taken in the order of the items, so that sums have the same
+//! bits for any number of threads.
 
 #[cfg(feature = "threads")]
 use rayon::prelude::*;
 
-/// Bodies of fewer pieces than this are quicker on one thread.
+/// Bodies of fewer items than this are quicker on one thread.
 #[cfg(feature = "threads")]
 const WORTHWHILE: usize = 512;
 
-/// Calls `take(index, each(index))` for all indices in order; `each` runs on all threads, `batch` pieces
-/// at a time, whose results are kept in between.
+/// Calls `take(index, each(index))` for all indices in order; `each` runs on all threads, `batch` items at a time,
+/// whose results are kept in between.
 pub(crate) fn in_order<U: Send>(
     count: usize,
     #[cfg_attr(not(feature = "threads"), expect(unused_variables))] batch: usize,
@@ -32,8 +32,8 @@ pub(crate) fn in_order<U: Send>(
     }
 }
 
-/// The same for work on `group` pieces at a time: `fill(first, results)` sets those of the pieces from `first` on, and
-/// `take(first, results)` gets those of one or more groups.
+/// Variant of [`in_order`] for work on `group` items at a time: `fill(first, results)` sets those of the items from
+/// `first` on, and `take(first, results)` gets those of one or more groups.
 pub(crate) fn groups_in_order<U: Clone + Send>(
     count: usize,
     #[cfg_attr(not(feature = "threads"), expect(unused_variables))] batch: usize,

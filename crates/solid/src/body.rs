@@ -38,8 +38,8 @@ pub(crate) const TET_EDGES: [([usize; 2], [usize; 2]); 6] = [
     ([2, 3], [0, 1]),
 ];
 
-/// How far an edge may be from that of a cube, relative to it, so that angles need no arc tangent: positions
-/// are products of integers and the voxel size, exact to rounding.
+/// Largest relative difference between an edge and that of a cube for which angles need no arc tangent: positions are
+/// products of integers and the voxel size, exact to rounding.
 const CUBE_SLACK: f64 = 1e-9;
 
 /// The plain arrays that a body is built from.
@@ -56,23 +56,24 @@ pub struct Mesh {
     /// The part of each block that is filled with material, above zero; empty means all of it.
     /// Masses and all stiffness scale with it.
     pub block_fraction: Vec<f64>,
-    /// Where in each block its material is; empty means all over. Hyperelastic voxels bend accordingly;
-    /// lattices and masses do not heed it.
+    /// Distribution of the material within each block; empty means uniform. Hyperelastic voxels bend accordingly;
+    /// lattices and masses ignore it.
     pub block_filling: Vec<Filling>,
     /// The directions of each block's edges, unit vectors row by row; empty means x, y and z.
     pub block_axes: Vec<Mat3>,
-    /// Groups of eight blocks of a hyperelastic material that are one element, a cube of twice the side, on one lattice of
-    /// such cubes.
+    /// Groups of eight blocks of a hyperelastic material that are one element, a cube of twice the side; all such cubes
+    /// lie on one grid of that size.
     pub coarse: Vec<[u32; 8]>,
     /// Membranes on triangles.
     pub membranes: Vec<Membrane>,
-    /// What else is attached.
+    /// Attachments, such as springs.
     pub attachments: Vec<Attachment>,
-    /// Masses (kg) on vertices besides those of the material: of rigid objects, whose vertices no tetrahedron has.
+    /// Point masses (kg) on vertices besides those of the material: of rigid objects, whose vertices no tetrahedron
+    /// has.
     pub point_masses: Vec<(u32, f64)>,
 }
 
-/// Masses and terms.
+/// A body: lumped masses, and the terms of its energy.
 ///
 /// Constraints are solved in chunks of several blocks (voxels) of one color; blocks of one color
 /// share no vertex. Within a chunk, constraints of different blocks alternate. An edge belongs to
@@ -133,7 +134,7 @@ impl Body {
         for &(vertex, mass) in &mesh.point_masses {
             masses[vertex as usize] += mass;
         }
-        // Of what is bonded to membranes: Young's modulus times size, the least around each vertex, in N/m.
+        // Stiffness of the material bonded to membranes: Young's modulus times size, the least around each vertex, N/m.
         let mut behind = vec![f64::INFINITY; mesh.vertices.len()];
         let mut found: Vec<Edge> = Vec::new();
         let mut edges_from = EdgesFrom::new(mesh.vertices.len());
@@ -231,8 +232,8 @@ impl Body {
             ties.hand_over_numbers(&mut masses);
         }
         let edges: Vec<Edge> = edge_order.into_iter().map(|index| found[index]).collect();
-        // The list of hyperelastic materials keeps the places of the parts; lattices leave theirs to
-        // a neighbor, which no brick asks for. Those that differ from voxel to voxel, as they are there, follow.
+        // The list of hyperelastic materials keeps the indices of the parts; the entry of a lattice is filled with that
+        // of a neighbor, which no brick uses. Materials that differ from voxel to voxel follow.
         let hyperelastic: Vec<HyperelasticMaterial> = if bricks.is_empty() {
             Vec::new()
         } else {
@@ -285,7 +286,7 @@ impl Body {
         Ok(body)
     }
 
-    /// Lets the free faces of hyperelastic voxels warp, but for those that are `held`: axes for each vertex. `pressed` are the
+    /// Lets the free faces of hyperelastic voxels warp, except those `held` (axes for each vertex). `pressed` are the
     /// triangles under pressure.
     pub(crate) fn warp_unless(&mut self, held: &[[bool; 3]], pressed: &[[u32; 3]]) {
         let (small, materials) = (self.small_bricks(), &self.bricks.materials);
@@ -300,19 +301,19 @@ impl Body {
         }
     }
 
-    /// Sets the peaks (J/m³) of voxels that soften.
+    /// Sets the peak isochoric energies (J/m³) of voxels that soften.
     pub(crate) fn set_peaks(&mut self, peaks: &[f64]) {
         self.bricks.set_peaks(peaks);
     }
 
-    /// Makes the free stretch of all materials that of a time in s.
+    /// Sets the free stretch of all materials to that of a time (s).
     pub(crate) fn begin(&mut self, time: f64) {
         for material in &mut self.bricks.materials {
             material.begin(time);
         }
     }
 
-    /// The time in s after which no material changes by itself.
+    /// The time in s after which no free stretch changes.
     pub fn growth_end(&self) -> f64 {
         self.growths().map(Growth::end).fold(0.0, f64::max)
     }
@@ -345,14 +346,14 @@ impl Body {
         Ok(())
     }
 
-    /// Adds surfaces that touch.
+    /// Adds the contact term.
     pub(crate) fn touch(&mut self, contact: Box<dyn Contact>) -> Result<(), ProblemError> {
         contact.check(self.rest.len())?;
         self.foreign.push(Foreign::Contact(contact));
         Ok(())
     }
 
-    /// The surfaces that touch.
+    /// The contact term, if there is one.
     pub fn contact(&self) -> Option<&dyn Contact> {
         self.foreign.iter().find_map(|foreign| match foreign {
             Foreign::Contact(contact) => Some(&**contact),
@@ -360,7 +361,7 @@ impl Body {
         })
     }
 
-    /// The same, to let them remember.
+    /// Mutable access to the contact term, so that it can update its memory.
     pub(crate) fn contact_mut(&mut self) -> Option<&mut Box<dyn Contact>> {
         self.foreign.iter_mut().find_map(|foreign| match foreign {
             Foreign::Contact(contact) => Some(contact),
@@ -368,31 +369,32 @@ impl Body {
         })
     }
 
-    /// Everything that has an energy, block by block.
+    /// All terms of the energy, block by block.
     pub fn terms(&self) -> impl Iterator<Item = &dyn Term> {
         let own: [&dyn Term; 4] = [&self.edges, &self.tets, &self.bricks, &self.membranes];
         own.into_iter().chain(self.attached())
     }
 
-    /// All but hyperelastic voxels, which answer to more than positions within a step ([`crate::elastic::respond`]).
+    /// All terms but hyperelastic voxels, whose response within a step depends on more than positions
+    /// ([`crate::elastic::respond`]).
     pub fn terms_but_bricks(&self) -> impl Iterator<Item = &dyn Term> {
         let own: [&dyn Term; 3] = [&self.edges, &self.tets, &self.membranes];
         own.into_iter().chain(self.attached())
     }
 
-    /// All but membranes, whose stiffness some solvers deal with apart.
+    /// All terms but membranes, whose stiffness some solvers treat separately.
     pub fn terms_but_membranes(&self) -> impl Iterator<Item = &dyn Term> {
         let own: [&dyn Term; 3] = [&self.edges, &self.tets, &self.bricks];
         own.into_iter().chain(self.attached())
     }
 
-    /// What joins vertices that need not share a voxel: membranes and attached terms.
+    /// Terms that couple vertices which need not share a voxel: membranes and attached terms.
     pub fn terms_beyond_voxels(&self) -> impl Iterator<Item = &dyn Term> {
         let own: [&dyn Term; 1] = [&self.membranes];
         own.into_iter().chain(self.attached())
     }
 
-    /// The terms that are not made of the mesh.
+    /// The attached terms: those not built from the mesh.
     pub fn attached(&self) -> impl Iterator<Item = &dyn Term> {
         let own = self.attachments.iter().map(|attachment| &**attachment);
         own.chain(self.foreign.iter().map(Foreign::term))
@@ -403,12 +405,13 @@ impl Body {
         &self.bricks
     }
 
-    /// Which vertices follow others.
+    /// Ties of the hanging nodes: which vertices follow others.
     pub fn ties(&self) -> &Ties {
         &self.bricks.ties
     }
 
-    /// The voxels of the mesh that are hyperelastic: those of [`Body::bricks`], but where eight of them are one element.
+    /// The hyperelastic voxels of the mesh: those of [`Body::bricks`], but with the eight small ones in place of each
+    /// coarse element.
     pub fn small_bricks(&self) -> &[Brick] {
         if self.coarse.is_empty() {
             &self.bricks.bricks
@@ -417,7 +420,7 @@ impl Body {
         }
     }
 
-    /// The one of [`Body::bricks`] that a voxel of the mesh is, or is a part of.
+    /// Index in [`Body::bricks`] of the element that a voxel of the mesh is, or is a part of.
     pub fn element_of(&self, small: usize) -> usize {
         let element = self.coarse.element.get(small);
         element.map_or(small, |element| *element as usize)
@@ -466,13 +469,12 @@ impl Body {
             .map(move |i| (range(&self.chunk_edges, i), range(&self.chunk_tets, i)))
     }
 
-    /// Where each color ends in [`Body::chunks`]: chunks of one color share no vertex.
+    /// End of each color in [`Body::chunks`]: chunks of one color share no vertex.
     pub fn colors(&self) -> &[u32] {
         &self.colors
     }
 
-    /// The norm over vertices of the elastic forces at a strain of one, in N: a measure of force that
-    /// does not need a load.
+    /// The norm over vertices of the elastic forces at a strain of one, N: a scale of force that does not need a load.
     pub fn unit_strain_force(&self) -> f64 {
         self.unit_strain_force
     }
@@ -482,18 +484,18 @@ impl Body {
         self.unit_strain_energy
     }
 
-    /// The diagonal of the bounding box at rest in m, of what has material: the size against which motion is measured.
+    /// Diagonal of the bounding box of the tetrahedra at rest, m: the length scale of motion.
     pub fn size(&self) -> f64 {
         self.size
     }
 }
 
-/// A term of a kind that is not known here.
+/// A term of a type defined outside this module.
 #[derive(Debug)]
 enum Foreign {
-    /// One without memory, which copies share.
+    /// A term without memory, which copies share.
     Term(Arc<dyn Term>),
-    /// Contact with its memory.
+    /// The contact term with its memory.
     Contact(Box<dyn Contact>),
 }
 
@@ -515,7 +517,7 @@ impl Clone for Foreign {
     }
 }
 
-/// Two are the same if they are one, or remember the same.
+/// Two foreign terms are equal if they are the same object, or contact with equal memory.
 impl PartialEq for Foreign {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
@@ -526,7 +528,7 @@ impl PartialEq for Foreign {
     }
 }
 
-/// The edges from each vertex to higher ones, a dozen at most in a mesh of voxels: a list for each.
+/// The edges from each vertex to higher-numbered ones, a dozen at most in a mesh of voxels, as linked lists.
 struct EdgesFrom {
     /// The last edge from each vertex.
     last: Vec<u32>,
@@ -664,20 +666,19 @@ fn fraction_of(mesh: &Mesh, block: &[usize]) -> f64 {
     mesh.block_fraction.get(index).copied().unwrap_or(1.0)
 }
 
-/// Where the material of a block is, given by its tetrahedra.
-/// The directions of the edges of a block; `None` where they are those of the axes.
+/// The edge directions of a block, given by its tetrahedra; `None` for x, y and z.
 fn axes_of(mesh: &Mesh, block: &[usize]) -> Option<Mat3> {
     let index = mesh.tet_block[block[0]] as usize;
     mesh.block_axes.get(index).copied()
 }
 
+/// The distribution of material in a block, given by its tetrahedra.
 fn filling_of(mesh: &Mesh, block: &[usize]) -> Filling {
     let index = mesh.tet_block[block[0]] as usize;
     *mesh.block_filling.get(index).unwrap_or(&Filling::FULL)
 }
 
-/// The signed volume of a tetrahedron in m³.
-/// The diagonal of the box around all tetrahedra, around all vertices where there are none.
+/// The diagonal of the bounding box of all tetrahedra, of all vertices if there are none, m.
 fn size_of(mesh: &Mesh) -> f64 {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     let mut take = |p: Vec3| {
@@ -694,6 +695,7 @@ fn size_of(mesh: &Mesh) -> f64 {
     norm(sub(high, low))
 }
 
+/// The signed volume of a tetrahedron in m³.
 fn volume(vertices: &[Vec3], tet: [u32; 4]) -> f64 {
     let [a, b, c, d] = tet.map(|v| vertices[v as usize]);
     dot(sub(b, a), cross(sub(c, a), sub(d, a))) / 6.0
@@ -785,7 +787,8 @@ mod tests {
         let vertices: Vec<Vec3> = (0..8).map(corner).collect();
         let middle = [0, 3, 5, 6];
         let mut tets = vec![middle];
-        // Each of the other corners, with its three neighbors, which are corners of the middle one.
+        // The other four tetrahedra: each of the other corners, with its three neighbors, which are corners of the
+        // middle one.
         tets.extend([1, 2, 4, 7].map(|apex: u32| [apex, apex ^ 1, apex ^ 2, apex ^ 4]));
         for tet in tets {
             for (pair, opposite) in TET_EDGES {
@@ -794,7 +797,7 @@ mod tests {
                 let apexes = opposite.map(|corner| tet[corner]);
                 let angle = dihedral(&vertices, ends, apexes);
                 let share = share_in_cube(length, volume(&vertices, tet).abs(), side).unwrap();
-                // A few roundings of a number below one.
+                // Tolerance: a few roundings of a number below one.
                 assert!((share * TAU - angle).abs() < 1e-15, "{tet:?} {pair:?}");
             }
         }

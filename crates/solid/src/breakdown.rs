@@ -1,15 +1,15 @@
-//! Where a run breaks down: a vertex that goes farther than makes sense.
+//! Breakdown of a run: a vertex that moves farther than is plausible.
 
 use crate::Problem;
 use crate::vector::{Vec3, norm, sub};
 
-/// How far a vertex may go from its rest position, in body sizes beyond the clamps' own motion.
+/// Largest distance of a vertex from its rest position, in body sizes beyond the clamps' own motion.
 const FARTHEST_SIZES: f64 = 10.0;
 
-/// Where and when a run broke down.
+/// Place and time at which a run broke down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Breakdown {
-    /// The vertex that went farthest or lost its number.
+    /// The vertex that went farthest or became NaN.
     pub vertex: usize,
     /// Its position at rest in m.
     pub rest: Vec3,
@@ -18,7 +18,7 @@ pub struct Breakdown {
 }
 
 impl Breakdown {
-    /// The first vertex that is not a number or has gone past `limit` (m), if there is one.
+    /// Finds the first vertex that is NaN or has gone past `limit` (m), if there is one.
     pub fn find(problem: &Problem, positions: &[Vec3], limit: f64, when: f64) -> Option<Self> {
         let rest = problem.body().rest();
         let beyond = |vertex: &usize| {
@@ -33,7 +33,7 @@ impl Breakdown {
         })
     }
 
-    /// The vertex that has gone farthest, for a run that broke down without leaving the limits.
+    /// The vertex that has moved farthest, for a run that broke down without leaving the limits.
     pub fn farthest(problem: &Problem, positions: &[Vec3], when: f64) -> Self {
         let rest = problem.body().rest();
         let distance = |vertex: usize| norm(sub(positions[vertex], rest[vertex]));
@@ -48,7 +48,7 @@ impl Breakdown {
     }
 }
 
-/// The farthest distance in m that a vertex may sensibly travel.
+/// The largest plausible displacement of a vertex in m.
 pub fn travel_limit(problem: &Problem) -> f64 {
     let body = problem.body();
     let clamps = problem.clamps().iter().flat_map(|clamp| {

@@ -12,8 +12,8 @@
 //!
 //! Along each axis, say ζ, the stretch varies linearly, `S ± Ĥ_ζ` at `ζ = ±1`, with
 //!
-//! - `H₁₁ = p̂₂·e₁`, `H₂₂ = p̂₁·e₂`: bending. The shear `γ₁₃ ∝ ξ` that comes with the mode is left
-//!   out: it is what locks a full brick.
+//! - `H₁₁ = p̂₂·e₁`, `H₂₂ = p̂₁·e₂`: bending. The shear `γ₁₃ ∝ ξ` that comes with the mode is left out: it is the
+//!   parasitic shear that locks a full brick.
 //! - `H₃₃/S₃₃ = −ν/(1−ν) (H₁₁/S₁₁ + H₂₂/S₂₂)`: a plate that bends is free to change its thickness, in
 //!   proportion to its present shape.
 //! - `H₁₂ = (p̂₁·e₁ + p̂₂·e₂)/2`: twist.
@@ -26,21 +26,21 @@
 //!
 //! `Φ = U(J) + ⅙ Σ W(S ± Ĥ) + ⅙ K Σ ((1−2ν)/(1−ν))² (H₁₁ + H₂₂)² + E/18 |p₄|² + fibers(S)`
 //!
-//! A voxel that the surface cuts knows where its material is ([`Filling`]). `F₀` is the mean gradient over the material,
-//! of the motion as it is, with its shears:
+//! A voxel cut by the surface has a distribution of its material ([`Filling`]). `F₀` is the mean gradient over the
+//! material, of the motion as it is, with its shears:
 //!
 //! `F₀ e₁ = f₁ + p₂⟨ζ⟩ + p₃⟨η⟩ + p₄⟨ηζ⟩`, and so on around,
 //!
-//! as the mean strain decides whether a uniform stress is in equilibrium with an oblique surface. `Ĥ` is
-//! the deviation from the center of the material, and becomes `σ Ĥ` with its spread `σ` along each axis, which integrates
-//! the energy to second order.
+//! as the mean strain decides whether a uniform stress is in equilibrium with an oblique surface. `Ĥ` is the deviation
+//! from the center of the material, and becomes `σ Ĥ` with its spread `σ` along each axis, which integrates the energy
+//! to second order.
 //!
-//! A voxel whose free stretch varies across it ([`crate::Growth`]) has `h` times their mean in place of `h`, and in all of the
-//! above its hourglass modes without those that it has free of stress: `p̂₂·e₁ − b₃` and `p̂₁·e₂ − b₃` along ζ, with half the
-//! difference `b₃` of the free stretches at `ζ = ±1` over their mean. (`b₃ S` would be right for large elastic strain as well;
-//! the difference is of the order of `b (S − 1)`, and `b` is one of the voxel size.)
+//! A voxel whose free stretch varies across it ([`crate::Growth`]) has `h` times their mean in place of `h`, and in all
+//! of the above its hourglass modes without those that it has free of stress: `p̂₂·e₁ − b₃` and `p̂₁·e₂ − b₃` along ζ,
+//! with half the difference `b₃` of the free stretches at `ζ = ±1` over their mean. (`b₃ S` would be right for large
+//! elastic strain as well; the difference is of the order of `b (S − 1)`, and `b` is one of the voxel size.)
 //!
-//! Where faces of a voxel are free, `W` sees less of its mean shear: `S̃` in place of `S`, see [`Warping`] and
+//! If faces of a voxel are free, `W` sees less of its mean shear: `S̃` in place of `S`, see [`Warping`] and
 //! [`crate::warping`].
 //!
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
@@ -82,28 +82,29 @@ pub struct Brick {
     pub side: f64,
     /// The part of the cube that is filled with material.
     pub fraction: f64,
-    /// Where in the cube the material is.
+    /// Distribution of the material in the cube.
     pub filling: Filling,
-    /// How its free faces warp.
+    /// Warping of its free faces.
     pub warping: Warping,
-    /// The largest isochoric energy (J/m³) that it has had, by which it may be softer.
+    /// The largest isochoric energy (J/m³) so far, the memory of softening.
     pub peak: f64,
 }
 
-/// Which tangent.
+/// Choice of the tangent stiffness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tangent {
     /// The Hessian of the energy.
     Exact,
-    /// Without what stress adds to it: of a state that a long step has swollen, whose pressure is spurious.
+    /// The Hessian without its geometric (initial stress) part: for a state that a long step has swollen, whose
+    /// pressure is spurious.
     Stressless,
 }
 
-/// What a voxel answers with over a step, besides its elastic deviatoric stress `s`: the change of its volume, and
-/// a viscous stress `share s + stress`. Both have a potential.
+/// Response of a voxel within a time step, besides its elastic deviatoric stress `s`: the pressure law for its change
+/// of volume, and a viscous stress `share s + stress`. Both have a potential.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Within {
-    /// The answer to its change of volume.
+    /// The pressure as a function of the change of volume.
     pub pressure: Pressure,
     /// The viscous share of `s`.
     pub share: f64,
@@ -112,7 +113,7 @@ pub struct Within {
 }
 
 impl Within {
-    /// The elastic answer alone.
+    /// The elastic response alone.
     pub fn elastic(material: &HyperelasticMaterial) -> Self {
         Self {
             pressure: Pressure::of(material),
@@ -129,7 +130,7 @@ impl Within {
     }
 }
 
-/// What [`Brick::respond`] gives.
+/// Result of [`Brick::respond`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BrickResponse {
     /// The elastic energy in J, with `p²/2K` for the change of volume.
@@ -142,16 +143,16 @@ pub struct BrickResponse {
     pub forces: [Vec3; CORNERS],
 }
 
-/// Strain and pressure of a voxel as unknowns of their own ([`crate::mixed`]).
+/// Strain and pressure of a voxel as unknowns of their own (mixed formulation, [`crate::mixed`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Carried {
     pub(crate) strain: BrickStrain,
-    /// The pressure that is carried is that of the strain at this shift.
+    /// The pressure law: the carried pressure is that of the strain with this shift.
     pub(crate) pressure: Pressure,
 }
 
 impl Carried {
-    /// No strain and no pressure: what is there before an answer is.
+    /// Placeholder of zero strain and pressure, for buffers that are filled later.
     pub(crate) const NOTHING: Self = Self {
         strain: BrickStrain {
             stretch: [0.0; 6],
@@ -167,7 +168,7 @@ impl Carried {
 /// A dense stiffness matrix of a voxel; row and column `3 corner + axis`.
 pub type BrickMatrix = [[f64; 24]; 24];
 
-/// How `R` turns when `F₀` changes: with `B = Rᵀ dF₀`, `Rᵀ dR = [w]×` and `G w = axial(B − Bᵀ)`,
+/// Matrix of the spin of `R` when `F₀` changes: with `B = Rᵀ dF₀`, `Rᵀ dR = [w]×` and `G w = axial(B − Bᵀ)`,
 /// `G = tr S − S`.
 fn spin_matrix(stretch: &Mat3) -> Mat3 {
     let trace = stretch[0][0] + stretch[1][1] + stretch[2][2];
@@ -185,14 +186,14 @@ fn add_outer(matrix: &mut Mat3, a: Vec3, b: Vec3) {
 }
 
 impl Brick {
-    /// The side in m that it has free of stress now: swollen by λ it stores λ³ W(F/λ), which is the energy of a cube λ times
-    /// as large.
+    /// The side in m of the stress-free voxel now: swollen by λ it stores λ³ W(F/λ), which is the energy of a cube λ
+    /// times as large.
     #[inline(always)]
     pub fn free_side(&self, material: &HyperelasticMaterial) -> f64 {
         self.side * material.swelling()
     }
 
-    /// The volume of its material in m³, free of stress.
+    /// The stress-free volume of its material in m³.
     #[inline(always)]
     pub fn volume(&self, material: &HyperelasticMaterial) -> f64 {
         self.fraction * self.free_side(material).powi(3)
@@ -240,7 +241,7 @@ impl Brick {
         self.volume(material) * self.rotated(material, positions).energy(material)
     }
 
-    /// The isochoric energy (J/m³) that it would have, had it not been stretched before.
+    /// The isochoric energy (J/m³) of the virgin material, without softening.
     pub fn virgin_energy(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> f64 {
         self.rotated(material, positions).virgin(material).value
     }
@@ -251,7 +252,7 @@ impl Brick {
         std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]))
     }
 
-    /// How the mean deformation gradient depends on each corner: `F₀ = Σ x ⊗ g`, `g` in 1/m.
+    /// Derivatives of the mean deformation gradient by each corner: `F₀ = Σ x ⊗ g`, `g` in 1/m.
     pub(crate) fn gradients(&self, material: &HyperelasticMaterial) -> [(u32, Vec3); CORNERS] {
         let factor = 1.0 / (4.0 * self.free_side(material));
         std::array::from_fn(|corner| {
@@ -262,7 +263,7 @@ impl Brick {
         })
     }
 
-    /// The smallest ratio of the volume now to that at rest, of the points over which the energy is the mean.
+    /// The smallest volume ratio `J` among the points over which the energy is the mean.
     pub fn smallest_volume_ratio(
         &self,
         material: &HyperelasticMaterial,
@@ -272,8 +273,8 @@ impl Brick {
             .smallest_volume(material.thinning())
     }
 
-    /// The Cauchy stress in Pa of the mean deformation, `R (T − [y]×) S Rᵀ / J` in the words of
-    /// [`Brick::forces`]; bending modes have no part in it, but for how much softer they have made it.
+    /// The Cauchy stress in Pa of the mean deformation, `R (T − [y]×) S Rᵀ / J` in the notation of [`Brick::forces`];
+    /// bending modes do not contribute, except through their share in the softening.
     pub fn cauchy_stress(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> Mat3 {
         let mut modes = self.modes(material, positions);
         let softness = self.rotated(material, positions).softness(material);
@@ -341,8 +342,8 @@ impl Brick {
         }
     }
 
-    /// The elastic forces and those of a viscous stress, which `viscous` gives for the deviatoric
-    /// part of the elastic one; both are in the rotated frame, so that a turn changes neither.
+    /// The elastic forces plus those of a viscous stress, which `viscous` computes from the deviatoric part of the
+    /// elastic stress; both are in the rotated frame, so that a rotation changes neither.
     pub fn viscous_forces(
         &self,
         material: &HyperelasticMaterial,
@@ -357,8 +358,7 @@ impl Brick {
         self.spread_stress(&state, &stress, material)
     }
 
-    /// The forces of the stress that is predicted for `positions`:
-    /// `Φ'(ê) + Φ''(ê, p̂)(e − ê)`; see [`crate::mixed`].
+    /// The forces of the stress extrapolated to `positions`: `Φ'(ê) + Φ''(ê, p̂)(e − ê)`; see [`crate::mixed`].
     pub fn predicted_forces(
         &self,
         material: &HyperelasticMaterial,
@@ -418,8 +418,8 @@ impl Brick {
     /// changes `S` by `B − ΩS`, `p̂ₘ` by `bₘ − Ωp̂ₘ`. The gradients `T − [y]×` and `sₘ` change by
     /// `Ω(T − [y]×) + dT − [dy]×` and `Ωsₘ + dsₘ`, with `G dy = axial(dN − dNᵀ) − dG y`.
     ///
-    /// With strain and pressure that are `carried`, stress and moduli are those of these, and only the frame
-    /// is that of `positions`; see [`crate::mixed`].
+    /// With `carried` strain and pressure, stress and moduli are evaluated at these, and only the frame is that of
+    /// `positions`; see [`crate::mixed`].
     pub fn stiffness(
         &self,
         material: &HyperelasticMaterial,
@@ -432,7 +432,7 @@ impl Brick {
         self.stiffness_within(material, positions, strain, &within, Tangent::Exact)
     }
 
-    /// The same within a step, and with the stress that is there or without it.
+    /// Variant of [`Brick::stiffness`] within a step, with or without the geometric part.
     pub fn stiffness_within(
         &self,
         material: &HyperelasticMaterial,
@@ -519,8 +519,8 @@ impl Brick {
         self.expand(material, &rotated, &state.rotation)
     }
 
-    /// Strain and pressure after a step `moves` from `positions`, to first order from what was carried `before` (by default
-    /// what is there).
+    /// Predicts strain and pressure after a step `moves` from `positions`, to first order, from the values carried
+    /// `before` (by default those of `positions`).
     pub fn carry(
         &self,
         material: &HyperelasticMaterial,
@@ -544,7 +544,7 @@ impl Brick {
         }
     }
 
-    /// The strain at `positions` with another pressure (Pa, positive in tension).
+    /// The strain at `positions` with a prescribed pressure (Pa, positive in tension).
     pub fn with_pressure(
         &self,
         material: &HyperelasticMaterial,
@@ -563,7 +563,7 @@ impl Brick {
         }
     }
 
-    /// The strain of a state, and how it changes along `moves` to first order.
+    /// Predicts the strain after a step `moves` from a state, to first order.
     fn predict_strain(
         &self,
         material: &HyperelasticMaterial,
@@ -589,7 +589,7 @@ impl Brick {
         strain
     }
 
-    /// Turns the blocks back and spreads modes over corners.
+    /// Rotates the blocks back and distributes modes to corners.
     fn expand(
         &self,
         material: &HyperelasticMaterial,

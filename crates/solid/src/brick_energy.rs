@@ -17,7 +17,7 @@ const SQRT_2: f64 = std::f64::consts::SQRT_2;
 /// The three axes `n` with the other two.
 pub(crate) const AXES: [(usize, usize, usize); 3] = [(0, 1, 2), (1, 2, 0), (2, 0, 1)];
 
-/// The axes of an off-diagonal place of a [`Sym`] are the two that differ from it.
+/// Offset of the off-diagonal entries of a [`Sym`]: entry `OFF + n` couples the two axes other than `n`.
 pub(crate) const OFF: usize = 3;
 
 /// The columns of the mean gradient and the four hourglass vectors.
@@ -26,7 +26,7 @@ pub(crate) type Modes = [Vec3; 7];
 /// The generalized coordinates that the energy depends on: `S` (Mandel) and `p̂₁ … p̂₃`.
 pub(crate) const SHAPE: usize = 15;
 
-/// Where in a voxel its material is, along each axis, in units of half an edge.
+/// Distribution of the material in a voxel, along each axis, in units of half an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Filling {
     /// The center of the material, the means of ξ, η, ζ over it; 0 is that of the voxel.
@@ -38,14 +38,14 @@ pub struct Filling {
 }
 
 impl Filling {
-    /// That of a full voxel.
+    /// A full voxel.
     pub const FULL: Self = Self {
         shift: [0.0; 3],
         spread: [1.0; 3],
         products: [0.0; 3],
     };
 
-    /// Makes the mean gradient over the voxel that over the material.
+    /// Turns the mean gradient over the voxel into that over the material.
     ///
     /// The gradient of the trilinear motion is `∂x/∂ξ = f₁ + p₂ζ + p₃η + p₄ηζ`, and so on around.
     pub(crate) fn average(&self, modes: &mut Modes) {
@@ -62,9 +62,10 @@ impl Filling {
         }
     }
 
-    /// The transpose of [`Filling::average`]: makes slopes by the averaged modes those by the modes themselves.
+    /// The transpose of [`Filling::average`]: turns derivatives by the averaged modes into those by the modes
+    /// themselves.
     ///
-    /// `add(to, part, from)` adds `part` times the slope `from` to the slope `to`.
+    /// `add(to, part, from)` adds `part` times the derivative `from` to the derivative `to`.
     pub(crate) fn distribute(&self, mut add: impl FnMut(usize, f64, usize)) {
         for (n, i, j) in AXES {
             add(3 + i, self.shift[j], n);
@@ -74,17 +75,17 @@ impl Filling {
     }
 }
 
-/// Where the energy of one voxel comes from, at one state.
+/// Arguments of the energy of one voxel: its modes in the rotated frame.
 pub(crate) struct Rotated {
     pub filling: Filling,
     pub warping: Warping,
     pub rotation: Mat3,
     pub stretch: Sym,
     pub hourglass: [Vec3; 3],
-    /// How it bends by itself: half the difference of its free stretches at the two sides of each axis, over their mean.
+    /// Stress-free bending: half the difference of its free stretches at the two sides of each axis, over their mean.
     pub bent: Vec3,
     pub bilinear: Vec3,
-    /// The largest isochoric energy before, in J/m³.
+    /// The largest isochoric energy so far, in J/m³.
     pub peak: f64,
 }
 
@@ -102,7 +103,7 @@ pub struct BrickStrain {
     pub(crate) hourglass: [Vec3; 3],
 }
 
-/// How a voxel answers to its change of volume: `k (J − 1 + shift)`, positive in tension.
+/// Pressure law of a voxel for its change of volume: `k (J − 1 + shift)`, positive in tension.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pressure {
     /// `k` in Pa: the bulk modulus, or less.
@@ -112,7 +113,7 @@ pub struct Pressure {
 }
 
 impl Pressure {
-    /// That of a material.
+    /// The pressure law of a material.
     pub fn of(material: &HyperelasticMaterial) -> Self {
         Self {
             stiffness: material.bulk(),
@@ -120,19 +121,20 @@ impl Pressure {
         }
     }
 
-    /// The pressure (Pa) at a ratio of volumes.
+    /// The pressure (Pa) at a volume ratio.
     pub fn at(self, volume: f64) -> f64 {
         self.stiffness * (volume - 1.0 + self.shift)
     }
 }
 
-/// The energy per rest volume and its gradient, in two parts: that which viscous stress follows, and the rest.
+/// The energy per rest volume and its gradient, in two parts: the deviatoric one, which viscous stress follows, and the
+/// rest.
 pub(crate) struct Parted {
     /// The elastic energy of the material at that pressure.
     pub elastic: f64,
     pub deviatoric_energy: f64,
     pub deviatoric: BrickStress,
-    /// That of the mean change of volume and of the bilinear mode, whose gradient is left out below.
+    /// Energy of the mean change of volume and of the bilinear mode; `other` leaves out the latter's gradient.
     pub other_energy: f64,
     pub other: BrickStress,
     /// The pressure in Pa, positive in tension.
@@ -156,7 +158,7 @@ impl BrickStress {
         hourglass: [[0.0; 3]; 3],
     };
 
-    /// The work per rest volume (J/m³) along a strain.
+    /// The work per rest volume (J/m³) done along a strain.
     pub(crate) fn along(&self, stretch: &Sym, hourglass: &[Vec3; 3]) -> f64 {
         let own = self.hourglass.as_flattened().iter();
         let bent: f64 = own.zip(hourglass.as_flattened()).map(|(s, p)| s * p).sum();
@@ -175,7 +177,7 @@ impl BrickStress {
         self
     }
 
-    /// Adds a row of changes.
+    /// Adds a row of increments.
     pub(crate) fn plus(mut self, row: &[f64; SHAPE]) -> Self {
         for k in 0..6 {
             self.stress[k] += row[k];
@@ -195,7 +197,7 @@ impl Rotated {
         }
     }
 
-    /// The same frame with another strain.
+    /// This state with another strain in the same frame.
     pub fn with_strain(&self, strain: &BrickStrain) -> Self {
         Self {
             filling: self.filling,
@@ -224,7 +226,7 @@ impl Rotated {
         }
     }
 
-    /// The elastic part of a coordinate of an hourglass mode: without that of a voxel which bends by itself.
+    /// The elastic part of a coordinate of an hourglass mode: without its stress-free part.
     #[inline(always)]
     pub(crate) fn elastic_hourglass(&self, mode: usize, axis: usize) -> f64 {
         let free = if mode == axis {
@@ -254,7 +256,7 @@ impl Rotated {
         }
     }
 
-    /// The smallest ratio of volumes at the points over which the energy is the mean.
+    /// The smallest volume ratio among the points over which the energy is the mean.
     pub fn smallest_volume(&self, thinning: f64) -> f64 {
         if let Some(clamped) = self.warping.clamped {
             return self.smallest_clamped_volume(clamped, thinning);
@@ -277,7 +279,7 @@ impl Rotated {
         [reach, -reach].map(|reach| std::array::from_fn(|k| self.stretch[k] + reach * h[k]))
     }
 
-    /// The mean change of volume over the six points, with derivatives where `second` asks.
+    /// The mean volume ratio over the six points, with its Hessian if `second`.
     fn volume(&self, thinning: f64, second: bool) -> Shaped {
         match self.warping.clamped {
             Some(clamped) => self.clamped_volume(clamped, thinning, second),
@@ -285,7 +287,7 @@ impl Rotated {
         }
     }
 
-    /// The mean change of volume and its gradient by the generalized coordinates.
+    /// The mean volume ratio and its gradient by the generalized coordinates.
     pub fn volume_slope(&self, material: &HyperelasticMaterial) -> (f64, [f64; SHAPE]) {
         let volume = self.volume(material.thinning(), false);
         (volume.value, volume.gradient)
@@ -341,30 +343,30 @@ impl Rotated {
         mean
     }
 
-    /// The isochoric energy with its gradient, softened if the material does.
+    /// The isochoric energy with its gradient, softened if the material softens.
     fn isochoric(&self, material: &HyperelasticMaterial) -> Shaped {
         let mut mean = self.virgin(material);
         self.soften(material, false, &mut mean);
         mean
     }
 
-    /// The same where nothing was stretched before.
+    /// The isochoric energy of virgin material, with its gradient.
     pub fn virgin(&self, material: &HyperelasticMaterial) -> Shaped {
         let thinning = material.thinning();
         self.warped_mean(thinning, None, |at| stress_only(material, at))
     }
 
-    /// The part `η` that softening leaves of the isochoric stress.
+    /// The factor `η` by which softening reduces the isochoric stress.
     pub fn softness(&self, material: &HyperelasticMaterial) -> f64 {
         material.mullins().map_or(1.0, |mullins| {
             mullins.soften(self.virgin(material).value, self.peak)[1]
         })
     }
 
-    /// Softens the mean isochoric energy: a voxel remembers one peak.
+    /// Softens the mean isochoric energy, with one peak for the whole voxel.
     ///
-    /// Strain that grows and falls in proportion has the same `W/P` everywhere, and with it the same `η`, up to `m`: what a
-    /// voxel that bends would gain from a peak at each of its points is of second order.
+    /// Strain that grows and falls in proportion has the same `W/P` everywhere, and with it the same `η`, up to `m`:
+    /// for a voxel that bends, a peak at each of its points would change the result in second order only.
     fn soften(&self, material: &HyperelasticMaterial, second: bool, mean: &mut Shaped) {
         let Some(mullins) = material.mullins() else {
             return;
@@ -398,7 +400,7 @@ impl Rotated {
         value
     }
 
-    /// Energy and gradient at once, the part that does not come from the mean change of volume apart.
+    /// Energy and gradient at once, split into the deviatoric part and that of the mean change of volume.
     pub fn response(&self, material: &HyperelasticMaterial, pressure: Pressure) -> Parted {
         let thinning = material.thinning();
         let bulk = material.bulk();
@@ -433,7 +435,7 @@ impl Rotated {
         self.gradient_of(material, &self.isochoric(material))
     }
 
-    /// The gradient with an isochoric part.
+    /// The gradient with a given isochoric part.
     pub fn gradient_of(&self, material: &HyperelasticMaterial, mean: &Shaped) -> BrickStress {
         let volume = self.volume(material.thinning(), false);
         let pressure = material.bulk() * (volume.value - 1.0);
@@ -441,7 +443,7 @@ impl Rotated {
             .plus(&volume.gradient.map(|slope| pressure * slope))
     }
 
-    /// The part of the gradient that does not come from the mean change of volume.
+    /// The gradient without the part of the mean change of volume.
     pub fn deviatoric(&self, material: &HyperelasticMaterial) -> BrickStress {
         self.deviatoric_of(material, &self.isochoric(material))
     }
@@ -464,8 +466,8 @@ impl Rotated {
 
     /// The Hessian by `S` and `p̂` (rows 0–5 and `6 + 3 mode + axis`).
     ///
-    /// The part that does not come from the mean change of volume counts `share` times, that which comes from its
-    /// curvature `curvature` times.
+    /// The part without the mean change of volume counts `share` times. The geometric part of the mean change of
+    /// volume, of the relief of free faces and of the modes at clamps counts `curvature` times.
     pub fn hessian(
         &self,
         material: &HyperelasticMaterial,
@@ -514,7 +516,7 @@ impl Rotated {
 /// An axis and the other two.
 pub(crate) type Axes = (usize, usize, usize);
 
-/// The row of the hourglass coordinate `axis` of a mode.
+/// Index of the hourglass coordinate `axis` of a mode.
 fn place(mode: usize, axis: usize) -> usize {
     6 + 3 * mode + axis
 }

@@ -1,14 +1,14 @@
-//! How the layers of a bent voxel thin: in proportion to their present shape.
+//! Thinning of the layers of a bent voxel, in proportion to their present shape.
 
 use crate::brick_energy::Axes;
 use crate::hyperelastic::symmetric::Sym;
 
-/// A stretch along a voxel's axis below which thickness ratios go on smoothly: a voxel pressed flat
-/// must not ask for infinite thinning.
+/// A stretch along a voxel's axis below which thickness ratios are continued smoothly: a voxel pressed flat must not
+/// ask for infinite thinning.
 const LEAST_STRETCH: f64 = 0.2;
 
-/// A positive stand-in for a stretch along an axis, with derivatives: `x` itself, and a parabola that
-/// joins it below [`LEAST_STRETCH`].
+/// Positive substitute for a stretch along an axis, with derivatives: `x` itself, and a parabola that joins it below
+/// [`LEAST_STRETCH`].
 pub(crate) fn positive(x: f64) -> [f64; 3] {
     if x >= LEAST_STRETCH {
         [x, 1.0, 0.0]

@@ -6,13 +6,13 @@ use crate::vector::{Vec3, add, rotate, scale, sub};
 pub struct Clamp {
     /// The vertices.
     pub vertices: Vec<u32>,
-    /// Which axes (x, y, z) are held.
+    /// The held axes (x, y, z).
     pub axes: [bool; 3],
     /// The prescribed motion; `None` holds the rest position.
     pub motion: Option<Motion>,
 }
 
-/// A rigid motion: a turn about an axis through a center, then a translation, both times a history.
+/// A rigid motion: a rotation about an axis through a center, then a translation, both times a load history.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
     /// Translation in m.
@@ -28,7 +28,7 @@ pub struct Motion {
 }
 
 impl Clamp {
-    /// Holds all axes of the vertices where they are.
+    /// A clamp that holds all axes of the vertices at rest.
     pub fn fixed(vertices: Vec<u32>) -> Self {
         Self {
             vertices,
@@ -37,8 +37,8 @@ impl Clamp {
         }
     }
 
-    /// Where the clamp wants a vertex with the rest position `rest` at `time` (s), the motion being
-    /// scaled by `ramp` (0 to 1).
+    /// Prescribed position of a vertex with the rest position `rest` at `time` (s), the motion being scaled by `ramp`
+    /// (0 to 1).
     pub fn target(&self, rest: Vec3, time: f64, ramp: f64) -> Vec3 {
         let Some(motion) = &self.motion else {
             return rest;

@@ -1,17 +1,17 @@
-//! What the modes at a clamp follow: the strains of a voxel, and how they fade where these are large ([`crate::clamped`]).
+//! Drivers of the modes at a clamp: strains of the voxel, faded out where these are large ([`crate::clamped`]).
 
 use crate::brick_energy::{Rotated, SHAPE, Shaped};
 use crate::brick_thickness::positive;
 
-/// All `d`, `φ` with two derivatives by `ρ²`, the sum of their squares, and the slopes of that.
+/// All `d`, and `φ` with two derivatives by `ρ²`, the sum of their squares, and the derivatives of `ρ²`.
 pub(crate) struct Drivers {
     each: [Driver; SHAPE],
     fading: [f64; 3],
     square: [f64; SHAPE],
 }
 
-/// One of the `d`: its value, and its derivatives by its own coordinate and by the stretch (place, along an axis) that it
-/// is in proportion to.
+/// One of the `d`: its value, and its derivatives by its own coordinate and by the stretch (index, along an axis) that
+/// normalizes it.
 struct Driver {
     value: f64,
     by_own: f64,
@@ -39,7 +39,7 @@ impl Drivers {
         std::array::from_fn(|place| self.each[place].value)
     }
 
-    /// The slopes of a combination of the `d` with these coefficients.
+    /// The derivatives of a linear combination of the `d` with these coefficients.
     pub(crate) fn slopes(&self, coefficients: &[f64; SHAPE]) -> [f64; SHAPE] {
         let mut slopes = [0.0; SHAPE];
         for (place, (driver, factor)) in self.each.iter().zip(coefficients).enumerate() {
@@ -51,7 +51,7 @@ impl Drivers {
         slopes
     }
 
-    /// Adds its second derivatives.
+    /// Adds the second derivatives of a linear combination of the `d`.
     pub(crate) fn add_curvatures(
         &self,
         coefficients: &[f64; SHAPE],
@@ -67,7 +67,7 @@ impl Drivers {
         }
     }
 
-    /// A combination of the `φ d`, and its slopes.
+    /// A linear combination of the `φ d`, and its derivatives.
     pub(crate) fn faded(&self, coefficients: &[f64; SHAPE]) -> (f64, [f64; SHAPE]) {
         let [factor, first, _] = self.fading;
         let whole = dot_all(coefficients, &self.values());
@@ -78,7 +78,7 @@ impl Drivers {
         (factor * whole, slopes)
     }
 
-    /// Adds its second derivatives.
+    /// Adds the second derivatives of a linear combination of the `φ d`.
     pub(crate) fn add_faded_curvatures(
         &self,
         coefficients: &[f64; SHAPE],
@@ -115,7 +115,7 @@ impl Drivers {
         }
     }
 
-    /// Multiplies a function of the coordinates by `φ`, with its second derivatives where asked.
+    /// Multiplies a function of the coordinates by `φ`, including its second derivatives if `second`.
     pub(crate) fn fade(&self, of: &mut Shaped, second: bool) {
         let [factor, slope, turn] = self.fading;
         if second {
@@ -144,7 +144,7 @@ pub(crate) fn dot_all(a: &[f64; SHAPE], b: &[f64; SHAPE]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// How large the `d` may be, as a root of the sum of their squares, before the `q` level off.
+/// Largest `ρ`, the root of the sum of the squares of the `d`, before the `q` level off.
 const MOST_STRAIN: f64 = 0.3;
 
 /// `φ = (1 + (ρ/ρ₀)⁴)^(−1/4)` with two derivatives by `ρ²`.

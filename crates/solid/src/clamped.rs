@@ -1,22 +1,23 @@
-//! How a voxel at a clamp draws in: what its eight nodes cannot follow beside a face that is held. Long because modes,
-//! their condensation at small strain and the energy at large strain are of one derivation.
+//! Lateral contraction of a voxel at a clamp, which its eight nodes cannot follow beside a held face. Long because
+//! modes, their condensation at small strain and the energy at large strain are of one derivation.
 //!
 //! # The modes
 //!
 //! A clamp keeps rubber from drawing in across the pull, and a free side gets over that within a fraction of the body's
-//! thickness. The row of voxels at the clamp can only draw in linearly from the held face `ξ_c = ∓1` to the face across, and as the
-//! volume of a voxel must be kept, what is missing there is missing along the pull as well: beams and walls are too stiff
-//! at their roots, the more the less they can be compressed. A quadratic row (27 nodes and a linear pressure) takes most of
-//! that away. What it takes away lives in the motions of its middle layer, and of those in the ones of free sides, so that none of its nodes
-//! is needed. For each free face with the normal `n` (at `ξₙ = s`) beside a held face, with `t` the third axis, these are
+//! thickness. The row of voxels at the clamp can only draw in linearly from the held face `ξ_c = ∓1` to the face
+//! across, and as the volume of a voxel must be kept, the contraction that is missing there is missing along the pull
+//! as well: beams and walls are too stiff at their roots, the more the less they can be compressed. A quadratic row (27
+//! nodes and a linear pressure) takes most of that error away. Its gain comes from the motions of its middle layer, and
+//! of those from the ones of free sides, so that none of its nodes is needed. For each free face with the normal `n`
+//! (at `ξₙ = s`) beside a held face, with `t` the third axis, these are
 //!
 //! `b eₙ`,  `b ξₜ eₙ`,  `b eₜ`  with  `b = (1 − ξ_c²)(1 + s ξₙ)/2` .
 //!
-//! They vanish on the held face, on the one across and on the one opposite to the free one. On those of `t` they move along `n` and
-//! `t`: a uniform stress that leaves the face `n` free has only a part along `t` there, and meets it in `b eₜ` alone, which does
-//! not change along `t`, so that its work on both faces cancels. As they come to nothing in the mean along `c` as well, uniform stress does no
-//! work on them but that of the lateral stress which there is none of: the patch test holds. The last one is that of
-//! [`crate::warping`] with `b` the axis of the clamp, and takes its place.
+//! They vanish on the held face, on the one across and on the one opposite to the free one. On the faces of `t` they
+//! move along `n` and `t`: a uniform stress that leaves the face `n` free has only a part along `t` there, and meets it
+//! in `b eₜ` alone, which does not change along `t`, so that its work on both faces cancels. As their mean along `c`
+//! vanishes as well, uniform stress does no work on them except that of the lateral stress, which is zero: the patch
+//! test holds. The last one is that of [`crate::warping`] with `b` the axis of the clamp, and takes its place.
 //!
 //! # Small strain
 //!
@@ -24,8 +25,9 @@
 //!
 //! `(A + k b bᵀ) q = −(B + k b cᵀ) s` ,  `k = K/2G` ,
 //!
-//! with `A` and `B` the mean products of the deviators of modes with modes and with the voxel's strains `s`, and `b` and `c` the
-//! mean changes of volume: one pressure for each voxel, as in [`crate::brick`]. So `q = Q s`, and with `P = A⁻¹B`, `r = A⁻¹b`, `β = bᵀr`,
+//! with `A` and `B` the mean products of the deviators of modes with modes and with the voxel's strains `s`, and `b`
+//! and `c` the mean changes of volume: one pressure for each voxel, as in [`crate::brick`]. So `q = Q s`, and with
+//! `P = A⁻¹B`, `r = A⁻¹b`, `β = bᵀr`,
 //!
 //! `Q = −P − ζ r (cᵀ − bᵀP)` ,  `ζ = k/(1 + k β)` .
 //!
@@ -37,22 +39,25 @@
 //!
 //! `S + Σ ξₙ Ĥₙ + Σ Sₐₐ mᵢ qᵢ` ,  `a` the axis along which a mode moves.
 //!
-//! As a body that is drawn to several times its length becomes thinner in proportion, the `q` follow `dᵢ = ln Sᵢᵢ` and
-//! `p̂ₘ·eₖ/Sₖₖ`, which are the strains when they are small. What `Q` knows is small strain, and the modes fade where it is not,
-//! by `φ = (1 + (ρ/ρ₀)⁴)^(−1/4)` with `ρ² = Σ d²`: followed at any strain, blocks that are drawn by half and sheared between two clamps took
-//! up to 270 iterations, and drew in by 14 % too little. Without compression `Q d` keeps the volume to first order whatever `s` is, so
-//! that no motion of the nodes could undo what changes it in second order, and the voxel would lock. A pressure moves the `q` along `r`, and
-//! this relief goes on with what the linear one, `θ = (cᵀ + φ bᵀQ) d`, leaves of the volume `J₁` at `φ Q d`:
+//! A body that is drawn to several times its length becomes thinner in proportion, so the `q` follow `dᵢ = ln Sᵢᵢ` and
+//! `p̂ₘ·eₖ/Sₖₖ`, which are the strains when they are small. `Q` is derived for small strain, and beyond it the modes
+//! fade by `φ = (1 + (ρ/ρ₀)⁴)^(−1/4)` with `ρ² = Σ d²`: followed at any strain, blocks that are drawn by half and
+//! sheared between two clamps took up to 270 iterations, and drew in by 14 % too little. Without compression `Q d`
+//! keeps the volume to first order whatever `s` is, so that no motion of the nodes could undo its second-order change,
+//! and the voxel would lock. A pressure moves the `q` along `r`; this relief is continued with the part of the volume
+//! `J₁` at `φ Q d` that the linear one, `θ = (cᵀ + φ bᵀQ) d`, does not cover:
 //!
 //! `q = φ Q d + r y` ,  `y = −φ ζ g(J₁ − 1 − θ)` ,  `J = J₁ + β y` ,
 //!
-//! with `g` the identity up to a half, where it levels off: a voxel that a wild step has swollen is pressed back as others are. The isochoric
-//! energy is that of the stretches with these `q`, and `U` is that of `J`, of which little is left as `K` grows. Both are bounded below as the
-//! material is. They depend on `S` and `p̂` only, so rigid motion costs nothing. Drawn out uniformly, an
-//! incompressible voxel has `Q d = 0` and `J₁ = 1` at any stretch: the patch test holds there at large strain too. What is left out is of second
-//! order in the strain, as the energy is stationary in `q`.
+//! with `g` the identity up to a half, where it levels off: a voxel that a wild step has swollen is pressed back as
+//! others are. The isochoric energy is that of the stretches with these `q`, and `U` is that of `J`, of which little is
+//! left as `K` grows. Both are bounded below as the material is. They depend on `S` and `p̂` only, so rigid motion
+//! costs nothing. Drawn out uniformly, an incompressible voxel has `Q d = 0` and `J₁ = 1` at any stretch: the patch
+//! test holds there at large strain too. The neglected terms are of second order in the strain, as the energy is
+//! stationary in `q`.
 //!
-//! The modes take no load. As a pressure works on those that move along its face's normal, a free face under pressure has `b eₜ` alone.
+//! The modes take no load. As a pressure works on those that move along its face's normal, a free face under pressure
+//! has `b eₜ` alone.
 
 use std::sync::OnceLock;
 
@@ -67,10 +72,10 @@ const SQRT_2: f64 = std::f64::consts::SQRT_2;
 /// Gauss points of a voxel.
 const POINTS: usize = 8;
 
-/// At most four for each of the two axes across the clamp's.
+/// Largest number of modes: four for each of the two axes across the clamp's.
 const MODES: usize = 8;
 
-/// A voxel at a clamp: the axis of its held faces, and which faces across are free, and of these under pressure.
+/// A voxel at a clamp: the axis of its held faces, its free faces across, and those of them under pressure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Clamped {
     axis: usize,
@@ -78,10 +83,10 @@ pub(crate) struct Clamped {
     pressed: [[bool; 2]; 3],
 }
 
-/// What depends on the faces alone.
+/// Mode data that depend on the faces alone.
 struct Table {
     modes: Vec<Mode>,
-    /// `P` without what the thinning adds, and that.
+    /// `P` at zero thinning, and its derivative by the thinning.
     plain: Vec<[f64; SHAPE]>,
     thinned: Vec<[f64; SHAPE]>,
     /// `r`.
@@ -97,31 +102,31 @@ struct Mode {
     strain: [Sym; POINTS],
 }
 
-/// What depends on ν as well: `Q`, `ζ` and the coefficients of `θ`.
+/// Condensation at a given ν: `Q`, `ζ` and the coefficients of `θ`.
 struct Follow {
     rows: [[f64; SHAPE]; MODES],
     relief: f64,
     volume: [f64; SHAPE],
 }
 
-/// The `q` with their slopes by the voxel's coordinates.
+/// The amplitudes `q` with their derivatives by the voxel's coordinates.
 struct Amplitudes<'a> {
     table: &'a Table,
     follow: &'a Follow,
     drivers: &'a Drivers,
     value: [f64; MODES],
     slope: [[f64; SHAPE]; MODES],
-    /// `y` in them.
+    /// `y`, if it is part of them.
     relief: Option<&'a Shaped>,
 }
 
 impl Clamped {
-    /// That of a voxel with held faces on one axis; `None` where nothing is free to draw in.
+    /// Classifies a voxel with held faces on one axis; `None` if no face is free to draw in.
     pub fn of(faces: &Faces) -> Option<Self> {
         let has = |sides: [bool; 2]| sides.contains(&true);
         let mut axes = (0..3).filter(|&axis| has(faces.held[axis]));
         let (axis, further) = (axes.next()?, axes.next());
-        // The end of a stub is free as well; it warps as other free faces do.
+        // A voxel whose face across the clamp is free, the end of a stub, warps as other free faces do.
         if further.is_some() || has(faces.free[axis]) {
             return None;
         }
@@ -131,7 +136,7 @@ impl Clamped {
             pressed: [[false; 2]; 3],
         };
         for (n, t) in across(axis) {
-            // Motions of the faces `n` move those of `t`.
+            // Modes of the faces `n` move the faces of `t`.
             if !has(faces.stiff[t]) {
                 own.free[n] = faces.free[n];
                 own.pressed[n] = [0, 1].map(|side| faces.free[n][side] && faces.pressed[n][side]);
@@ -197,7 +202,7 @@ impl Clamped {
     fn modes(self) -> Vec<Mode> {
         let mut modes = Vec::new();
         for (along, other) in across(self.axis) {
-            // Functions of the two coordinates across, by 1, ξ along, ξ of the other, and their product.
+            // Functions of the two coordinates across, in the basis 1, ξ along, ξ of the other, and their product.
             let mut found: Vec<[f64; 4]> = Vec::new();
             for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
                 if self.free[along][side] && !self.pressed[along][side] {
@@ -214,7 +219,7 @@ impl Clamped {
         modes
     }
 
-    /// `(1 − ξ_c²) f` along an axis.
+    /// The mode `(1 − ξ_c²) f`, moving along an axis.
     fn mode(self, along: usize, other: usize, f: &[f64; 4]) -> Mode {
         let strain = std::array::from_fn(|g| {
             let at = gauss_point(g);
@@ -250,7 +255,7 @@ fn trace(a: &Sym) -> f64 {
     a[0] + a[1] + a[2]
 }
 
-/// The product of two deviators.
+/// The scalar product of two deviators.
 fn deviators(a: &Sym, b: &Sym) -> f64 {
     dot(a, b) - trace(a) * trace(b) / 3.0
 }
@@ -259,7 +264,7 @@ fn dot(a: &Sym, b: &Sym) -> f64 {
     (0..6).map(|k| a[k] * b[k]).sum()
 }
 
-/// The small strain at a Gauss point of one of the voxel's coordinates.
+/// The small strain at a Gauss point due to one of the voxel's coordinates.
 fn strain_at(g: usize, thinning: f64, place: usize) -> Sym {
     let mut strain = [0.0; 6];
     if place < 6 {
@@ -279,7 +284,7 @@ fn strain_at(g: usize, thinning: f64, place: usize) -> Sym {
     strain
 }
 
-/// Those that are not combinations of the ones before them.
+/// Keeps the functions that are linearly independent of the ones before them.
 fn independent(functions: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
     let dot = |a: &[f64; 4], b: &[f64; 4]| (0..4).map(|k| a[k] * b[k]).sum::<f64>();
     let (mut kept, mut basis) = (Vec::new(), Vec::<[f64; 4]>::new());
@@ -289,7 +294,7 @@ fn independent(functions: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
             let part = dot(&rest, own) / dot(own, own);
             rest = std::array::from_fn(|k| rest[k] - part * own[k]);
         }
-        // What is left of entries of one half is a simple fraction of them, or rounding.
+        // The remainder of entries of one half is a simple fraction of them, or rounding.
         if dot(&rest, &rest) > 1e-9 {
             basis.push(rest);
             kept.push(function);
@@ -347,7 +352,7 @@ impl Table {
     }
 }
 
-/// Where the relief of a volume levels off.
+/// Relief of volume at which `g` levels off.
 const MOST_RELIEF: f64 = 0.5;
 
 /// `g` with two derivatives.
@@ -416,7 +421,7 @@ impl<'a> Amplitudes<'a> {
         force: &[f64; MODES],
         hessian: &mut [[f64; SHAPE]; SHAPE],
     ) {
-        // What moves the `d`, and what moves `y`.
+        // Forces on the `d`, and on `y`.
         let (mut pull, mut press) = ([0.0; SHAPE], 0.0);
         for (m, mode) in self.table.modes.iter().enumerate() {
             let scaled = force[m] * state.stretch[mode.along];
@@ -439,8 +444,8 @@ impl<'a> Amplitudes<'a> {
 }
 
 impl Rotated {
-    /// [`Rotated::mean`] for the stretches at a clamp, with derivatives where `second` says how often what the stress adds to
-    /// the second ones counts.
+    /// [`Rotated::mean`] for the stretches at a clamp; `second` asks for the Hessian, with its geometric part weighed
+    /// by that factor.
     pub(crate) fn clamped_mean(
         &self,
         clamped: Clamped,
@@ -456,7 +461,7 @@ impl Rotated {
         self.mean_with(&amplitudes, thinning, second, function)
     }
 
-    /// `J`, with derivatives where `second` asks.
+    /// `J`, with its Hessian if `second`.
     pub(crate) fn clamped_volume(&self, clamped: Clamped, thinning: f64, second: bool) -> Shaped {
         let table = clamped.table();
         let (follow, drivers) = (table.follow(thinning), Drivers::of(self));
@@ -479,7 +484,7 @@ impl Rotated {
         let volume = self.mean_with(plain, thinning, second.then_some(1.0), |at| {
             determinant_response(at, second)
         });
-        // θ: what the voxel's own strains change, and what the `q` do.
+        // θ: the part of the voxel's own strains, and that of the `q`.
         let drivers = plain.drivers;
         let own: [f64; SHAPE] = std::array::from_fn(|k| if k < 3 { -1.0 } else { 0.0 });
         let theirs = std::array::from_fn(|k| -plain.follow.volume[k] - own[k]);
@@ -576,7 +581,7 @@ impl Rotated {
         mean
     }
 
-    /// The smallest ratio of volumes at the Gauss points.
+    /// The smallest volume ratio among the Gauss points.
     pub(crate) fn smallest_clamped_volume(&self, clamped: Clamped, thinning: f64) -> f64 {
         let smallest = std::cell::Cell::new(f64::INFINITY);
         self.clamped_mean(clamped, thinning, None, |at| {

@@ -1,9 +1,9 @@
-//! Voxels that eight smaller ones make together, where nothing asks for smaller ones.
+//! Coarse elements: cubes of eight voxels that are one element, where refinement is not needed.
 //!
-//! The mesh is that of the small voxels, so that all that looks for places finds them as ever. A cube of `2 × 2 × 2` full ones
-//! of one material is one element with the eight outer corners; the vertices between these are tied to them
-//! ([`crate::ties`]), in the cube and where it meets small voxels. Masses go from tied vertices to what they hang on: the mass and its
-//! center are kept.
+//! The mesh is that of the small voxels, so that searches for places need not change. A cube of `2 × 2 × 2` full ones
+//! of one material is one element with the eight outer corners; the vertices between these are hanging nodes, tied to
+//! them ([`crate::ties`]), in the cube and where it meets small voxels. Masses go from tied vertices to their masters:
+//! the mass and its center are kept.
 
 use std::collections::HashSet;
 
@@ -12,17 +12,17 @@ use crate::ties::Ties;
 use crate::warping::Faces;
 use crate::{Brick, Filling, ProblemError};
 
-/// The corner across from a corner.
+/// Sum of the numbers of opposite corners.
 const ACROSS: usize = 7;
 
-/// All small voxels, and which of them are one element.
+/// All small voxels, and their grouping into elements.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Coarse {
     /// The small voxels; empty where each is an element of its own.
     pub small: Vec<Brick>,
-    /// The element of each.
+    /// The element of each small voxel.
     pub element: Vec<u32>,
-    /// By element: the small voxel, or the eight in the order of corners, that it is made of.
+    /// Members of each element: one small voxel, or eight in the order of corners.
     members: Vec<Members>,
 }
 
@@ -33,7 +33,7 @@ enum Members {
 }
 
 impl Coarse {
-    /// Elements and ties of small voxels, of which those of each group make one cube together.
+    /// Builds elements and ties from small voxels, those of each group forming one cube.
     pub fn of(
         small: Vec<Brick>,
         groups: &[[u32; 8]],
@@ -55,7 +55,7 @@ impl Coarse {
         let outer = |members: &[u32; 8]| {
             std::array::from_fn(|corner| small[members[corner] as usize].vertices[corner])
         };
-        // Cubes that are not on one lattice of large voxels would hang on each other.
+        // Cubes that are not on one grid of large voxels would have tied corners.
         let hangs = |members: &[u32; 8]| {
             let outer: [u32; 8] = outer(members);
             outer.iter().any(|vertex| ties.has(*vertex))
@@ -97,12 +97,12 @@ impl Coarse {
         Ok((own, elements, ties))
     }
 
-    /// Whether there is no such cube.
+    /// Tests whether there is no coarse element.
     pub fn is_empty(&self) -> bool {
         self.small.is_empty()
     }
 
-    /// The faces of each element by those of the small voxels.
+    /// The faces of each element, merged from those of the small voxels.
     pub fn merged(&self, faces: &[Option<Faces>]) -> Vec<Option<Faces>> {
         let each = self.members.iter().map(|members| match members {
             Members::One(index) => faces[*index as usize],
@@ -116,7 +116,8 @@ impl Coarse {
     }
 }
 
-/// A face is free, or held in full, where its four parts are; it is stiff or under pressure where one of them is.
+/// Merges the faces of a cube: a face is free, or held in full, where its four parts are; it is stiff or under pressure
+/// where one of them is.
 fn face_of_cube(all: &[Faces]) -> Faces {
     let mut own = Faces::default();
     for axis in 0..3 {
@@ -132,7 +133,8 @@ fn face_of_cube(all: &[Faces]) -> Faces {
     own
 }
 
-/// The voxels of a group by the corners of their cube at which they are; `None` where they do not make one, full and of one material.
+/// The voxels of a group in the order of the corners of their cube; `None` if they do not form one, full and of one
+/// material.
 fn in_order(small: &[Brick], group: &[u32; 8]) -> Option<[u32; 8]> {
     let first = small.get(group[0] as usize)?;
     let bricks = group.map(|index| small.get(index as usize));
@@ -153,14 +155,14 @@ fn in_order(small: &[Brick], group: &[u32; 8]) -> Option<[u32; 8]> {
     (!found.contains(&u32::MAX) && nodes.len() == 27).then_some(found)
 }
 
-/// What the vertices of a cube that are not its corners hang on.
+/// The ties of the vertices of a cube that are not its corners.
 fn ties_of(members: [Brick; 8]) -> Vec<(u32, Vec<u32>)> {
     let corner = |c: usize| members[c].vertices[c];
     let mut found = Vec::with_capacity(19);
     let mut seen = HashSet::new();
     for (at, member) in members.iter().enumerate() {
         for (own, &vertex) in member.vertices.iter().enumerate() {
-            // Along an axis where the two differ it is half way, elsewhere at the side of both.
+            // Along an axis where the two differ the vertex is half way, elsewhere at the side of both.
             let between = at ^ own;
             if between != 0 && seen.insert(vertex) {
                 let fixed = at & !between;

@@ -2,15 +2,15 @@
 
 use crate::Mesh;
 
-/// How many blocks of one color are solved side by side. They share no vertex, so that a processor
-/// can overlap their long chains of divisions and roots; eight keep it busy.
+/// Number of blocks of one color that are solved side by side. They share no vertex, so that a processor can overlap
+/// their long chains of divisions and roots; eight keep it busy.
 const CHUNK: usize = 8;
 
 /// Blocks of tetrahedra, in chunks of up to [`CHUNK`] blocks of one color.
 pub(crate) struct ColorOrder {
     /// For each chunk its blocks, for each block its tetrahedra.
     pub chunks: Vec<Vec<Vec<usize>>>,
-    /// Where each color ends in the list of chunks.
+    /// End of each color in the list of chunks.
     pub colors: Vec<u32>,
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn color_order(mesh: &Mesh) -> ColorOrder {
     ColorOrder { chunks, colors }
 }
 
-/// The first of every list, then the second of every list, and so on.
+/// Interleaves lists: the first of every list, then the second of every list, and so on.
 pub(crate) fn interleave<T: Copy>(lists: &[Vec<T>]) -> impl Iterator<Item = T> + '_ {
     let longest = lists.iter().map(Vec::len).max().unwrap_or(0);
     (0..longest).flat_map(move |slot| lists.iter().filter_map(move |list| list.get(slot).copied()))

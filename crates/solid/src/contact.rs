@@ -1,4 +1,4 @@
-//! Contact as solvers know it.
+//! Contact as seen by solvers.
 
 use std::any::Any;
 use std::fmt::Debug;
@@ -6,17 +6,17 @@ use std::fmt::Debug;
 use crate::Term;
 use crate::vector::Vec3;
 
-/// Memory of contact: plain data that only the contact which made it knows how to read.
+/// Memory of contact: plain data that only the contact which made it can read.
 #[derive(Debug)]
 pub struct ContactMemory(Box<dyn Remembered>);
 
 impl ContactMemory {
-    /// Takes the memory of a contact.
+    /// Wraps the memory of a contact.
     pub fn new(memory: impl Remembered) -> Self {
         Self(Box::new(memory))
     }
 
-    /// The memory, where it is of this type.
+    /// The memory, if it is of this type.
     pub fn get<M: Remembered>(&self) -> Option<&M> {
         let memory: &dyn Any = &*self.0;
         memory.downcast_ref()
@@ -35,12 +35,12 @@ impl PartialEq for ContactMemory {
     }
 }
 
-/// Data that contact may remember: all that can be cloned, compared and sent.
+/// Data that contact may keep as memory: all that can be cloned, compared and sent.
 pub trait Remembered: Debug + Send + Sync + Any {
-    /// A copy.
+    /// Clones the data.
     fn boxed(&self) -> Box<dyn Remembered>;
 
-    /// Whether another memory is of the same kind and equal.
+    /// Tests whether another memory is of the same type and equal.
     fn equals(&self, other: &dyn Remembered) -> bool;
 }
 
@@ -55,122 +55,124 @@ impl<M: Debug + Clone + PartialEq + Send + Sync + 'static> Remembered for M {
     }
 }
 
-/// Surfaces that touch: a term of the body that remembers.
+/// Contact between surfaces: a term of the body with memory.
 ///
-/// Its energy is that of the multipliers and the anchors that it holds. A solver finds an equilibrium under these,
-/// lets them be [corrected](Contact::correct) until that changes little, and then
-/// [accepts](Contact::accept) the state or [goes back](Contact::go_back) to the last accepted one.
+/// Its energy is that of the Lagrange multipliers and the friction anchors that it holds (augmented Lagrangian). A
+/// solver finds an equilibrium under these, lets them be [corrected](Contact::correct) until that changes little, and
+/// then [accepts](Contact::accept) the state or [goes back](Contact::go_back) to the last accepted one.
 pub trait Contact: Term + Any {
-    /// A copy, with its memory.
+    /// Clones the contact with its memory.
     fn boxed(&self) -> Box<dyn Contact>;
 
-    /// The contact that finds what touches, for those who know of which kind it is.
+    /// The concrete contact behind wrappers such as mirrored ones, to be downcast by callers that know its type.
     fn found_by(&self) -> &dyn Any;
 
-    /// The same, to change it.
+    /// Mutable access to the concrete contact.
     fn found_by_mut(&mut self) -> &mut dyn Any;
 
-    /// All that it remembers.
+    /// The memory of the contact.
     fn memory(&self) -> ContactMemory;
 
-    /// Goes on from a memory of its own.
+    /// Restores a memory that this contact made.
     fn remember(&mut self, memory: &ContactMemory);
 
-    /// Forgets everything; `positions` (m) become the accepted state.
+    /// Clears the memory; `positions` (m) become the accepted state.
     fn start(&mut self, positions: &[Vec3]);
 
-    /// Looks who touches at `positions`; whether the pattern of the stiffness has changed: it joins vertices that it did
-    /// not before, or no longer many that it did. To be called before the stiffness is asked for.
+    /// Updates the contact pairs at `positions`. Returns whether the pattern of the stiffness has changed: it couples
+    /// vertices that it did not before, or no longer many that it did. To be called before the stiffness is assembled.
     fn follow(&mut self, positions: &[Vec3]) -> bool;
 
-    /// A search starts, or a guess at where: the next calls of [`follow`](Contact::follow) look for all that is faced, not
-    /// only where it was left.
+    /// Announces a new solve, or an initial guess for one: the next calls of [`follow`](Contact::follow) search for all
+    /// contact pairs anew, not only near the last ones.
     fn look_anew(&mut self);
 
-    /// Brings the multipliers up to the forces at `positions`, an equilibrium; whether they were there already, and nothing
-    /// has changed. Forces of the size `negligible` (N) do not matter. `precision` is the part of what contact may be off by
-    /// default that is asked for, at most 1.
+    /// Updates the multipliers to the forces at `positions`, an equilibrium. Returns whether they were converged
+    /// already, and nothing has changed. Forces of the size `negligible` (N) do not matter. `precision` scales the
+    /// default tolerance, at most 1.
     fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool;
 
-    /// Hands over the vertices by which surfaces are bonded: faces between them do not warp freely.
+    /// Visits the vertices by which surfaces are bonded: faces between them do not warp freely.
     fn visit_bonded(&self, _visit: &mut dyn FnMut(u32)) {}
 
-    /// A length by which things are near each other, in m: the size of a voxel.
+    /// The length scale of proximity in m: the size of a voxel.
     fn length(&self) -> f64;
 
-    /// Lets bonds go that the forces at `positions`, an equilibrium, pass; whether any did. What others carry changes then.
+    /// Releases bonds whose strength the forces at `positions`, an equilibrium, exceed. Returns whether any was
+    /// released; its load goes to the others then.
     fn let_go(&mut self, positions: &[Vec3]) -> bool;
 
-    /// Whether the answer depends on the way to it, as friction and bonds that may break make it.
+    /// Tests whether the solution depends on the load path, as with friction and with bonds that may break.
     fn depends_on_way(&self) -> bool;
 
-    /// Takes `positions` as the state from which the path goes on.
+    /// Accepts `positions` as the state from which the load path continues.
     fn accept(&mut self, positions: &[Vec3]);
 
-    /// Takes `positions` as the end of a step that was not solved to the end: the multipliers are brought up to the
-    /// forces there, once. `false`, and nothing is taken, where something is so deep in something else that which side
-    /// it came from is no longer known.
+    /// Accepts `positions` as the end of a step that was not solved to convergence: the multipliers are updated to the
+    /// forces there, once. Returns `false`, and accepts nothing, where surfaces overlap so deeply that the side from
+    /// which they came is no longer known.
     fn take_step(&mut self, positions: &[Vec3]) -> bool {
         self.accept(positions);
         true
     }
 
-    /// Resists more for the rest of the step where something is too deep in something else at `positions`; whether it is.
+    /// Raises the contact penalty for the rest of the step where surfaces overlap too deeply at `positions`; returns
+    /// whether any do.
     fn stiffen(&mut self, _positions: &[Vec3]) -> bool {
         false
     }
 
-    /// Whether anything is pressed at `positions`.
+    /// Tests whether any surfaces press on each other at `positions`.
     fn is_touching(&self, positions: &[Vec3]) -> bool {
         self.energy(positions) > 0.0
     }
 
-    /// Forgets what happened since the last accepted state.
+    /// Restores the last accepted state.
     fn go_back(&mut self);
 
-    /// Whether its path is recorded, to be gone over again.
+    /// Tests whether the load path is being recorded, to be replayed.
     fn is_recorded(&self) -> bool {
         false
     }
 
-    /// Lets the multipliers of the last accepted state go on as they changed in the step to it: a start for one that is
-    /// `ratio` times as long. The answer does not depend on it.
+    /// Extrapolates the multipliers of the last accepted state by their change in the step to it: a predictor for a
+    /// step that is `ratio` times as long. The converged solution does not depend on it.
     fn extrapolate(&mut self, ratio: f64);
 }
 
-/// An equilibrium on the way of a load path, under what contact held before a correction.
+/// An equilibrium on a load path, under the contact state before a correction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moment<M> {
-    /// All vertices, m.
+    /// Positions of all vertices, m.
     pub positions: Vec<Vec3>,
-    /// Whether contact had settled: a step of the path ends here.
+    /// Set if contact had converged: a step of the path ends here.
     pub settled: bool,
-    /// What contact held.
+    /// The contact state (memory).
     pub memory: M,
 }
 
-/// Contact that can go over its path again, which derivatives along the path need.
+/// Contact that can replay its load path, which derivatives along the path need.
 ///
-/// The contact of a problem that differs by a little follows at the same moments: it faces what the recorded one faced, and
-/// takes its own multipliers and anchors along.
+/// The contact of a slightly different problem is evaluated at the same moments: it uses the contact pairs of the
+/// recorded one, and carries its own multipliers and anchors along.
 pub trait RecordedContact: Contact {
-    /// What it holds at a moment.
+    /// The contact state at a moment.
     type Memory: Clone + PartialEq + Send + Sync;
 
-    /// Records from now on, from the next [`start`](Contact::start).
+    /// Starts recording at the next [`start`](Contact::start).
     fn record(&mut self);
 
-    /// Takes what was recorded of the accepted path, and records no more.
+    /// Takes the recorded moments of the accepted path, and stops recording.
     fn take_recorded(&mut self) -> Vec<Moment<Self::Memory>>;
 
-    /// Goes back to a moment of its own; whether there is no room for its stiffness yet.
+    /// Restores a moment of its own recording. Returns whether the pattern of the stiffness has grown.
     fn recall(&mut self, moment: &Moment<Self::Memory>) -> bool;
 
-    /// Faces what another one faced at a moment.
+    /// Takes over the contact pairs that another contact had at a moment.
     fn face_as(&mut self, moment: &Moment<Self::Memory>);
 
-    /// Brings the multipliers and anchors of contacts along from a moment to the `next`, with their vertices at `positions`. The
-    /// contacts are those of values around the recorded one, whose mean it is.
+    /// Carries the multipliers and anchors of contacts from a moment to the `next`, with their vertices at `positions`.
+    /// The contacts are those of problems with parameters around the recorded one, which is their mean.
     fn follow_on(
         group: &mut [&mut Self],
         positions: &[Vec<Vec3>],

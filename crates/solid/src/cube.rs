@@ -1,14 +1,14 @@
-//! Finding the cube that a block of five tetrahedra fills.
+//! Detection of the cube that a block of five tetrahedra fills.
 
 use crate::Mesh;
 use crate::matrix::{Mat3, apply};
 
-/// How far a corner may be from its place, in sides: lattice positions are products of integers and
-/// the voxel size, exact to rounding.
+/// Largest distance of a corner from its exact place, in sides: grid positions are products of integers and the voxel
+/// size, exact to rounding.
 const SLACK: f64 = 1e-6;
 
-/// The corners of a block, corner `c` at `(c >> 2 & 1, c >> 1 & 1, c & 1)`, and its side in m; `None` if
-/// it is no cube along `axes` (unit vectors row by row, x, y and z where there are none), by which its corners are named.
+/// The corners of a block, corner `c` at `(c >> 2 & 1, c >> 1 & 1, c & 1)` along `axes` (unit vectors row by row, x, y
+/// and z where there are none), and its side in m; `None` if it is no cube along these.
 pub(crate) fn corners(
     mesh: &Mesh,
     block: &[usize],

@@ -17,7 +17,7 @@ pub fn add_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
         .for_each(|term| term.add_forces(positions, forces));
 }
 
-/// The response to `positions` within a step: the elastic energy and the potential of the forces in J; adds the
+/// The response to `positions` within a time step: the elastic energy and the potential of the forces in J; adds the
 /// forces in N and sets the `pressures` of hyperelastic voxels in Pa.
 pub fn respond(
     body: &Body,
@@ -36,19 +36,19 @@ pub fn respond(
     (other + elastic, other + potential)
 }
 
-/// Hands the stiffness matrix (N/m), the Hessian of [`energy`], to `visit`, an element at a time.
+/// Visits the element matrices of the tangent stiffness (N/m), the Hessian of [`energy`], one at a time.
 pub fn visit_stiffness(body: &Body, positions: &[Vec3], visit: Visitor<'_>) {
     body.terms()
         .for_each(|term| term.visit_stiffness(positions, visit));
 }
 
-/// The same, as many elements at a time as suits.
+/// Visits the element matrices of the tangent stiffness in batches of a size that the term chooses.
 pub fn visit_elements(body: &Body, positions: &[Vec3], visit: ElementsVisitor<'_>) {
     body.terms()
         .for_each(|term| term.visit_elements(positions, visit));
 }
 
-/// The same within a step, with the stress that is there or without it.
+/// Visits the element matrices of the tangent stiffness within a time step, with or without its geometric part.
 pub fn visit_tangent(
     body: &Body,
     positions: &[Vec3],
@@ -63,15 +63,15 @@ pub fn visit_tangent(
     bricks.visit_tangent_within(positions, within, tangent, visit);
 }
 
-/// For every vertex, a bound in N/m on the row sum of the stiffness matrix at `positions`, membranes taut.
+/// Computes, for every vertex, a bound in N/m on the row sum of the stiffness matrix at `positions`, membranes taut.
 pub fn row_sums(body: &Body, positions: &[Vec3], sums: &mut [f64]) {
     sums.fill(0.0);
     body.terms()
         .for_each(|term| term.add_row_sums(positions, sums));
 }
 
-/// Adds the product of the material part of the stiffness matrix at `positions` with `direction`. Membranes have
-/// theirs, [`add_taut_product`].
+/// Adds the product of the stiffness matrix at `positions` with `direction`, without the geometric part of edges and
+/// tetrahedra, and without membranes, for which see [`add_taut_product`].
 pub fn add_stiffness_product(
     body: &Body,
     positions: &[Vec3],
@@ -82,7 +82,7 @@ pub fn add_stiffness_product(
         .for_each(|term| term.add_product(positions, direction, product));
 }
 
-/// Adds the product of the stiffness of all membranes, were they taut at `positions`, with `direction`.
+/// Adds the product of the stiffness of all membranes, as if taut at `positions`, with `direction`.
 pub fn add_taut_product(body: &Body, positions: &[Vec3], direction: &[Vec3], product: &mut [Vec3]) {
     body.membrane_term()
         .add_product(positions, direction, product);

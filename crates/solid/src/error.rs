@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-/// Why a mechanical problem could not be set up.
+/// Errors in the setup of a mechanical problem.
 #[derive(Debug, Error, Clone, PartialEq)]
 pub enum ProblemError {
     /// Arrays that belong together have different lengths.
@@ -16,11 +16,11 @@ pub enum ProblemError {
     /// An index points past the end.
     #[error("{what}: index {index} is out of range, there are {count}")]
     Index {
-        /// What is indexed.
+        /// The indexed array.
         what: &'static str,
         /// The index.
         index: usize,
-        /// How many there are.
+        /// The number of entries.
         count: usize,
     },
     /// A tetrahedron has no volume or is inside out at rest.
@@ -55,12 +55,12 @@ pub enum ProblemError {
         /// The group.
         index: usize,
     },
-    /// Something acts on a vertex that follows others.
+    /// A load or constraint acts on a tied vertex (hanging node).
     #[error(
         "{what} has vertex {vertex}, which follows the corners of a large voxel: voxels there must be small"
     )]
     OnTied {
-        /// What acts.
+        /// The load or constraint.
         what: &'static str,
         /// The vertex.
         vertex: u32,
@@ -79,7 +79,7 @@ pub enum ProblemError {
     OnAxis {
         /// The center of the voxel's material in m.
         place: [f64; 3],
-        /// How far that is from the axis in m.
+        /// The distance of that from the axis in m.
         distance: f64,
     },
     /// A direction is not a unit vector.
@@ -93,7 +93,7 @@ pub enum ProblemError {
     /// A number is NaN or infinite.
     #[error("{what} holds a number that is not finite")]
     NotFinite {
-        /// Where the number stands.
+        /// The array that holds the number.
         what: &'static str,
     },
     /// The times of a load history do not increase, or the history is empty.

@@ -1,4 +1,4 @@
-//! The rules of the floor: whom it stops, whom it carries, whom it lets go.
+//! The floor as a unilateral constraint: vertices that it stops, carries and releases.
 
 /// A horizontal plane without friction that no vertex may pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -8,23 +8,23 @@ pub struct Floor {
 }
 
 impl Floor {
-    /// Whether a vertex at this height (m) touches it or is below.
+    /// Tests whether a vertex at this height (m) touches the floor or is below.
     pub fn touches(self, height: f64) -> bool {
         height <= self.z
     }
 
-    /// Whether it carries a vertex at this height (m) that is pushed with a force (N) along z.
+    /// Tests whether the floor carries a vertex at this height (m) on which a force (N) acts along z.
     pub fn carries(self, height: f64, force: f64) -> bool {
         force < 0.0 && self.touches(height)
     }
 
-    /// Where it stops a vertex that would go to this height, in m.
+    /// Clips the height (m) of a vertex to that of the floor.
     pub fn stop(self, height: f64) -> f64 {
         if height < self.z { self.z } else { height }
     }
 
-    /// Whether a vertex is carried from now on: one that was is let go if the net force (N) pulls it up, any
-    /// other is caught below the floor, by more than the `slack` (m).
+    /// Updates the active set: tests whether a vertex is carried from now on. A carried one is released if the net
+    /// force (N) pulls it up, any other is caught below the floor, by more than the `slack` (m).
     pub fn keeps(self, carried: bool, height: f64, net_force: f64, slack: f64) -> bool {
         if carried {
             net_force <= 0.0

@@ -1,12 +1,12 @@
-//! Which faces of hyperelastic voxels are free to warp ([`crate::warping`]).
+//! Free faces of hyperelastic voxels, which may warp ([`crate::warping`]).
 //!
-//! Free is a face that no other voxel has, no membrane lies on, and no clamp holds on any axis (held along its normal, it is a
-//! plane of symmetry with material behind). As warping moves the faces across its way too, those must not be held in full,
-//! and what is behind must be of the same material. Voxels that are cut have their surface elsewhere, and fibers
-//! keep a face from warping as the rubber around them would: both stay as they are.
+//! A face is free if no other voxel has it, no membrane lies on it, and no clamp holds it on any axis (held along its
+//! normal, it is a plane of symmetry with material behind). As warping moves the adjacent faces too, those must not be
+//! held in full, and material behind them must be the same. Voxels that are cut have their surface elsewhere, and
+//! fibers keep a face from warping as the rubber around them would: neither warps.
 //!
-//! At faces that a clamp holds in full, or another material that is much stiffer, the free ones beside them draw in as well
-//! ([`crate::clamped`]), but for those under pressure.
+//! At faces that a clamp holds in full, or another material that is much stiffer, the free ones beside them draw in as
+//! well ([`crate::clamped`]), except those under pressure.
 
 use std::collections::HashSet;
 
@@ -14,25 +14,25 @@ use crate::hyperelastic::HyperelasticMaterial;
 use crate::warping::Faces;
 use crate::{Brick, Filling, Membrane};
 
-/// How far the fraction and the places of the material may be from those of a full voxel: a voxel at the edge of a box
-/// whose faces are on the lattice loses 1/3072 where its fill is measured.
+/// Tolerance for fraction and distribution of the material of a full voxel: a voxel at the edge of a box whose faces
+/// are on the grid loses 1/3072 where its fill is measured.
 const FULL_SLACK: f64 = 4e-4;
 
-/// What is behind a face.
+/// The neighbor behind a face.
 #[derive(Clone, Copy, PartialEq)]
 enum Behind {
     Nothing,
     Same,
     Other,
-    /// Another material that holds this one as a clamp does.
+    /// Another material, stiff enough to hold this one as a clamp does.
     Stiff,
 }
 
-/// How many times as stiff another material must be to count as a clamp.
+/// Ratio of Young's moduli from which another material counts as a clamp.
 const HOLDS: f64 = 2.0;
 
-/// The faces of each voxel, but of those that stay as they are. `voxels` are all cubes of the body, `held` the axes that clamps
-/// hold of each vertex, `pressed` the triangles under pressure.
+/// The faces of each voxel; `None` for voxels that do not warp. `voxels` are all cubes of the body, `held` the axes of
+/// each vertex that clamps hold, `pressed` the triangles under pressure.
 pub(crate) fn faces_of(
     bricks: &[Brick],
     materials: &[HyperelasticMaterial],
@@ -71,7 +71,7 @@ pub(crate) fn faces_of(
     bricks.iter().zip(&behind).map(each).collect()
 }
 
-/// What is behind each face. A cube is found by its lowest corner, which no other has.
+/// The neighbor behind each face. A cube is found by its lowest corner, which no other has.
 fn neighbors(
     bricks: &[Brick],
     materials: &[HyperelasticMaterial],
@@ -107,7 +107,7 @@ fn neighbors(
     behind
 }
 
-/// What a voxel of one material is to another; a lattice has none.
+/// Classifies the material `other` of a neighbor against `own`; a lattice has none.
 fn what_is(materials: &[HyperelasticMaterial], own: u32, other: Option<u32>) -> Behind {
     let young = |material: u32| materials[material as usize].young();
     let same = |other: u32| {
@@ -133,7 +133,7 @@ fn face(vertices: [u32; 8], axis: usize, side: usize) -> [u32; 4] {
     [first, first + b, first + c, first + b + c].map(|corner| vertices[corner])
 }
 
-/// Whether a voxel is full but for rounding.
+/// Tests whether a voxel is full to rounding.
 pub(crate) fn is_full(brick: &Brick) -> bool {
     let near = |value: f64, full: f64| (value - full).abs() < FULL_SLACK;
     let Filling {

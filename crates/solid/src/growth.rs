@@ -1,36 +1,37 @@
-//! How much longer a material is by itself, over time.
+//! Growth: the free stretch of a material over time.
 
 use std::sync::Arc;
 
 use crate::vector::{Vec3, axpy};
 use crate::{History, ProblemError};
 
-/// How much of a growth a place has.
+/// Distribution of a growth over the body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Share {
-    /// All of it, everywhere.
+    /// The full growth, everywhere.
     Whole,
-    /// By the block: the share at the center of its material, and half its differences between the two sides along each axis.
+    /// A share for each block: that at the center of its material, and half its differences between the two sides along
+    /// each axis.
     Field(Arc<[[f64; 4]]>),
-    /// That of one block.
+    /// The share of one block.
     Here([f64; 4]),
 }
 
 /// One factor of a free stretch: `(1 + s (b(t) − 1))ᵖ` for the share `s` of a place, the history `b` and the power `p`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GrowthFactor {
-    /// Of what the power is taken where the share is whole.
+    /// History of the base of the power where the share is one.
     pub history: History,
-    /// 1 of a length, 1/3 of a volume.
+    /// The power: 1 for a length, 1/3 for a volume.
     pub power: f64,
-    /// How much of it a place has.
+    /// The share of a place.
     pub share: Share,
 }
 
 impl GrowthFactor {
-    /// What the power is taken of where it has a share.
+    /// The base of the power at a share.
     fn base(&self, share: f64, whole: f64) -> f64 {
-        // Exactly the history where the share is whole.
+        // Exactly the history where the share is one.
         if share == 1.0 {
             whole
         } else {
@@ -38,7 +39,7 @@ impl GrowthFactor {
         }
     }
 
-    /// The stretch at a time in s, and half its differences across a block over it.
+    /// The stretch at a time in s, and half its differences across a block over the stretch.
     fn at(&self, time: f64) -> (f64, Vec3) {
         let whole = self.history.at(time);
         let (share, slopes) = match &self.share {
@@ -82,23 +83,24 @@ impl GrowthFactor {
     }
 }
 
-/// A free stretch that changes over time: the product of powers of histories, such as the cube root of a change of volume.
+/// A free stretch that changes over time: the product of powers of histories, such as the cube root of a change of
+/// volume.
 ///
-/// What evaluates a body at an instant calls [`Growth::begin`] first; until then it is that of the end.
+/// A body must call [`Growth::begin`] before it is evaluated at an instant; until then the stretch is the final one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Growth {
     factors: Vec<GrowthFactor>,
-    /// The stretch now, and half its differences across a voxel over it.
+    /// The present stretch, and half its differences across a voxel over it.
     now: [f64; 4],
 }
 
 impl Growth {
-    /// That of a material that stays as long as it is.
+    /// The growth of a material that keeps its length.
     pub fn none() -> Self {
         Self::of(Vec::new())
     }
 
-    /// From factors that stay above zero.
+    /// A growth from factors that stay above zero.
     pub fn new(factors: Vec<GrowthFactor>) -> Result<Self, ProblemError> {
         factors.iter().try_for_each(GrowthFactor::check)?;
         Ok(Self::of(factors))
@@ -113,13 +115,13 @@ impl Growth {
         growth
     }
 
-    /// Whether it differs from voxel to voxel.
+    /// Tests whether it differs from voxel to voxel.
     pub(crate) fn is_field(&self) -> bool {
         let field = |factor: &GrowthFactor| matches!(factor.share, Share::Field(_));
         self.factors.iter().any(field)
     }
 
-    /// Whether it varies within a voxel.
+    /// Tests whether it varies within a voxel.
     pub(crate) fn varies(&self) -> bool {
         let slopes = |factor: &GrowthFactor| match factor.share {
             Share::Here([_, x, y, z]) => [x, y, z] != [0.0; 3],
@@ -128,13 +130,13 @@ impl Growth {
         self.factors.iter().any(slopes)
     }
 
-    /// Whether it is the share of one voxel.
+    /// Tests whether it is the share of one voxel.
     pub(crate) fn is_local(&self) -> bool {
         let here = |factor: &GrowthFactor| matches!(factor.share, Share::Here(_));
         self.factors.iter().any(here)
     }
 
-    /// That of one block.
+    /// The growth of one block.
     pub(crate) fn in_block(&self, block: usize) -> Result<Self, ProblemError> {
         let here = |factor: &GrowthFactor| {
             let share = match &factor.share {
@@ -157,7 +159,7 @@ impl Growth {
         ))
     }
 
-    /// The shares of one block and how they vary across it, of all factors in a row.
+    /// The shares of one block and their differences across it, of all factors in a row.
     pub(crate) fn shares(&self) -> impl Iterator<Item = f64> + '_ {
         self.factors.iter().flat_map(|factor| match factor.share {
             Share::Here(here) => here,
@@ -165,7 +167,7 @@ impl Growth {
         })
     }
 
-    /// The stretch at a time in s; `f64::INFINITY` gives the last.
+    /// The stretch at a time in s; `f64::INFINITY` gives the final one.
     pub fn at(&self, time: f64) -> f64 {
         self.factors
             .iter()
@@ -173,7 +175,7 @@ impl Growth {
             .product()
     }
 
-    /// Makes it that of a time in s.
+    /// Sets the present stretch to that at a time in s.
     pub fn begin(&mut self, time: f64) {
         let (mut stretch, mut bent) = (1.0, [0.0; 3]);
         for factor in &self.factors {
@@ -185,19 +187,19 @@ impl Growth {
         self.now = [stretch, x, y, z];
     }
 
-    /// The stretch now.
+    /// The present stretch.
     #[inline(always)]
     pub fn now(&self) -> f64 {
         self.now[0]
     }
 
-    /// Half the difference of the stretches at the two sides of a voxel along each axis now, over the stretch.
+    /// Half the difference of the present stretches at the two sides of a voxel along each axis, over the stretch.
     #[inline(always)]
     pub(crate) fn bent(&self) -> Vec3 {
         [self.now[1], self.now[2], self.now[3]]
     }
 
-    /// The time in s after which it stays the same.
+    /// The time in s after which the stretch is constant.
     pub fn end(&self) -> f64 {
         let ends = self.factors.iter().map(|factor| factor.history.end());
         ends.fold(0.0, f64::max)
@@ -217,9 +219,9 @@ mod tests {
     }
 
     #[test]
-    fn is_the_product_of_powers() {
+    fn stretch_is_the_product_of_powers() {
         let mut growth = Growth::new(vec![ramp(1.2, 1.0), ramp(8.0, 1.0 / 3.0)]).unwrap();
-        // Where nobody has begun it is that of the end.
+        // Before `begin` is called it is the final stretch.
         assert!((growth.now() - 2.4).abs() < 1e-15);
         growth.begin(1.0);
         assert_eq!(growth.now(), 1.1 * libm::pow(4.5, 1.0 / 3.0));
@@ -231,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_shrinks_to_nothing() {
+    fn vanishing_stretch_is_refused() {
         assert!(Growth::new(vec![ramp(0.0, 1.0)]).is_err());
         let share = Share::Field([[-6.0, 0.0, 0.0, 0.0]].into());
         assert!(
@@ -244,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_has_its_share_and_bends_with_the_slope_of_it() {
+    fn block_has_its_share_and_bends_with_its_slope() {
         let share = Share::Field([[0.0; 4], [0.5, 0.0, 0.1, 0.0]].into());
         let field = GrowthFactor {
             share,

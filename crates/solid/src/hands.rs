@@ -1,4 +1,4 @@
-//! Hands on a problem in motion: springs that pull vertices, and loads that are set by hand.
+//! Interaction with a problem in motion: springs that pull vertices, and loads that are set by hand.
 
 use crate::vector::{Vec3, axpy, norm, scale, sub};
 use crate::{Fluid, History, Problem, ProblemError, State};
@@ -10,9 +10,9 @@ pub struct Grab {
     pub vertex: u32,
     /// Stiffness in N/m.
     pub stiffness: f64,
-    /// The point that is pulled toward, in m.
+    /// The target point in m.
     pub target: Vec3,
-    /// Where the spring is held now, in m: on its way to the target.
+    /// Present position of the spring's other end in m, on its way to the target.
     pub anchor: Vec3,
 }
 
@@ -35,16 +35,16 @@ impl Grab {
     }
 }
 
-/// All grabs of a run, and the histories that its loads had before anyone changed them.
+/// All grabs of a run, and the original histories of its loads.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Hands {
     histories: Vec<History>,
-    /// By the caller's numbers.
+    /// Grabs with the caller's numbers.
     grabs: Vec<(u32, Grab)>,
 }
 
 impl Hands {
-    /// No hand on a problem yet.
+    /// No grabs yet, and the histories of the problem's loads.
     pub fn new(problem: &Problem) -> Self {
         Self {
             histories: problem.loads().iter().map(|l| l.history.clone()).collect(),
@@ -52,8 +52,7 @@ impl Hands {
         }
     }
 
-    /// Makes a load `factor` times its final value, at once and for good; `None` gives it its own history
-    /// back.
+    /// Sets a load to `factor` times its final value, at once and for good; `None` restores its own history.
     pub fn set_load(
         &self,
         problem: &mut Problem,
@@ -72,8 +71,8 @@ impl Hands {
         problem.set_history(load, history)
     }
 
-    /// Pulls a vertex of a body at `positions` toward a point (m) by a spring of the given stiffness (N/m),
-    /// any above zero. A grab of the same number takes a new target and a new stiffness, or a new vertex.
+    /// Pulls a vertex of a body at `positions` toward a point (m) by a spring of the given stiffness (N/m), any above
+    /// zero. A grab of the same number takes a new target and a new stiffness, or a new vertex.
     pub fn grab(
         &mut self,
         positions: &[Vec3],
@@ -113,14 +112,14 @@ impl Hands {
         Ok(())
     }
 
-    /// Lets go; whether there was such a grab.
+    /// Releases a grab; returns whether it existed.
     pub fn release(&mut self, number: u32) -> bool {
         let before = self.grabs.len();
         self.grabs.retain(|(other, _)| *other != number);
         self.grabs.len() < before
     }
 
-    /// Lets go of everything.
+    /// Releases all grabs.
     pub fn release_all(&mut self) {
         self.grabs.clear();
     }
@@ -130,8 +129,7 @@ impl Hands {
         &self.grabs
     }
 
-    /// Moves all anchors toward their targets, no farther than `travel` (m), and gives the grabs as they
-    /// are then.
+    /// Moves all anchors toward their targets, no farther than `travel` (m), and returns the grabs after that.
     pub fn follow(&mut self, travel: f64) -> Vec<Grab> {
         let one = |(_, grab): &mut (u32, Grab)| {
             grab.follow(travel);
@@ -140,7 +138,7 @@ impl Hands {
         self.grabs.iter_mut().map(one).collect()
     }
 
-    /// Whether all anchors have arrived.
+    /// Tests whether all anchors have reached their targets.
     pub fn arrived(&self) -> bool {
         self.grabs
             .iter()
@@ -175,7 +173,7 @@ pub fn still_state(
     })
 }
 
-/// When the loads, the motions and the materials of a problem stop to vary, in s.
+/// The time (s) after which loads, motions, fluid and materials of a problem no longer vary.
 pub fn loads_end(problem: &Problem) -> f64 {
     let loads = problem.loads().iter().map(|load| &load.history);
     let clamps = problem.clamps().iter();
@@ -188,7 +186,7 @@ pub fn loads_end(problem: &Problem) -> f64 {
         .fold(of_fluid.max(of_growth), f64::max)
 }
 
-/// The shortest side of anything in the body, in m: what a step may safely be measured by.
+/// The shortest side of any element of the body, in m: a safe length scale for a step.
 pub fn shortest_edge(problem: &Problem) -> f64 {
     let body = problem.body();
     let rest = body.rest();

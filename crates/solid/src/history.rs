@@ -1,7 +1,7 @@
 use crate::ProblemError;
 
-/// How a load or a motion varies with time: a factor, linear between the given times and constant
-/// before the first and after the last.
+/// Load history of a load or a motion: a factor over time, linear between the given times and constant before the first
+/// and after the last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct History {
     times: Vec<f64>,
@@ -48,7 +48,7 @@ impl History {
         &self.factors
     }
 
-    /// Whether the factor is the same at all times.
+    /// Tests whether the factor is the same at all times.
     pub fn is_constant(&self) -> bool {
         self.factors.iter().all(|factor| *factor == self.factors[0])
     }

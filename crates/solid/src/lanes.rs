@@ -1,11 +1,10 @@
 //! Vectors of three in several lanes at once, and edges and tetrahedra in them.
 //!
-//! What a lane stands for is up to the caller: the next constraint along the grid ([`crate::strips`]), or
-//! the same constraint of another body of the same mesh.
+//! The caller chooses the meaning of a lane: the next constraint along the grid ([`crate::strips`]), or the same
+//! constraint of another body of the same mesh.
 //!
-//! Everything here and in the kernels is inlined by force and free of closures: what is not part of the
-//! one function that the processor was chosen for is compiled for the oldest processor, and calls of it
-//! would take ten times as long.
+//! Everything here and in the kernels is inlined by force and free of closures: code outside the one function that the
+//! processor was chosen for is compiled for the oldest processor, and calls of it would take ten times as long.
 
 use pulp::Simd;
 
@@ -17,16 +16,16 @@ pub type Wide<S> = [<S as Simd>::f64s; 3];
 pub struct Lanes<S: Simd>(pub S);
 
 impl<S: Simd> Lanes<S> {
-    /// How many lanes there are.
+    /// The number of lanes.
     pub const COUNT: usize = S::F64_LANES;
 
-    /// The same number in each lane.
+    /// Broadcasts a number to all lanes.
     #[inline(always)]
     pub fn splat(self, value: f64) -> S::f64s {
         self.0.splat_f64s(value)
     }
 
-    /// The numbers from an address on.
+    /// Loads the numbers from an address on.
     ///
     /// # Safety
     ///
@@ -36,7 +35,7 @@ impl<S: Simd> Lanes<S> {
         unsafe { from.cast::<S::f64s>().read_unaligned() }
     }
 
-    /// Writes the numbers from an address on.
+    /// Stores the numbers from an address on.
     ///
     /// # Safety
     ///
@@ -46,11 +45,11 @@ impl<S: Simd> Lanes<S> {
         unsafe { to.cast::<S::f64s>().write_unaligned(value) }
     }
 
-    /// The vectors whose coordinates stand from `at` on.
+    /// Loads the vectors whose coordinates stand from `at` on.
     ///
     /// # Safety
     ///
-    /// As [`Lanes::load`] for each axis from `at` on.
+    /// The conditions of [`Lanes::load`] hold for each axis from `at` on.
     #[inline(always)]
     pub unsafe fn load3(self, from: [*const f64; 3], at: usize) -> Wide<S> {
         unsafe {
@@ -62,11 +61,11 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// Adds `factor · value` to what is stored.
+    /// Adds `factor · value` to the stored values.
     ///
     /// # Safety
     ///
-    /// As [`Lanes::load`] and [`Lanes::store`] for each axis from `at` on.
+    /// The conditions of [`Lanes::load`] and [`Lanes::store`] hold for each axis from `at` on.
     #[inline(always)]
     pub unsafe fn accumulate(self, to: [*mut f64; 3], at: usize, factor: S::f64s, value: Wide<S>) {
         for axis in 0..3 {
@@ -175,8 +174,8 @@ impl<S: Simd> Lanes<S> {
     }
 }
 
-/// Below this square of a length (m²) an edge has no direction: it keeps divisions finite where two
-/// vertices lie on one spot, and is far below the square of any length that rounding can tell from zero.
+/// Squared length (m²) below which an edge has no direction: it keeps divisions finite where two vertices coincide, and
+/// is far below the square of any length that rounding can separate from zero.
 const NO_LENGTH: f64 = 1e-200;
 
 /// Tetrahedra: the positions of their vertices, and six times the gradients of their volumes.
@@ -191,7 +190,7 @@ pub struct Volumes<S: Simd> {
 }
 
 impl<S: Simd> Volumes<S> {
-    /// Of tetrahedra with these vertices.
+    /// Volumes and gradients of tetrahedra with these vertices.
     #[inline(always)]
     pub fn of(lanes: Lanes<S>, corners: [Wide<S>; 4]) -> Self {
         let [a, b, c, d] = corners;
@@ -205,19 +204,19 @@ impl<S: Simd> Volumes<S> {
     }
 }
 
-/// Edges: from the second vertex to the first, and the square of the length.
+/// Edges: the vectors from the second vertex to the first, and their squared lengths.
 #[derive(Clone, Copy)]
 pub struct Spans<S: Simd> {
     /// The vertices in m.
     pub ends: [Wide<S>; 2],
-    /// From the second to the first in m.
+    /// Vector from the second end to the first in m.
     pub along: Wide<S>,
     /// The square of the length in m², never zero.
     pub square: S::f64s,
 }
 
 impl<S: Simd> Spans<S> {
-    /// Of edges with these ends.
+    /// Vectors and squared lengths of edges with these ends.
     #[inline(always)]
     pub fn of(lanes: Lanes<S>, ends: [Wide<S>; 2]) -> Self {
         let along = lanes.sub(ends[0], ends[1]);

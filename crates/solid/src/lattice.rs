@@ -28,22 +28,22 @@ pub struct LatticeMaterial {
 pub enum LatticeConstants {
     /// Moduli in Pa.
     Moduli {
-        /// Of edges.
+        /// Modulus of edges.
         edge: f64,
-        /// Of volumes.
+        /// Modulus of volumes.
         bulk: f64,
     },
     /// Raw compliances.
     Compliances {
-        /// Of edges in m/N.
+        /// Compliance of edges in m/N.
         edge: f64,
-        /// Of tetrahedra in m³/Pa.
+        /// Compliance of tetrahedra in m³/Pa.
         volume: f64,
     },
 }
 
 impl LatticeMaterial {
-    /// From the edge modulus `E_e` (Pa), the bulk modulus `K` (Pa) and the density (kg/m³).
+    /// A lattice from the edge modulus `E_e` (Pa), the bulk modulus `K` (Pa) and the density (kg/m³).
     pub fn from_moduli(edge: f64, bulk: f64, density: f64) -> Result<Self, ProblemError> {
         positive("edge modulus (Pa)", edge)?;
         positive("bulk modulus (Pa)", bulk)?;
@@ -52,8 +52,8 @@ impl LatticeMaterial {
         Ok(Self { constants, density })
     }
 
-    /// From raw compliances: of each voxel's own edges (m/N) and of tetrahedra (m³/Pa, because the
-    /// constraint `V − V₀` is a volume), and the density (kg/m³).
+    /// A lattice from raw compliances, of each voxel's own edges (m/N) and of tetrahedra (m³/Pa, because the constraint
+    /// `V − V₀` is a volume), and the density (kg/m³).
     pub fn from_compliances(edge: f64, volume: f64, density: f64) -> Result<Self, ProblemError> {
         positive("edge compliance (m/N)", edge)?;
         positive("volume compliance (m³/Pa)", volume)?;

@@ -1,8 +1,8 @@
-//! One mechanical problem and its answer.
+//! A mechanical problem and its solution.
 //!
-//! A [`Body`] is a tetrahedral mesh with materials; a [`Problem`] adds clamps, loads and a floor;
-//! a [`State`] is where the vertices are and how fast they move. Solvers (`xpbd`, later `statics`)
-//! see nothing but this crate. Everything is in SI units and `f64`.
+//! A [`Body`] is a tetrahedral mesh with materials; a [`Problem`] adds clamps, loads and a floor; a [`State`] holds
+//! positions and velocities of the vertices. Solvers (`xpbd`, `statics`) see nothing but this crate. Everything is in
+//! SI units and `f64`.
 //!
 //! # Words
 //!
@@ -11,7 +11,7 @@
 //! - *edge constraint*: `C = |x_a − x_b| − ℓ`, stiffness `1/α = E_e ℓ s`, where `s` is the
 //!   [share](body) of a full turn around the edge that is filled with material.
 //! - *volume constraint*: `C = V − V₀` of a tetrahedron, stiffness `1/α = K/V₀`.
-//! - *residual*: the force that is left over on the vertices that are free to move.
+//! - *residual*: the unbalanced force on the free axes of vertices.
 //!
 //! # Example
 //!

@@ -1,4 +1,4 @@
-//! The few operations on 3×3 matrices that the mechanics needs; row-major.
+//! Operations on 3×3 matrices; row-major.
 
 use crate::vector::Vec3;
 
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn polar_survives_flat_and_vanished_bodies() {
+    fn polar_of_singular_gradients_is_a_rotation() {
         for f in [[[0.0; 3]; 3], [[1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]]] {
             let (r, s) = polar(&f);
             assert!((determinant(&r) - 1.0).abs() < 1e-13);

@@ -1,8 +1,8 @@
 //! Membranes: thin layers (fabric, film) that resist stretch in their plane and no bending.
 //!
-//! A triangle carries a Saint Venant–Kirchhoff energy in plane stress of Green's strain `E` in the plane
-//! of rest. It is meant for layers much stiffer than what they are bonded to, whose strains stay small
-//! while they turn as they like.
+//! A triangle carries a Saint Venant–Kirchhoff energy in plane stress of Green's strain `E` in the plane of rest. It is
+//! meant for layers much stiffer than the material they are bonded to, whose strains stay small while their rotations
+//! are arbitrary.
 //!
 //! # Compression
 //!
@@ -15,23 +15,23 @@
 //! - wrinkled, `e₁ > 0`, `e₂ < −ν e₁`: that of a strip, `c (1 − ν²)/2 e₁²`,
 //! - slack, `e₁ ≤ 0`: none,
 //!
-//! convex with a continuous stress, plus a small part of the taut energy everywhere: as much as gives it the stiffness of
-//! a voxel of what it is bonded to, and at most [`SLACK`] ([`Membrane::set_behind`]). A strain of
-//! zero lies on the border of all three: rounding decides there which one a triangle is in, so whatever
-//! needs a bound on its stiffness asks for [`Membrane::taut_stiffness`].
+//! convex with a continuous stress, plus a small part of the taut energy everywhere: as much as gives it the stiffness
+//! of a voxel of the material it is bonded to, and at most [`SLACK`] ([`Membrane::set_behind`]). A strain of zero lies
+//! on the border of all three: rounding decides there which one a triangle is in, so all code that needs a bound on its
+//! stiffness calls [`Membrane::taut_stiffness`].
 //!
-//! Directions come without angles, from arithmetic and roots alone, which every processor rounds alike.
+//! Directions are computed without angles, from arithmetic and roots alone, which every processor rounds alike.
 
 use serde::{Deserialize, Serialize};
 
 use crate::ProblemError;
 use crate::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 
-/// The most of its stiffness that a membrane keeps in compression: small, and enough to hold its
-/// vertices in place where nothing is behind.
+/// Largest fraction of its stiffness that a membrane keeps in compression: small, and enough to hold its vertices in
+/// place where no material is behind.
 pub const SLACK: f64 = 1e-2;
 
-/// What a membrane is made of.
+/// The material of a membrane.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MembraneMaterial {
     /// Young's modulus in Pa.
@@ -52,7 +52,7 @@ pub struct Membrane {
     gradients: [[f64; 2]; 3],
     area: f64,
     material: MembraneMaterial,
-    /// The part of its stiffness that it keeps in compression.
+    /// Fraction of its stiffness that it keeps in compression.
     slack: f64,
 }
 
@@ -98,16 +98,17 @@ impl Membrane {
         })
     }
 
-    /// The same with a part of its energy and its mass.
+    /// This membrane with a share of its energy and its mass.
     pub fn with_share(self, share: f64) -> Self {
         let area = share * self.area;
         Self { area, ..self }
     }
 
-    /// Says how stiff what it is bonded to is: Young's modulus times the size of a voxel, the least at its corners, in
-    /// N/m. A film of silk (4.1 GPa, 0.5 mm) with a hundredth of its stiffness would hold a voxel of soft rubber (60 kPa,
-    /// 2 mm) with 170 times the stiffness of that. Nothing at all makes the tangent jump by more than Newton's method
-    /// follows: a thousandth of a voxel's stiffness took it four times the iterations on that film, for a tip 0.1 % lower.
+    /// Sets the stiffness of the material that it is bonded to: Young's modulus times the size of a voxel, the least at
+    /// its corners, in N/m. A film of silk (4.1 GPa, 0.5 mm) with a hundredth of its stiffness would hold a voxel of
+    /// soft rubber (60 kPa, 2 mm) with 170 times the stiffness of that. Nothing at all makes the tangent jump by more
+    /// than Newton's method follows: a thousandth of a voxel's stiffness took it four times the iterations on that
+    /// film, for a tip 0.1 % lower.
     pub(crate) fn set_behind(&mut self, stiffness: f64) {
         self.slack = SLACK.min(stiffness / (self.material.young * self.material.thickness));
     }
@@ -117,7 +118,7 @@ impl Membrane {
         self.vertices
     }
 
-    /// What it is made of.
+    /// Its material.
     pub fn material(&self) -> &MembraneMaterial {
         &self.material
     }
@@ -214,7 +215,7 @@ impl Membrane {
         ]
     }
 
-    /// The strain that a step `moves` from `positions` leads to, to first order.
+    /// Predicts the strain after a step `moves` from `positions`, to first order.
     pub fn predict_strain(&self, positions: &[Vec3], moves: &[Vec3]) -> Plane {
         let (tangents, mut strain) = self.strain(positions);
         for corner in 0..3 {
@@ -238,8 +239,8 @@ impl Membrane {
         self.add_forces_of(self.stress(strain), tangents, forces);
     }
 
-    /// Adds the forces at `positions` of the stress that `predicted`, a strain, has, and of what its
-    /// tangent adds for the strain that is there ([`crate::mixed`]).
+    /// Adds the forces at `positions` of the stress at a `predicted` strain, extrapolated by its tangent to the present
+    /// strain ([`crate::mixed`]).
     pub fn add_predicted_forces(&self, predicted: Plane, positions: &[Vec3], forces: &mut [Vec3]) {
         let (tangents, strain) = self.strain(positions);
         let rest: Plane = std::array::from_fn(|k| strain[k] - predicted[k]);
@@ -258,8 +259,8 @@ impl Membrane {
         }
     }
 
-    /// The stiffness in N/m that it has where it is taut and hardly strained, at `positions`: none that it has
-    /// while strains are small is larger.
+    /// The stiffness in N/m of the membrane taut and hardly strained, at `positions`: an upper bound while strains are
+    /// small.
     pub fn taut_stiffness(&self, positions: &[Vec3]) -> [[f64; 9]; 9] {
         self.stiffness(positions, Some([0.0; 3]))
     }
@@ -387,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn with_its_own_strain_carried_along_it_is_the_same() {
+    fn carried_strain_of_the_state_gives_its_forces() {
         let membrane = Membrane::new([0, 1, 2], REST, CLOTH).unwrap();
         let before = [[0.1, 0.0, 1.2], [1.7, 0.2, 0.9], [0.4, 1.2, 1.5]];
         let moves = [[0.0; 3], [1e-7, 2e-7, -1e-7], [3e-7, 0.0, 1e-7]];
@@ -407,14 +408,14 @@ mod tests {
             membrane.stiffness(&after, None),
             membrane.stiffness(&after, Some(strain)),
         );
-        // The prediction leaves out the square of the moves, 1e-13; forces leave out its square again.
+        // The prediction neglects the square of the moves, 1e-13; forces neglect its square again.
         for (a, b) in own.as_flattened().iter().zip(predicted.as_flattened()) {
             assert!((a - b).abs() < 1e-15, "{a} {b}");
         }
         for (a, b) in stiff.as_flattened().iter().zip(carried.as_flattened()) {
             assert!((a - b).abs() < 1e-12, "{a} {b}");
         }
-        // Far from the strain that is there, the tangent makes up for the difference to first order.
+        // Far from the present strain, the tangent corrects for the difference to first order.
         let nowhere = strain.map(|e| e + 1e-4);
         let (near, far) = (forces(Some(nowhere)), forces(None));
         for (a, b) in near.as_flattened().iter().zip(far.as_flattened()) {
@@ -423,7 +424,7 @@ mod tests {
     }
 
     #[test]
-    fn pressed_it_keeps_only_its_slack() {
+    fn compressed_membrane_keeps_its_slack_energy() {
         let flat = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let membrane = Membrane::new([0, 1, 2], flat, CLOTH).unwrap();
         let pull = membrane.energy(&[[0.0; 3], [1.0 + 1e-6, 0.0, 0.0], [0.0, 1.0, 0.0]]);
@@ -432,7 +433,7 @@ mod tests {
     }
 
     #[test]
-    fn stretched_along_one_axis_it_is_a_strip_whatever_happens_across() {
+    fn uniaxial_stretch_has_the_energy_of_a_strip() {
         // Energy ½ Y e² A t with Green's strain e; across, −νe or more compression, which wrinkles and
         // adds the slack part of a taut membrane.
         let flat = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -449,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn the_taut_stiffness_is_that_of_a_sheet_pulled_a_little_and_stays_below_its_bound() {
+    fn taut_stiffness_is_that_of_a_pulled_sheet_and_below_its_bound() {
         for poisson in [0.3, 0.5, -0.4] {
             let material = MembraneMaterial { poisson, ..CLOTH };
             let membrane = Membrane::new([0, 1, 2], REST, material).unwrap();

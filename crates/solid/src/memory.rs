@@ -1,21 +1,21 @@
-//! Memory of a problem: all that the way to a state leaves behind.
+//! Memory of a problem: its data that depend on the load path.
 
 use crate::ContactMemory;
 use crate::fluid::FluidMemory;
 use crate::loads::TendonMemory;
 
-/// Everything that a problem remembers, as plain data: [`crate::Problem::memory`] reads it and
-/// [`crate::Problem::remember`] puts it back.
+/// The path-dependent data of a problem: [`crate::Problem::memory`] reads them and [`crate::Problem::remember`]
+/// restores them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Memory {
-    /// The time in s that the free stretches of all materials belong to; infinite after all histories.
+    /// The time in s of the present free stretches of all materials; infinite after all histories.
     pub time: f64,
-    /// The largest isochoric energy (J/m³) that each hyperelastic voxel has had, where any softens.
+    /// The largest isochoric energy (J/m³) so far of each hyperelastic voxel, if any softens.
     pub peaks: Option<Vec<f64>>,
-    /// Friction of each load that is a tendon, in their order; `None` before a state was accepted.
+    /// Friction of each tendon among the loads, in their order; `None` before a state was accepted.
     pub tendons: Vec<Option<TendonMemory>>,
     /// Gas and liquid in chambers.
     pub fluid: Option<FluidMemory>,
-    /// Surfaces that touch.
+    /// Contact between surfaces.
     pub contact: Option<ContactMemory>,
 }

@@ -1,9 +1,9 @@
 //! Elements with corners beyond planes of symmetry.
 //!
-//! Of a symmetric body one part is solved for. An element that crosses a plane has corners that are mirror images of
-//! vertices of that part. With planes through the origin an image is `S x`, where `S` is diagonal with entries of 1 and −1,
-//! so that an energy `E(S₁x₁, S₂x₂, …)` has the forces `S f` and the stiffness `S K S`. Two corners may be images of one
-//! vertex.
+//! Only one part of a symmetric body is solved for. An element that crosses a plane has corners that are mirror images
+//! of vertices of that part. With planes through the origin an image is `S x`, where `S` is diagonal with entries of 1
+//! and −1, so that an energy `E(S₁x₁, S₂x₂, …)` has the forces `S f` and the stiffness `S K S`. Two corners may be
+//! images of one vertex.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,12 +13,12 @@ use crate::terms::{Membranes, Strain, Term};
 use crate::vector::{Vec3, axpy};
 use crate::{Membrane, ProblemError};
 
-/// Mirror images of vertices, by which the corners of elements are numbered.
+/// Mirror images of vertices, to which the corners of elements refer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Images {
     /// The vertex that each is an image of.
     pub of: Vec<u32>,
-    /// By what its vectors are multiplied, 1 or −1 along each axis.
+    /// Signs of the reflection, 1 or −1 along each axis, by which vectors are multiplied.
     pub signs: Vec<Vec3>,
 }
 
@@ -32,7 +32,7 @@ impl Images {
         )
     }
 
-    /// Vectors of the images.
+    /// Vectors of the vertices as seen at the images.
     pub fn seen(&self, vectors: &[Vec3]) -> Vec<Vec3> {
         let pairs = self.of.iter().zip(&self.signs);
         pairs
@@ -47,7 +47,7 @@ impl Images {
         }
     }
 
-    /// Hands over an element of the images as one of the vertices, each of them once.
+    /// Visits an element of the images as one of the vertices, each of them once.
     pub(crate) fn visit(&self, corners: &[u32], matrix: &[f64], visit: Visitor<'_>) {
         let mut vertices: Vec<u32> = Vec::with_capacity(corners.len());
         let places = corners.iter().map(|&corner| {
@@ -87,7 +87,7 @@ pub struct Mirrored<T> {
 }
 
 impl<T> Mirrored<T> {
-    /// Elements whose corners are numbered as the images are.
+    /// Elements whose corners are numbers of images.
     pub fn new(images: Images, elements: T) -> Self {
         Self { images, elements }
     }
@@ -104,7 +104,7 @@ impl Mirrored<Membranes> {
         }
     }
 
-    /// Says how stiff what is around each vertex is, in N/m.
+    /// Sets the stiffness of the material around each vertex, in N/m.
     pub(crate) fn set_behind(&mut self, behind: &[f64]) {
         let seen: Vec<f64> = self.images.of.iter().map(|&v| behind[v as usize]).collect();
         self.elements.set_behind(&seen);
@@ -121,7 +121,7 @@ impl<T: Term> Term for Mirrored<T> {
         self.elements.check(self.images.of.len())
     }
 
-    /// Planes of symmetry stay where they are.
+    /// Planes of symmetry are fixed in space.
     fn is_anchored(&self) -> bool {
         true
     }
@@ -247,7 +247,7 @@ impl ExternalForce for Mirrored<Pressure> {
 }
 
 impl Mirrored<Pressure> {
-    /// Calls `act` with the vertices as the images have them.
+    /// Calls `act` with the vertices as seen at the images.
     fn on_images(&self, on: Vertices<'_>, act: impl FnOnce(Vertices<'_>)) {
         let masses: Vec<f64> = (self.images.of.iter())
             .map(|&v| on.masses[v as usize])

@@ -1,8 +1,8 @@
-//! Contact of a whole body with planes of symmetry, of which one part is solved for.
+//! Contact of a whole body with planes of symmetry, only one part of which is solved for.
 //!
-//! Contact sees all of the body, images of the vertices of the part ([`Images`]), so that what meets across a plane meets
-//! as in the whole: walls and their own images, edges in the plane, friction. Of contacts that are images of each other it
-//! counts one, and what it does to images is done to the vertices.
+//! Contact sees all of the body, images of the vertices of the part ([`Images`]), so that surfaces meet across a plane
+//! as in the whole: walls and their own images, edges in the plane, friction. It counts one of several contacts that
+//! are images of each other, and forces on images go to the vertices.
 
 use std::any::Any;
 
@@ -20,12 +20,12 @@ pub struct MirroredContact<C> {
 }
 
 impl<C> MirroredContact<C> {
-    /// Contact of a whole whose vertices are the images.
+    /// Contact of a whole body whose vertices are the images.
     pub fn new(images: Images, contact: C) -> Self {
         Self { images, contact }
     }
 
-    /// Hands over matrices on the images as those on the vertices.
+    /// Visits matrices on the images as those on the vertices.
     fn seen<'a>(&'a self, visit: Visitor<'a>) -> impl FnMut(&[u32], &[f64]) + 'a {
         |corners, matrix| self.images.visit(corners, matrix, visit)
     }
@@ -48,7 +48,7 @@ impl<C: Contact + Clone> Term for MirroredContact<C> {
         self.contact.check(self.images.of.len())
     }
 
-    /// Planes of symmetry stay where they are.
+    /// Planes of symmetry are fixed in space.
     fn is_anchored(&self) -> bool {
         true
     }

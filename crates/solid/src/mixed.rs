@@ -1,4 +1,4 @@
-//! Strains that Newton's method carries along by itself.
+//! Mixed formulation: strains as unknowns of Newton's method.
 //!
 //! A long Newton step of a slender body turns its elements far, which the linear step mistakes for
 //! stretch. The stress at the end of the step is then spurious, its geometric stiffness ruins the
@@ -8,14 +8,14 @@
 //!
 //! `(Bᵀ C B + G(σ)) δ = f − Bᵀ (σ + C (e(x) − ê))`, `σ = Φ'(ê)`, `C = Φ''(ê)`.
 //!
-//! The equilibrium is the same; the way there is several times shorter (Magisano, Leonetti and Garcea
-//! 2017, doi 10.1016/j.cma.2016.09.044).
+//! The equilibrium is the same, with several times fewer iterations (Magisano, Leonetti and Garcea 2017, doi
+//! 10.1016/j.cma.2016.09.044).
 //!
-//! The pressure of a voxel is an unknown too, `p̂ = K (J(ê) − 1)` at the end and predicted linearly on the way. A strain
-//! that bulges by 10 % in a step misses its volume by some 1 % in second order, which a bulk modulus of 100 times
-//! the shear modulus takes for a pressure as large as that modulus: the geometric stiffness of that ruined
-//! tangents the more the less a material can be compressed. Newton's method on `x`, `ê` and `p̂` differs from the above
-//! by `p̂` in place of `K (J(ê) − 1)` in `C` and `G` alone; in the forces it cancels.
+//! The pressure of a voxel is an unknown too, `p̂ = K (J(ê) − 1)` at the end and predicted linearly on the way. A
+//! strain that bulges by 10 % in a step misses its volume by some 1 % in second order, which a bulk modulus of 100
+//! times the shear modulus takes for a pressure as large as that modulus: the geometric stiffness of that ruined
+//! tangents, the more so the less a material can be compressed. Newton's method on `x`, `ê` and `p̂` differs from the
+//! above by `p̂` in place of `K (J(ê) − 1)` in `C` and `G` alone; in the forces it cancels.
 
 use crate::Body;
 use crate::assembly::ElementsVisitor;
@@ -25,12 +25,12 @@ use crate::vector::Vec3;
 /// The strain of every element of a body, as plain data.
 #[derive(Debug, Clone)]
 pub struct Strains {
-    /// In the order of the body's terms; `None` for those that are taken as they are.
+    /// Strains in the order of the body's terms; `None` for terms evaluated at the present strains.
     terms: Vec<Option<Strain>>,
 }
 
 impl Strains {
-    /// The strains that a step `moves` from `positions` leads to, to first order.
+    /// Predicts the strains after a step `moves` from `positions`, to first order.
     pub fn predict(body: &Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
         let predict = |term: &dyn Term| term.predict(positions, moves);
         Self {
@@ -38,8 +38,8 @@ impl Strains {
         }
     }
 
-    /// The strains at `positions` with other pressures in the hyperelastic voxels, in Pa, positive in tension: those of
-    /// larger voxels there, say.
+    /// The strains at `positions` with prescribed pressures in the hyperelastic voxels, in Pa, positive in tension:
+    /// such as those of larger voxels there.
     pub fn with_pressures(body: &Body, positions: &[Vec3], pressures: &[f64]) -> Self {
         let bricks = body.brick_term();
         let is_bricks = |term: &dyn Term| term.name() == bricks.name();
@@ -49,7 +49,7 @@ impl Strains {
         }
     }
 
-    /// The same after a further step.
+    /// Predicts the strains after a further step.
     #[must_use]
     pub fn carry(mut self, body: &Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
         for (term, strain) in body.terms().zip(&mut self.terms) {
@@ -63,7 +63,7 @@ impl Strains {
         self
     }
 
-    /// Adds the forces at `positions` of the stress that these strains predict, in N.
+    /// Adds the forces at `positions` of the stress predicted by these strains, in N.
     pub fn add_forces(&self, body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
         for (term, strain) in body.terms().zip(&self.terms) {
             match strain {
@@ -73,7 +73,7 @@ impl Strains {
         }
     }
 
-    /// The tangent at `positions` with the stress of these strains, as many elements at a time as suits.
+    /// Visits the element matrices of the tangent at `positions` with the stress of these strains, in batches.
     pub fn visit_elements(&self, body: &Body, positions: &[Vec3], visit: ElementsVisitor<'_>) {
         for (term, strain) in body.terms().zip(&self.terms) {
             match strain {

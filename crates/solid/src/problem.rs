@@ -10,7 +10,7 @@ use crate::{
     Tendon, Term,
 };
 
-/// A body with clamps, loads, and maybe a floor or contact.
+/// A body with clamps, loads, and optionally a floor, fluid or contact.
 #[derive(Debug, Clone)]
 pub struct Problem {
     body: Arc<Body>,
@@ -19,17 +19,17 @@ pub struct Problem {
     floor: Option<Floor>,
     fluid: Option<Fluid>,
     rigid: Vec<Rigid>,
-    /// By clamps.
+    /// Axes held by clamps.
     clamped: Vec<[bool; 3]>,
-    /// By clamps, or as it follows others.
+    /// Axes held by clamps or by ties (hanging nodes).
     held: Vec<[bool; 3]>,
     conservative: bool,
-    /// The time in s that free stretches belong to.
+    /// The time in s of the present free stretches.
     time: f64,
 }
 
 impl Problem {
-    /// Joins the parts after checking every index and number.
+    /// Assembles a problem after checking every index and number.
     pub fn new(
         mut body: Body,
         clamps: Vec<Clamp>,
@@ -54,7 +54,7 @@ impl Problem {
         let ties = body.ties();
         for vertex in ties.vertices() {
             held[vertex as usize] = [true; 3];
-            // It goes where its leaders go, so that a clamp that catches it must catch them.
+            // A tied vertex follows its leaders, so that a clamp that holds it must hold them.
             for axis in 0..3 {
                 let leads = |leader: &u32| clamped[*leader as usize][axis];
                 if clamped[vertex as usize][axis] && !ties.leaders(&vertex).iter().all(leads) {
@@ -83,7 +83,7 @@ impl Problem {
         })
     }
 
-    /// The same with surfaces that touch. They act on the body as what is attached to it does.
+    /// This problem with contact, which acts on the body as an attached term does.
     pub fn with_contact(mut self, contact: Box<dyn Contact>) -> Result<Self, ProblemError> {
         let ties = self.body.ties();
         ties.check_free(contact.name(), |found| contact.visit_pattern(found))?;
@@ -95,7 +95,7 @@ impl Problem {
         Ok(self)
     }
 
-    /// The same with gas or liquid in its chambers; to be added before contact.
+    /// This problem with gas or liquid in its chambers; to be added before contact.
     pub fn with_fluid(mut self, fluid: Fluid) -> Result<Self, ProblemError> {
         fluid.check(self.body.rest().len())?;
         self.conservative &= fluid.is_conservative();
@@ -107,24 +107,24 @@ impl Problem {
         Ok(self)
     }
 
-    /// What fills its chambers, where that has a pressure of its own.
+    /// Gas or liquid in its chambers, if these have a pressure of their own.
     pub fn fluid(&self) -> Option<&Fluid> {
         self.fluid.as_ref()
     }
 
-    /// The same, to let it remember.
+    /// Mutable access to the fluid, to update its memory.
     pub fn fluid_mut(&mut self) -> Option<&mut Fluid> {
         self.fluid.as_mut()
     }
 
-    /// Starts gas and liquid from `positions` (m): along a path of equilibria, or in motion from a time in s on.
+    /// Starts gas and liquid from `positions` (m): along a path of equilibria, or for a motion from a time in s on.
     pub fn start_fluid(&mut self, positions: &[Vec3], time: Option<f64>) {
         if let Some(fluid) = &mut self.fluid {
             fluid.start(positions, time);
         }
     }
 
-    /// The body, copied first where other problems have it too.
+    /// The body, copied first if other problems share it.
     fn body_mut(&mut self) -> &mut Body {
         Arc::make_mut(&mut self.body)
     }
@@ -136,7 +136,7 @@ impl Problem {
         pressed
     }
 
-    /// The same with another term on its body.
+    /// This problem with another term on its body.
     pub fn with_term(mut self, term: Arc<dyn Term>) -> Result<Self, ProblemError> {
         let ties = self.body.ties();
         ties.check_free(term.name(), |found| term.visit_pattern(found))?;
@@ -144,7 +144,7 @@ impl Problem {
         Ok(self)
     }
 
-    /// The same with rigid bodies among its vertices, which something keeps rigid already, up to what it gives way.
+    /// This problem with rigid bodies among its vertices, which a term keeps rigid already, up to its compliance.
     pub fn with_rigid(mut self, rigid: Vec<Rigid>) -> Result<Self, ProblemError> {
         let count = self.body.rest().len();
         let vertices = rigid.iter().flat_map(|body| body.0);
@@ -157,24 +157,24 @@ impl Problem {
         Ok(self)
     }
 
-    /// What is rigid and moves freely.
+    /// Free rigid bodies.
     pub fn rigid(&self) -> &[Rigid] {
         &self.rigid
     }
 
-    /// Surfaces that touch.
+    /// The contact term, if there is one.
     pub fn contact(&self) -> Option<&dyn Contact> {
         self.body.contact()
     }
 
-    /// The same, to let them remember.
+    /// Mutable access to the contact term, to update its memory.
     pub fn contact_mut(&mut self) -> Option<&mut dyn Contact> {
-        // What does not touch is not copied for it.
+        // A body without contact is not copied for it.
         self.body.contact()?;
         Some(&mut **self.body_mut().contact_mut()?)
     }
 
-    /// Exchanges contact with that of another problem on the same vertices, memory included.
+    /// Swaps contact with that of another problem on the same vertices, memory included.
     pub fn exchange_contact(&mut self, other: &mut Self) {
         if self.body.contact().is_none() || other.body.contact().is_none() {
             return;
@@ -192,7 +192,7 @@ impl Problem {
         &self.body
     }
 
-    /// The body as it is now, which may be kept while the problem goes on.
+    /// Shared access to the present body, which stays unchanged while the problem goes on.
     pub fn shared_body(&self) -> Arc<Body> {
         Arc::clone(&self.body)
     }
@@ -207,7 +207,7 @@ impl Problem {
         &self.loads
     }
 
-    /// Gives a load another history.
+    /// Sets the load history of a load.
     pub fn set_history(&mut self, load: usize, history: History) -> Result<(), ProblemError> {
         let count = self.loads.len();
         let what = "load";
@@ -223,7 +223,7 @@ impl Problem {
         self.floor
     }
 
-    /// For every vertex, which axes a clamp holds; all of one that follows others ([`Ties`]).
+    /// Axes of every vertex held by clamps; all axes of a tied one (hanging node, [`Ties`]).
     pub fn held(&self) -> &[[bool; 3]] {
         &self.held
     }
@@ -233,7 +233,8 @@ impl Problem {
         self.add_scaled_loads(positions, &|load| load.history.at(time), forces);
     }
 
-    /// The same without what holds a length: a motion that it prescribes would count as a vibration against its stiffness.
+    /// Adds the external forces (N) at `time` (s) except those of length-controlled tendons, whose stiffness would take a
+    /// prescribed motion for a vibration. Forces of a fluid are not added.
     pub fn add_soft_loads(&self, positions: &[Vec3], time: f64, forces: &mut [Vec3]) {
         let positions = &*self.seen(positions);
         let on = self.vertices(positions);
@@ -243,7 +244,7 @@ impl Problem {
         self.body.ties().hand_over(forces);
     }
 
-    /// Adds the external forces (N) with a factor of the caller's for each load.
+    /// Adds the external forces (N) with a load factor of the caller's for each load.
     pub fn add_scaled_loads(
         &self,
         positions: &[Vec3],
@@ -261,8 +262,8 @@ impl Problem {
         self.body.ties().hand_over(forces);
     }
 
-    /// Adds the derivative of the external forces (N) by a number, by which the factors of the loads change as `slope_of`
-    /// says.
+    /// Adds the derivative of the external forces (N) by a parameter, `slope_of` being the derivatives of the load
+    /// factors by it. Forces of a fluid are not included.
     pub fn add_load_slopes(
         &self,
         positions: &[Vec3],
@@ -279,14 +280,13 @@ impl Problem {
         self.body.ties().hand_over(forces);
     }
 
-    /// Whether tendons pull.
+    /// Tests whether there are tendons among the loads.
     pub fn has_tendons(&self) -> bool {
         let mut loads = self.loads.iter();
         loads.any(|load| matches!(load.kind, LoadKind::Tendon(_)))
     }
 
-    /// The same where those of the tendons that are `taut` go on as they are where they would become slack; itself where none
-    /// is.
+    /// This problem with the tendons marked `taut` continued below zero tension instead of slack; itself if none is.
     pub fn with_taut_tendons(&self, taut: &[bool]) -> Cow<'_, Self> {
         if !taut.contains(&true) {
             return Cow::Borrowed(self);
@@ -303,7 +303,7 @@ impl Problem {
         Cow::Owned(problem)
     }
 
-    /// All that it remembers.
+    /// Its memory: the data that depend on the load path.
     pub fn memory(&self) -> Memory {
         let tendons = self.loads.iter().filter_map(|load| match &load.kind {
             LoadKind::Tendon(tendon) => Some(tendon.memory().cloned()),
@@ -318,7 +318,7 @@ impl Problem {
         }
     }
 
-    /// Goes on from a memory of this problem.
+    /// Restores a memory of this problem.
     pub fn remember(&mut self, memory: &Memory) {
         self.begin(memory.time);
         if let Some(peaks) = &memory.peaks {
@@ -335,7 +335,7 @@ impl Problem {
         }
     }
 
-    /// Goes on from all that another problem on the same body remembers, but for contact.
+    /// Takes over the memory of another problem on the same body, except that of contact.
     pub fn remember_but_contact(&mut self, other: &Self) {
         self.begin(other.time);
         if let Some(peaks) = other.body.brick_term().peaks() {
@@ -351,7 +351,7 @@ impl Problem {
         self.fluid.clone_from(&other.fluid);
     }
 
-    /// Makes the free stretches of all materials those of a time in s.
+    /// Sets the free stretches of all materials to those at a time in s.
     pub fn begin(&mut self, time: f64) {
         self.time = time;
         if self.body.growth_end() > 0.0 {
@@ -359,7 +359,7 @@ impl Problem {
         }
     }
 
-    /// Loads and materials that soften forget the way to where the body was.
+    /// Clears the memory of tendons and of materials that soften.
     pub fn start_loads(&mut self) {
         if self.body.brick_term().soften() {
             let first = self.body.brick_term().first_peaks();
@@ -368,7 +368,7 @@ impl Problem {
         self.tendons_mut().for_each(|tendon| tendon.remember(None));
     }
 
-    /// Loads and materials that soften take `positions` as the state from which the way goes on.
+    /// Accepts `positions` as the state from which the load path continues, for tendons and materials that soften.
     pub fn accept_loads(&mut self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) {
         if self.body.brick_term().soften() {
             let peaks = self.body.brick_term().peaks_after(positions);
@@ -398,21 +398,21 @@ impl Problem {
             })
     }
 
-    /// Sets the largest isochoric energy (J/m³) that each hyperelastic voxel has had; does nothing where none softens.
+    /// Sets the largest isochoric energy (J/m³) so far of each hyperelastic voxel; does nothing if none softens.
     pub fn set_peaks(&mut self, peaks: &[f64]) {
         if self.body.brick_term().soften() {
             self.body_mut().set_peaks(peaks);
         }
     }
 
-    /// Whether the answer depends on the way to it.
+    /// Tests whether the solution depends on the load path.
     pub fn depends_on_way(&self) -> bool {
         let contact = self.contact().is_some_and(Contact::depends_on_way);
         let softens = self.body.brick_term().soften();
         contact || softens || self.loads.iter().any(|load| load.kind.depends_on_way())
     }
 
-    /// The same where loads keep during a step what would leave them without a potential, if they can.
+    /// This problem with the friction bounds of its tendons held during a step, so that these have a potential.
     #[must_use]
     pub fn with_held_loads(mut self) -> Self {
         for load in &mut self.loads {
@@ -422,7 +422,7 @@ impl Problem {
         self
     }
 
-    /// Positions with tied vertices where they belong.
+    /// Positions with tied vertices placed by their ties.
     fn seen<'a>(&self, positions: &'a [Vec3]) -> Cow<'a, [Vec3]> {
         self.body.ties().seen(positions)
     }
@@ -446,7 +446,7 @@ impl Problem {
         self.fluid.as_ref().map_or(0.0, of_fluid) + of_loads
     }
 
-    /// The work (J) of all pressures with a factor for each: what volume control prescribes.
+    /// The work (J) of all pressures with a factor for each: the quantity that volume control prescribes.
     pub fn pressure_work(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) -> f64 {
         let positions = &*self.seen(positions);
         let on = self.vertices(positions);
@@ -456,14 +456,14 @@ impl Problem {
             .sum()
     }
 
-    /// Whether all loads come from a potential, so that the stiffness matrix is symmetric: a pressure
-    /// does if its surface is closed.
+    /// Tests whether all loads have a potential, so that the stiffness matrix is symmetric: a pressure has one if its
+    /// surface is closed.
     pub fn is_conservative(&self) -> bool {
         self.conservative
     }
 
-    /// Hands minus the derivative of the external forces by positions (N/m) to `visit`, piece by
-    /// piece as [`crate::elastic::visit_stiffness`] does, but for [`Problem::coupling`].
+    /// Visits the element matrices of minus the derivative of the external forces by positions (N/m), as
+    /// [`crate::elastic::visit_stiffness`] does, without [`Problem::coupling`].
     pub fn visit_load_stiffness(
         &self,
         positions: &[Vec3],
@@ -481,7 +481,8 @@ impl Problem {
         }
     }
 
-    /// The part of that which joins all of the walls of a chamber, as the pressure in it follows its volume.
+    /// The low-rank part of that derivative, which couples all walls of a chamber, as the pressure in it follows its
+    /// volume.
     pub fn coupling(
         &self,
         positions: &[Vec3],
@@ -491,14 +492,13 @@ impl Problem {
         Some(fluid.coupling(positions, fluid.instant(factor_of)))
     }
 
-    /// Hands over the vertices of every element and every piece of the loads' stiffness: the tangent joins no
-    /// others.
+    /// Visits the vertices of every element of the body and of the loads' stiffness: the tangent couples no others.
     pub fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
         self.body.terms().for_each(|term| term.visit_pattern(visit));
         self.visit_load_pattern(visit);
     }
 
-    /// That of the loads alone.
+    /// Visits the pattern of the loads alone.
     pub fn visit_load_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
         let ties = self.body.ties();
         let mut tied = |corners: &[u32]| ties.visit_pattern(corners, visit);
@@ -510,7 +510,8 @@ impl Problem {
             .for_each(|fluid| fluid.visit_pattern(&mut tied));
     }
 
-    /// Puts held vertices where their clamps want them at `time`, motions being scaled by `ramp`, and tied ones where they belong.
+    /// Moves held vertices to their prescribed positions at `time`, motions being scaled by `ramp`, and tied ones to
+    /// those of their ties.
     pub fn place_clamps(&self, time: f64, ramp: f64, positions: &mut [Vec3]) {
         for clamp in &self.clamps {
             for &vertex in &clamp.vertices {
@@ -541,7 +542,7 @@ mod tests {
     use super::*;
     use crate::{LatticeMaterial, Mesh, Pressure};
 
-    /// A tetrahedron whose four faces, or three of them, feel a pressure from outside.
+    /// A tetrahedron with a pressure from outside on its four faces, or on three of them.
     fn pressed(faces: usize, voids: Vec<([u32; 4], f64)>) -> Problem {
         let mesh = Mesh {
             vertices: vec![

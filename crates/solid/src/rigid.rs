@@ -1,8 +1,8 @@
-//! Rigid bodies that move freely: four vertices of equal mass that keep their distances.
+//! Free rigid bodies: four vertices of equal mass that keep their distances.
 //!
-//! With `r_i` from the mean of the four, a rigid motion is `v + ω × r_i`. Of any vectors `d_i` on the vertices the
-//! nearest rigid ones (least squares) have `v = Σ d_i/4` and `J ω = Σ r_i × d_i`, `J = Σ (|r_i|² 1 − r_i r_iᵀ)`: of
-//! moves that is the rigid part, and of forces those with the same sum and moment that leave the body rigid.
+//! With `r_i` from the mean of the four, a rigid motion is `v + ω × r_i`. The rigid motion nearest to vectors `d_i` on
+//! the vertices (least squares) has `v = Σ d_i/4` and `J ω = Σ r_i × d_i`, `J = Σ (|r_i|² 1 − r_i r_iᵀ)`: for moves
+//! that is the rigid part, and for forces those with the same sum and moment that leave the body rigid.
 
 use crate::matrix::{Mat3, apply, polar, solve_spd};
 use crate::vector::{Vec3, add, axpy, cross, dot, scale, sub};
@@ -12,7 +12,7 @@ use crate::vector::{Vec3, add, axpy, cross, dot, scale, sub};
 pub struct Rigid(pub [u32; 4]);
 
 impl Rigid {
-    /// The four of all vertices.
+    /// The vectors of its four vertices.
     fn of(self, vectors: &[Vec3]) -> [Vec3; 4] {
         self.0.map(|vertex| vectors[vertex as usize])
     }
@@ -30,7 +30,7 @@ impl Rigid {
         polar(&sum).0
     }
 
-    /// Puts its vertices where they have the distances that they have in `rest`, as near as can be to where they are.
+    /// Restores the distances of `rest` between its vertices, at the rigid positions nearest to the present ones.
     pub fn restore(self, rest: &[Vec3], positions: &mut [Vec3]) {
         let turn = self.turn(rest, positions);
         let (_, shape) = about_mean(self.of(rest));
@@ -40,7 +40,7 @@ impl Rigid {
         }
     }
 
-    /// Leaves of vectors on its vertices what is rigid for vertices at `positions`.
+    /// Projects vectors on its vertices to rigid motions of vertices at `positions`.
     pub fn project(self, positions: &[Vec3], vectors: &mut [Vec3]) {
         let (_, offsets) = about_mean(self.of(positions));
         let (mean, parts) = about_mean(self.of(vectors));
@@ -61,7 +61,7 @@ impl Rigid {
     }
 }
 
-/// The mean of four vectors, and the four from there.
+/// The mean of four vectors, and their differences from it.
 fn about_mean(vectors: [Vec3; 4]) -> (Vec3, [Vec3; 4]) {
     let mean = scale(0.25, vectors.into_iter().fold([0.0; 3], add));
     (mean, vectors.map(|x| sub(x, mean)))
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rigid_motion_is_left_as_it_is() {
+    fn rigid_motion_is_unchanged() {
         let mut now = turned(2.5);
         BODY.restore(&REST, &mut now);
         assert!(farthest(&now, &turned(2.5)) < 1e-14);
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_rigid_goes_and_sum_and_moment_stay() {
+    fn projection_is_rigid_and_keeps_sum_and_moment() {
         let now = turned(1.0);
         let forces = vec![[1.0, 0.0, 0.2], [0.0, -3.0, 0.0], [0.5; 3], [0.0, 0.0, 2.0]];
         let mut rigid = forces.clone();
@@ -116,7 +116,7 @@ mod tests {
         assert!(norm(sub(sum(&rigid), sum(&forces))) < 1e-13);
         assert!(norm(sub(moment(&rigid), moment(&forces))) < 1e-13);
         assert!(farthest(&rigid, &forces) > 0.1);
-        // Moved along, it keeps its distances to second order.
+        // A move along the projection keeps distances to second order.
         let small = 1e-6;
         let mut moved: Vec<Vec3> = now
             .iter()

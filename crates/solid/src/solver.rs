@@ -1,31 +1,31 @@
-//! What brings a problem to where it was asked to go, by whatever method.
+//! Interface of solvers, whatever their method.
 
 use std::ops::ControlFlow;
 
 use crate::vector::Vec3;
 use crate::{Breakdown, Memory, Problem, State};
 
-/// How a solution ended.
+/// Outcome of a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// Equilibrium under all that was asked.
+    /// Equilibrium under all loads and motions.
     AtRest,
-    /// The end time was reached, as asked.
+    /// The prescribed end time was reached.
     EndTime,
     /// A trial showed that the body comes to rest slowly.
     Slow,
     /// Steps or time ran out before the body came to rest.
     NotAtRest,
-    /// The step was backed off as far as allowed and the body still flew apart.
+    /// The step was reduced as far as allowed and the body still blew up.
     Diverged,
-    /// The load path has a limit: no equilibrium near it carries more.
+    /// The load path has a limit point: no equilibrium near it carries more.
     LimitReached,
-    /// No equilibrium was found for the smallest step, and no limit explains it.
+    /// No equilibrium was found for the smallest step, and no limit point explains it.
     NotConverged,
-    /// The tangent stays singular: a part of the body moves freely.
+    /// The tangent stiffness stays singular: a part of the body moves freely.
     Mechanism,
-    /// The tangent takes more memory than there is: about this many bytes, or zero where only the
-    /// allocation showed it.
+    /// The tangent stiffness takes more memory than there is: about this many bytes, or zero where only the allocation
+    /// showed it.
     OutOfMemory(u64),
     /// The observer asked to stop.
     Cancelled,
@@ -49,52 +49,52 @@ impl Status {
     }
 }
 
-/// What an observer is shown now and then.
+/// State of a solution in progress, as passed to an observer.
 #[derive(Debug)]
 pub struct Progress<'a> {
-    /// The problem with its memory there.
+    /// The problem with its present memory.
     pub problem: &'a Problem,
     /// Steps or iterations so far.
     pub steps: u64,
-    /// The time in s; for statics, which knows none, the load factor.
+    /// The time in s; for statics, the load factor.
     pub time: f64,
     /// The current positions in m.
     pub positions: &'a [Vec3],
     /// The current velocities in m/s; none for statics.
     pub velocities: &'a [Vec3],
-    /// The residual force without units.
+    /// The relative residual, without unit.
     pub residual: f64,
-    /// Whether this is to be recorded: an instant of the recording, or a converged point of a load path.
+    /// Set if this state is to be recorded: an instant of the recording, or a converged point of a load path.
     pub record: bool,
 }
 
 /// Called now and then during a solution; `Break` cancels it.
 pub type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
 
-/// The last good state and how it was reached.
+/// Result of a solution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
     /// The last good state.
     pub state: State,
-    /// The memory of the problem there, besides contact.
+    /// The memory of the problem at that state, besides contact.
     pub memory: Memory,
-    /// How it ended.
+    /// The outcome.
     pub status: Status,
-    /// The residual force without units, see [`crate::balance::Balance::relative_residual`].
+    /// The relative residual, without unit, see [`crate::balance::Balance::relative_residual`].
     pub residual: f64,
     /// Steps or iterations taken, repeated ones counted.
     pub steps: u64,
-    /// How often a step was cut.
+    /// Number of step reductions.
     pub back_offs: u32,
-    /// Where and when it broke down, for [`Status::Diverged`].
+    /// Place and time of the breakdown, for [`Status::Diverged`].
     pub breakdown: Option<Breakdown>,
 }
 
-/// A way to the answer; its settings are the solver.
+/// A solver with its settings.
 ///
-/// [`crate::conformance::check_solver`] holds every solver to what is promised here.
+/// [`crate::conformance::check_solver`] checks these contracts for every solver.
 pub trait Solver {
-    /// What it is called.
+    /// The name of the solver.
     fn name(&self) -> &'static str;
 
     /// Solves from `start`, positions in m, or from the rest pose. A state whose status is

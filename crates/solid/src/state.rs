@@ -1,7 +1,7 @@
 use crate::Body;
 use crate::vector::Vec3;
 
-/// Where the vertices are and how fast they move.
+/// Positions and velocities of the vertices.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     /// Positions in m.

@@ -1,36 +1,36 @@
-//! What moves a problem through time while someone changes its loads and pulls at it.
+//! Interface of steppers, which move a problem through time while its caller changes loads and pulls at it.
 
 use crate::breakdown::Breakdown;
 use crate::hands::Grab;
 use crate::vector::Vec3;
 use crate::{Problem, ProblemError, State};
 
-/// How motion is damped.
+/// Damping of the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
     /// Velocities decay with this rate in 1/s.
     Rate(f64),
-    /// Critical for the slowest motion seen, estimated as the run goes: comes to rest soonest, says
-    /// nothing about the real motion.
+    /// Critical damping of the slowest motion seen, estimated during the run: comes to rest soonest, but the motion is
+    /// not the real one.
     Critical,
 }
 
-/// Whether a run goes on.
+/// Status of a live run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LiveStatus {
     /// The body moves.
     Moving,
-    /// Nothing moves until something is changed: further steps cost nothing.
+    /// Nothing moves until loads or grabs change: further steps cost nothing.
     AtRest,
-    /// The step was backed off as far as allowed and the body still flew apart. The state is the last good
-    /// one and stays until something is changed.
+    /// The step was reduced as far as allowed and the body still blew up. The state is the last good one and stays
+    /// until loads or grabs change.
     Diverged,
 }
 
-/// What a look at a run shows.
+/// Summary of a run after an advance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
-    /// Whether it goes on.
+    /// The status of the run.
     pub status: LiveStatus,
     /// The time of the run in s.
     pub time: f64,
@@ -38,41 +38,41 @@ pub struct Look {
     pub substep: f64,
     /// Steps taken since the start, repeated ones counted.
     pub substeps: u64,
-    /// How often the step was halved.
+    /// Number of times that the step was halved.
     pub back_offs: u32,
-    /// The residual force without units, grabs counted as loads.
+    /// The relative residual, without unit, grabs counted as loads.
     pub residual: f64,
     /// The elastic energy in J.
     pub elastic: f64,
     /// The kinetic energy in J.
     pub kinetic: f64,
-    /// Where and when it broke down, for [`LiveStatus::Diverged`].
+    /// Place and time of the breakdown, for [`LiveStatus::Diverged`].
     pub breakdown: Option<Breakdown>,
-    /// Whether the last step was solved to its end; what touches may ask for more than there is time for.
+    /// Set if the last step converged; contact may need more iterations than there is time for.
     pub settled: bool,
 }
 
-/// When a run asks whether to go on.
+/// Moment at which a run asks whether to continue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ask {
-    /// Within a step, which is given up if the answer is no.
+    /// Within a step, which is abandoned if the answer is no.
     Within,
     /// After a step.
     After,
 }
 
-/// How a run goes from one step to the next.
+/// Time integration method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
-    /// By many short steps, whose length the highest frequency decides.
+    /// Explicit: many short steps, limited by the highest frequency.
     Explicit,
-    /// By steps of any length, each of which solves for its end.
+    /// Implicit: steps of any length, each of which solves for its end.
     Implicit,
 }
 
 /// A problem in motion, whatever the method.
 pub trait Stepper: Send {
-    /// How it steps.
+    /// The time integration method.
     fn method(&self) -> Method;
 
     /// The problem, with the loads as they are now.
@@ -84,19 +84,18 @@ pub trait Stepper: Send {
     /// The length of a step in s.
     fn step(&self) -> f64;
 
-    /// Asks for steps of another length in s; a method whose stability decides keeps its own.
+    /// Requests steps of another length in s; a method limited by stability keeps its own.
     fn prefer_step(&mut self, seconds: f64);
 
-    /// Takes as many steps, fewer if it comes to rest or diverges, or as soon as `go_on` says no.
+    /// Takes up to so many steps, fewer if it comes to rest or diverges, or as soon as `go_on` returns `false`.
     fn advance_while(&mut self, steps: u32, go_on: &mut dyn FnMut(Ask) -> bool) -> Look;
 
-    /// Takes as many steps, fewer if it comes to rest or diverges.
+    /// Takes up to so many steps, fewer if it comes to rest or diverges.
     fn advance(&mut self, steps: u32) -> Look {
         self.advance_while(steps, &mut |_| true)
     }
 
-    /// Makes a load `factor` times its final value, at once and for good; `None` gives it its own history
-    /// back.
+    /// Sets a load to `factor` times its final value, at once and for good; `None` restores its own history.
     fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError>;
 
     /// Pulls a vertex toward a point (m) by a spring of the given stiffness (N/m), any above zero. A grab
@@ -109,15 +108,15 @@ pub trait Stepper: Send {
         stiffness: f64,
     ) -> Result<(), ProblemError>;
 
-    /// Lets go; whether there was such a grab.
+    /// Releases a grab; returns whether it existed.
     fn release(&mut self, number: u32) -> bool;
 
     /// All grabs with their numbers.
     fn grabs(&self) -> &[(u32, Grab)];
 
-    /// Back to the rest pose at time zero. Grabs are let go; loads stay as they were set.
+    /// Resets to the rest pose at time zero. Grabs are released; loads stay as they were set.
     fn reset(&mut self);
 
-    /// Goes on from other positions (m), without velocity, at `time` (s). Grabs are let go.
+    /// Continues from other positions (m), without velocity, at `time` (s). Grabs are released.
     fn seek(&mut self, positions: Vec<Vec3>, time: f64) -> Result<(), ProblemError>;
 }

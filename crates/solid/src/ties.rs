@@ -1,12 +1,13 @@
-//! Vertices that follow others, so that voxels of two sizes fit together.
+//! Ties of hanging nodes: vertices that follow others, so that voxels of two sizes fit together.
 //!
-//! Where a voxel meets four of half its size, the vertices of these on its face and edges would move on their own and the body
-//! would gape. They are tied instead: the position of each is the mean of the two or four corners between which it lies, as it is in the
-//! large voxel. All that acts on positions then does so through `x = T q`, with `q` the positions of the vertices that are free to move:
-//! an energy `E(T q)` has the forces `Tᵀ f` and the stiffness `Tᵀ K T`. Tied vertices carry neither force nor mass of their own.
+//! A voxel that meets four of half its size leaves vertices of these on its face and edges. They would move on their
+//! own and the body would gape. They are tied instead: the position of each is the mean of the two or four corners
+//! between which it lies, as it is in the large voxel. All that acts on positions then does so through `x = T q`, with
+//! `q` the free coordinates, the positions of the vertices that are not tied: an energy `E(T q)` has the forces `Tᵀ f`
+//! and the stiffness `Tᵀ K T`. Tied vertices carry neither force nor mass of their own.
 //!
-//! Weights are positive and add up to one, and what a tie hangs on is never tied itself. So uniform strains and rigid motions are exact, and
-//! forces and their moments are kept.
+//! Weights are positive and add up to one, and the leaders of a tie are never tied themselves. So uniform strains and
+//! rigid motions are exact, and forces and their moments are kept.
 
 use std::borrow::Cow;
 
@@ -14,10 +15,10 @@ use crate::ProblemError;
 use crate::assembly::{Elements, ElementsVisitor, Visitor};
 use crate::vector::{Vec3, axpy};
 
-/// Which vertices follow which.
+/// All ties of a body: tied vertices and their leaders.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ties {
-    /// For each vertex of the body, the place of its tie; empty where nothing is tied.
+    /// For each vertex of the body, the index of its tie; empty where nothing is tied.
     place: Vec<u32>,
     tied: Vec<Tie>,
 }
@@ -32,7 +33,7 @@ struct Tie {
 const FREE: u32 = u32::MAX;
 
 impl Ties {
-    /// Vertices, each the mean of its leaders, among `count`; of a vertex that comes again the first tie counts.
+    /// Ties of vertices, each the mean of its leaders, among `count`; if a vertex comes again its first tie counts.
     pub(crate) fn new(count: usize, ties: impl Iterator<Item = (u32, Vec<u32>)>) -> Self {
         let mut own = Self {
             place: vec![FREE; count],
@@ -51,7 +52,7 @@ impl Ties {
         own
     }
 
-    /// Whether nothing is tied.
+    /// Tests whether nothing is tied.
     pub fn is_empty(&self) -> bool {
         self.tied.is_empty()
     }
@@ -61,12 +62,12 @@ impl Ties {
         self.tied.iter().map(|tie| tie.vertex)
     }
 
-    /// Whether a vertex is tied.
+    /// Tests whether a vertex is tied.
     pub fn has(&self, vertex: u32) -> bool {
         self.tie(vertex).is_some()
     }
 
-    /// What a vertex hangs on, itself if it is free.
+    /// The leaders of a vertex, itself if it is free.
     pub(crate) fn leaders<'a>(&'a self, vertex: &'a u32) -> &'a [u32] {
         self.tie(*vertex)
             .map_or(std::slice::from_ref(vertex), |tie| &tie.leaders)
@@ -77,7 +78,7 @@ impl Ties {
         (place != FREE).then(|| &self.tied[place as usize])
     }
 
-    /// `T` in place: puts tied vertices where they belong; displacements likewise.
+    /// Applies `T` in place: sets tied vertices to the means of their leaders; displacements likewise.
     pub fn follow(&self, vectors: &mut [Vec3]) {
         for tie in &self.tied {
             let mut mean = [0.0; 3];
@@ -88,7 +89,7 @@ impl Ties {
         }
     }
 
-    /// Vectors with those of tied vertices where they belong.
+    /// Vectors with those of tied vertices set to the means of their leaders.
     pub fn seen<'a>(&self, vectors: &'a [Vec3]) -> Cow<'a, [Vec3]> {
         if self.is_empty() {
             return Cow::Borrowed(vectors);
@@ -98,7 +99,7 @@ impl Ties {
         Cow::Owned(followed)
     }
 
-    /// `Tᵀ` in place: hands what is on tied vertices, forces or slopes, to what they hang on.
+    /// Applies `Tᵀ` in place: moves forces or derivatives from tied vertices to their leaders.
     pub fn hand_over(&self, vectors: &mut [Vec3]) {
         for tie in &self.tied {
             let own = std::mem::take(&mut vectors[tie.vertex as usize]);
@@ -108,7 +109,7 @@ impl Ties {
         }
     }
 
-    /// The same of numbers such as masses.
+    /// Applies `Tᵀ` in place to numbers such as masses.
     pub(crate) fn hand_over_numbers(&self, numbers: &mut [f64]) {
         for tie in &self.tied {
             let own = std::mem::take(&mut numbers[tie.vertex as usize]);
@@ -118,7 +119,7 @@ impl Ties {
         }
     }
 
-    /// Refuses what acts on tied vertices and does not know of it.
+    /// Refuses a term or load on tied vertices that does not handle ties.
     pub(crate) fn check_free(
         &self,
         what: &'static str,
@@ -136,7 +137,7 @@ impl Ties {
         }
     }
 
-    /// Hands over the vertices that an element joins.
+    /// Visits the free vertices that an element couples.
     pub(crate) fn visit_pattern(&self, corners: &[u32], visit: &mut dyn FnMut(&[u32])) {
         if corners.iter().any(|corner| self.has(*corner)) {
             visit(&self.joined(corners));
@@ -145,14 +146,14 @@ impl Ties {
         }
     }
 
-    /// Hands over an element, `Tᵀ K T` of it where it has tied vertices.
+    /// Visits an element matrix, as `Tᵀ K T` if it has tied vertices.
     pub(crate) fn visit(&self, corners: &[u32], matrix: &[f64], visit: Visitor<'_>) {
         if !corners.iter().any(|corner| self.has(*corner)) {
             visit(corners, matrix);
             return;
         }
         let vertices = self.joined(corners);
-        // Of each corner, the places of what it hangs on.
+        // For each corner, the indices of its leaders.
         let places: Vec<(Vec<usize>, f64)> = corners
             .iter()
             .map(|corner| {
@@ -178,7 +179,7 @@ impl Ties {
         visit(&vertices, &found);
     }
 
-    /// The same of many: those without tied vertices stay together, as many as there are.
+    /// Visits many element matrices: those without tied vertices stay together, as many as there are.
     pub(crate) fn visit_elements(&self, elements: Elements<'_>, visit: ElementsVisitor<'_>) {
         if self.is_empty() {
             visit(elements);
@@ -207,7 +208,7 @@ impl Ties {
         });
     }
 
-    /// All that some vertices hang on, each once, in order.
+    /// The leaders of some vertices, each once, in order.
     fn joined(&self, corners: &[u32]) -> Vec<u32> {
         let each = corners.iter().flat_map(|corner| self.leaders(corner));
         let mut vertices: Vec<u32> = each.copied().collect();

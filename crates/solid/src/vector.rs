@@ -1,4 +1,4 @@
-//! The few operations on vectors of three that the mechanics needs.
+//! Operations on vectors of three.
 
 /// A vector or a point in space.
 pub type Vec3 = [f64; 3];

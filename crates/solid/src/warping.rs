@@ -1,39 +1,41 @@
-//! How the free faces of a voxel warp: what makes a twisted bar of two voxels across as soft as it is.
+//! Warping of the free faces of a voxel, without which a twisted bar of two voxels across would be too stiff.
 //!
 //! # Small strain
 //!
-//! The section of a twisted bar warps within a voxel as well, and between its nodes: no mode inside the voxel that keeps
-//! its mean shear helps. On a face with the normal `n` (at `ξₙ = s`) that nothing is joined to, two displacements do,
+//! The section of a twisted bar warps within a voxel as well, and between its nodes: no mode inside the voxel that
+//! keeps its mean shear helps. On a face with the normal `n` (at `ξₙ = s`) that nothing is joined to, two displacements
+//! do,
 //!
 //! `eₜ (1 + s ξₙ)/2 (1 − ξ_b²)`   and   `e_b (1 + s ξₙ)/2 (1 − ξₜ²)` ,
 //!
 //! which change no volume and are constant along the way they move, so that a uniform stress which leaves the face free
-//! does no work on them. The first has the shears `γₜₙ = a s/2 (1 − ξ_b²)` and `γₜ_b = −a (1 + s ξₙ) ξ_b`. Of the voxel's
-//! own shears, a mean and parts linear in the third coordinate, they meet the mean `γₜₙ` alone, with `⟨s/2 (1 − ξ_b²)⟩ = s/3`.
-//! Among each other modes meet only within a pair of axes: with themselves in `2/15 + 4/9 = 26/45`, with that of the
-//! opposite face in `−4/45` and with those of the other axis of the pair in `6/45` (signs `s s'` taken out). So they
-//! condense, with `mⱼ` free faces on the axis `j` and `mₖ` on `k`, to
+//! does no work on them. The first has the shears `γₜₙ = a s/2 (1 − ξ_b²)` and `γₜ_b = −a (1 + s ξₙ) ξ_b`. Of the
+//! voxel's own shears, a mean and parts linear in the third coordinate, they meet the mean `γₜₙ` alone, with
+//! `⟨s/2 (1 − ξ_b²)⟩ = s/3`. Among each other modes meet only within a pair of axes: with themselves in
+//! `2/15 + 4/9 = 26/45`, with that of the opposite face in `−4/45` and with those of the other axis of the pair in
+//! `6/45` (signs `s s'` taken out). So they condense, with `mⱼ` free faces on the axis `j` and `mₖ` on `k`, to
 //!
 //! `½ G γⱼₖ² (1 − c)`,  `c = cⱼ + cₖ`,  `cⱼ = mⱼ 5 (30 − 10 mₖ)/((30 − 4 mⱼ)(30 − 4 mₖ) − 36 mⱼ mₖ)` ,
 //!
 //! a number for each of the three mean shears and nothing else; it does not depend on the material.
 //!
-//! A wall one voxel thick, free on both faces, has these shears at its ends only (`b` with one free face). Elsewhere it is a
-//! plate, whose shear across is 5/6 of the uniform one (Reissner 1945): `c = 1/6`.
+//! A wall one voxel thick, free on both faces, has these shears at its ends only (`b` with one free face). Elsewhere it
+//! is a plate, whose shear across is 5/6 of the uniform one (Reissner 1945): `c = 1/6`.
 //!
 //! # Large strain
 //!
-//! In the mean such a motion is a simple shear along the face, `F (1 + a eₜ ⊗ eₙ)`, which keeps the volume and thins the
-//! voxel across the face. So the isochoric energy is that of a stretch with less shear and less thickness,
+//! In the mean such a motion is a simple shear along the face, `F (1 + a eₜ ⊗ eₙ)`, which keeps the volume and thins
+//! the voxel across the face. So the isochoric energy is that of a stretch with less shear and less thickness,
 //!
 //! `S̃ⱼₖ = √(1 − c) Sⱼₖ` ,   `S̃ⱼⱼ = Sⱼⱼ − Σₖ cⱼ Sⱼⱼ Sⱼₖ²/(Sⱼⱼ Sₖₖ + Sⱼₖ²)` ,
 //!
-//! and the volume stays that of `S`. `S̃ⱼⱼ` keeps a part of `Sⱼⱼ` under any shear: with `Sⱼₖ²/Sₖₖ` alone, which is the same to
-//! second order, a voxel that an impact shears far has negative stretches and gains energy. It has no unknowns, is bounded below as the material is, and to second order in a
-//! shear takes the part `c` of `(τₖ − τⱼ)/(λₖ (λₖ − λⱼ))` per `Sⱼₖ²`, `τ` the Kirchhoff stresses: positive by the
-//! inequality of Baker and Ericksen, and the stiffness that is there where the face `j` is free, so that `1 − c` of it is
-//! left at any stretch. A pressure on the face shifts both `τ` alike and drops out. Without the thinning a bar drawn to
-//! 2.4 of its length would lose its stiffness against shear.
+//! and the volume stays that of `S`. `S̃ⱼⱼ` keeps a part of `Sⱼⱼ` under any shear: with `Sⱼₖ²/Sₖₖ` alone, which is the
+//! same to second order, a voxel that an impact shears far has negative stretches and gains energy. It has no unknowns,
+//! is bounded below as the material is, and to second order in a shear takes the part `c` of `(τₖ − τⱼ)/(λₖ (λₖ − λⱼ))`
+//! per `Sⱼₖ²`, `τ` the Kirchhoff stresses: positive by the inequality of Baker and Ericksen, and the stiffness that is
+//! there where the face `j` is free, so that `1 − c` of it is left at any stretch. A pressure on the face shifts both
+//! `τ` alike and drops out. Without the thinning a bar drawn to 2.4 of its length would lose its
+//! stiffness against shear.
 //!
 //! The mean stress at a free face has no shear there; in an isotropic material then `S` has none either, and `S̃ = S`:
 //! the patch test holds at any strain.
@@ -45,33 +47,33 @@ use crate::hyperelastic::symmetric::{Response, Sym};
 
 const SQRT_2: f64 = std::f64::consts::SQRT_2;
 
-/// `c` of a plate: what Reissner's factor 5/6 leaves out.
+/// `c` of a plate: the rest of Reissner's factor 5/6.
 const PLATE: f64 = 1.0 / 6.0;
 
-/// The parts `cⱼ, cₖ` of the shear of each pair of axes by which free faces make a voxel softer. Pairs are named by the
-/// axis that is not in them, `j` and `k` come after it in turn.
+/// The parts `cⱼ, cₖ` of the shear of each pair of axes by which free faces soften a voxel. Pairs are named by the axis
+/// that is not in them, `j` and `k` come after it in turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Warping {
     parts: [[f64; 2]; 3],
-    /// How it draws in at a clamp, in place of the parts.
+    /// Lateral contraction at a clamp, in place of the parts.
     pub(crate) clamped: Option<Clamped>,
 }
 
-/// The faces of a voxel at the two sides of each axis.
+/// Classification of the faces of a voxel at the two sides of each axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Faces {
-    /// Nothing is joined to them, and nothing holds them.
+    /// Free faces: nothing is joined to them, and nothing holds them.
     pub free: [[bool; 2]; 3],
-    /// They must not move along their axis but with their corners.
+    /// Stiff faces, which must not move along their axis except with their corners.
     pub stiff: [[bool; 2]; 3],
-    /// A clamp or something stiffer holds them in full.
+    /// Faces held in full by a clamp or a stiffer material.
     pub held: [[bool; 2]; 3],
-    /// A pressure acts on them.
+    /// Faces under pressure.
     pub pressed: [[bool; 2]; 3],
 }
 
 impl Warping {
-    /// No free face.
+    /// No warping: no free face.
     pub const NONE: Self = Self {
         parts: [[0.0; 2]; 3],
         clamped: None,
@@ -82,7 +84,7 @@ impl Warping {
         self.parts
     }
 
-    /// That of a full voxel of isotropic rubber.
+    /// The warping of a full voxel of isotropic rubber.
     pub fn of(faces: &Faces) -> Self {
         let clamped = Clamped::of(faces);
         if clamped.is_some() {
@@ -94,7 +96,7 @@ impl Warping {
         let free = faces.free.map(|sides| sides.map(u8::from).iter().sum());
         let stiff = faces.stiff.map(|[low, high]| low || high);
         let parts = AXES.map(|(b, j, k)| {
-            // What the faces of one axis do moves those of the other.
+            // Modes of the faces of one axis move those of the other.
             let counts = [(j, k), (k, j)].map(|(n, t)| if stiff[t] { 0 } else { free[n] });
             let thin = [free[j], free[k]].map(|count| count == 2);
             match thin {
@@ -116,7 +118,7 @@ impl Warping {
         }
     }
 
-    /// The stretch that the isochoric energy is that of.
+    /// The relieved stretch, at which the isochoric energy is evaluated.
     fn relieved(&self, stretch: &Sym) -> Sym {
         let mut relieved = *stretch;
         for (pair, (b, j, k)) in self.parts.iter().zip(AXES) {
@@ -128,7 +130,7 @@ impl Warping {
         relieved
     }
 
-    /// The derivatives of that stretch (rows) by the stretch.
+    /// The derivatives of the relieved stretch (rows) by the stretch.
     fn slopes(&self, stretch: &Sym) -> [Sym; 6] {
         let mut slopes = [[0.0; 6]; 6];
         for axis in 0..3 {
@@ -146,7 +148,7 @@ impl Warping {
         slopes
     }
 
-    /// Adds the second derivatives of that stretch, each component times its `force`.
+    /// Adds the second derivatives of the relieved stretch, each component times its `force`.
     fn add_curvature(&self, stretch: &Sym, force: &Sym, hessian: &mut [[f64; SHAPE]; SHAPE]) {
         for (pair, (b, j, k)) in self.parts.iter().zip(AXES) {
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
@@ -162,8 +164,8 @@ impl Warping {
     }
 }
 
-/// How much thinner a voxel gets across a free face that shears, `a s²/(a b + s²)` with the shear `s` and the stretches
-/// `a` across the face and `b` along it: `s²/b` for small shears, and less than `a` for any.
+/// Loss of thickness across a free face that shears, `a s²/(a b + s²)` with the shear `s` and the stretches `a` across
+/// the face and `b` along it: `s²/b` for small shears, and less than `a` for any.
 struct Thinning {
     value: f64,
     shear: f64,
@@ -174,7 +176,7 @@ struct Thinning {
 }
 
 impl Thinning {
-    /// From the places of the shear (Mandel) and of the stretches across and along.
+    /// The thinning from the indices of the shear (Mandel) and of the stretches across and along.
     fn of(stretch: &Sym, shear: usize, across: usize, along: usize) -> Self {
         let shear = stretch[shear] / SQRT_2;
         let (across, along) = (positive(stretch[across]), positive(stretch[along]));
@@ -188,7 +190,7 @@ impl Thinning {
         }
     }
 
-    /// By the shear (Mandel) and the stretches across and along.
+    /// Derivatives by the shear (Mandel) and the stretches across and along.
     fn gradient(&self) -> [f64; 3] {
         let (s, [a, to_a, _], [b, to_b, _]) = (self.shear, self.across, self.along);
         let square = self.size * self.size;
@@ -199,7 +201,7 @@ impl Thinning {
         ]
     }
 
-    /// The second derivatives by the same.
+    /// Second derivatives by the shear (Mandel) and the stretches across and along.
     fn hessian(&self) -> [[f64; 3]; 3] {
         let s = self.shear;
         let ([a, to_a, turn_a], [b, to_b, turn_b]) = (self.across, self.along);
@@ -227,8 +229,8 @@ fn condensed([j, k]: [u8; 2]) -> [f64; 2] {
 }
 
 impl Rotated {
-    /// [`Rotated::mean`] for the stretch that free faces leave, with derivatives where `second` says how often what the
-    /// stress adds to the second ones counts.
+    /// [`Rotated::mean`] for the stretch relieved by free faces; `second` asks for the Hessian, with the geometric part
+    /// of the relief weighed by that factor.
     pub(crate) fn warped_mean(
         &self,
         thinning: f64,

@@ -21,7 +21,7 @@ fn cube() -> (Brick, Vec<Vec3>) {
     (brick, (0..8).map(corner).collect())
 }
 
-/// Material in one corner, some of it outside the cube.
+/// Filling with material in one corner, some of it outside the cube.
 fn cut() -> Filling {
     Filling {
         shift: [0.4, -0.7, 1.1],
@@ -30,7 +30,7 @@ fn cut() -> Filling {
     }
 }
 
-/// Any faces free, and any of them held; or at a clamp.
+/// Warping with any faces free, and any of them held; or at a clamp.
 fn warping() -> impl Strategy<Value = Warping> {
     let faces = any::<[[[bool; 2]; 3]; 3]>().prop_map(|[free, stiff, held]| Faces {
         free,
@@ -41,7 +41,7 @@ fn warping() -> impl Strategy<Value = Warping> {
     prop_oneof![faces, clamped()].prop_map(|faces| Warping::of(&faces))
 }
 
-/// A clamp on one side of an axis, free faces across it, some of them under pressure.
+/// Faces of a voxel with a clamp on one side of an axis, free faces across it, some of them under pressure.
 fn clamped() -> impl Strategy<Value = Faces> {
     any::<([[bool; 2]; 3], [[bool; 2]; 3], bool)>()
         .prop_flat_map(|faces| (0..3usize).prop_map(move |axis| (faces, axis)))
@@ -132,7 +132,7 @@ proptest! {
     }
 
     #[test]
-    fn a_cut_voxel_has_the_mean_gradient_over_its_material(positions in moved(), points in prop::collection::vec(prop::array::uniform3(-1.5..1.5f64), 1..5)) {
+    fn cut_voxel_has_the_mean_gradient_over_its_material(positions in moved(), points in prop::collection::vec(prop::array::uniform3(-1.5..1.5f64), 1..5)) {
         let mean = |value: &dyn Fn(&Vec3) -> f64| points.iter().map(value).sum::<f64>() / points.len() as f64;
         let filling = Filling {
             shift: std::array::from_fn(|k| mean(&|p| p[k])),
@@ -167,7 +167,7 @@ proptest! {
     }
 
     #[test]
-    fn pushes_back_when_inside_out(warping in warping(), positions in prop::collection::vec(prop::array::uniform3(-0.5..1.0f64), 8)) {
+    fn response_is_finite_when_inside_out(warping in warping(), positions in prop::collection::vec(prop::array::uniform3(-0.5..1.0f64), 8)) {
         let brick = Brick { warping, ..cube().0 };
         for material in materials() {
             prop_assert!(brick.energy(&material, &positions).is_finite());
@@ -178,7 +178,7 @@ proptest! {
 }
 
 #[test]
-fn six_motions_cost_nothing_and_no_more() {
+fn stiffness_has_six_zero_eigenvalues() {
     let (brick, rest) = cube();
     let all_free = Faces {
         free: [[true; 2]; 3],
@@ -230,7 +230,7 @@ fn eigenvalues(matrix: &[[f64; 24]; 24]) -> Vec<f64> {
 }
 
 #[test]
-fn bends_as_a_plate_and_as_a_beam() {
+fn bending_has_the_energy_of_plate_and_beam() {
     // Plane sections: u₁ = κ x z, and u₃ = −κ x²/2 has no share in one voxel's nodes but its mean, so
     // the energy is that of the bending strain ε₁₁ = κ z alone: ½ E/(1 − ν²) κ² h²/12 per volume with
     // the width held flat, and ½ E κ² h²/12 with ε₂₂ = −ν κ z (anticlastic).

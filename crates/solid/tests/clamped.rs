@@ -1,4 +1,4 @@
-//! Voxels at a clamp: which draw in, that uniform pulls stay uniform, and that nothing locks.
+//! Voxels at a clamp: faces that draw in, the patch test under uniform pulls, and freedom from locking.
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Brick, Faces, Filling, HyperelasticMaterial, Warping};
@@ -39,7 +39,7 @@ const FREE: [&[(usize, usize)]; 4] = [
     &[(1, 0), (1, 1), (2, 0), (2, 1)],
 ];
 
-/// The width at which a voxel that is drawn along x is free of lateral stress.
+/// The width at which a voxel that is drawn along x has no lateral stress.
 fn width(voxel: &Brick, material: &HyperelasticMaterial, along: f64) -> f64 {
     let force = |across: f64| {
         let drawn = corners(|x| [along * x[0], across * x[1], across * x[2]]);
@@ -61,12 +61,13 @@ fn width(voxel: &Brick, material: &HyperelasticMaterial, along: f64) -> f64 {
     low
 }
 
-/// The patch test. With a small strain it holds for any material, and without compression at any stretch; what is left then is of the
-/// order of G/K, 2e-4. At large strain each voxel has the width that frees it: pressures follow widths that differ by as little.
+/// The patch test. With a small strain it holds for any material, and without compression at any stretch; the remaining
+/// error is then of the order of G/K, 2e-4. At large strain each voxel has the width that frees it: pressures follow
+/// widths that differ by as little.
 #[test]
-fn a_voxel_that_is_drawn_out_uniformly_pulls_as_without_a_clamp() {
+fn uniform_stretch_has_the_forces_of_a_voxel_without_clamp() {
     let cases = [
-        // Of second order in the strain.
+        // Errors of second order in the strain.
         (0.0, 1.001, 1e-5),
         (0.3, 1.001, 1e-5),
         (0.49, 1.001, 1e-5),
@@ -102,10 +103,10 @@ fn a_voxel_that_is_drawn_out_uniformly_pulls_as_without_a_clamp() {
     }
 }
 
-/// Simple shear of the held face against the one across, and of the free face along the third axis: the states in which a uniform
-/// stress leaves the face `y` free.
+/// Simple shear of the held face against the one across, and of the free face along the third axis: the states in which
+/// a uniform stress leaves the face `y` free.
 #[test]
-fn shear_that_leaves_the_free_face_free_is_not_relieved() {
+fn shear_without_traction_on_the_free_face_is_not_relieved() {
     let material = rubber(0.49);
     let sheared = corners(|x| [x[0] + 1e-4 * x[2], x[1], x[2] + 1e-4 * x[0]]);
     let [expected, found] =
@@ -116,9 +117,10 @@ fn shear_that_leaves_the_free_face_free_is_not_relieved() {
     }
 }
 
-/// With the low face along x held: no motion of the other one is stiffer than in the plain voxel, and none is free.
+/// With the low face along x held: no motion of the other one is stiffer than in the plain voxel, and none has zero
+/// stiffness.
 #[test]
-fn no_motion_of_the_face_across_is_stiffer_or_free() {
+fn clamped_voxel_is_softer_and_positive_definite() {
     for free in FREE {
         for poisson in [0.3, 0.49, 0.4999] {
             let stiffness =
@@ -132,10 +134,10 @@ fn no_motion_of_the_face_across_is_stiffer_or_free() {
                     })
                 })
             };
-            // Some motions are not relieved at all; the rest is rounding.
+            // Some motions are not relieved at all; the margin covers rounding.
             let plain = stiffness(voxel(&[], false), poisson);
             let softer = is_positive(combined(1.0 + 1e-6, plain, -1.0));
-            // Where the modes take what a pressure pushes away, it is a matter of G and not of K.
+            // The modes relieve pressure, so that the stiffness is of the order of G and not of K.
             let soft = stiffness(voxel(&[], false), 0.3);
             let firm = is_positive(combined(-0.3, soft, 1.0));
             assert!(softer && firm, "{free:?} {poisson}: {softer} {firm}");
@@ -143,7 +145,7 @@ fn no_motion_of_the_face_across_is_stiffer_or_free() {
     }
 }
 
-/// Whether a symmetric matrix is positive definite: whether elimination finds positive pivots alone.
+/// Tests whether a symmetric matrix is positive definite: whether elimination finds positive pivots alone.
 fn is_positive(mut matrix: [[f64; 12]; 12]) -> bool {
     (0..12).all(|pivot| {
         let own = matrix[pivot];
@@ -157,8 +159,8 @@ fn is_positive(mut matrix: [[f64; 12]; 12]) -> bool {
     })
 }
 
-/// A face that bends out of plane and turns by 0.1: with a linear relief of the volume the energy grows with the bulk modulus. Larger
-/// strains fade the modes, and the voxel keeps its volume as others do.
+/// A face that bends out of plane and turns by 0.1: with a linear relief of the volume the energy grows with the bulk
+/// modulus. Larger strains fade the modes, and the voxel keeps its volume as others do.
 #[test]
 fn bending_does_not_lock_without_compression() {
     let bent = corners(|x| {
@@ -177,7 +179,7 @@ fn bending_does_not_lock_without_compression() {
 #[test]
 fn only_faces_beside_a_clamp_draw_in() {
     let plain = |free: &[(usize, usize)]| voxel(free, false).warping;
-    // Nothing to draw in, and a stub whose end is free.
+    // Voxels without a face to draw in, and a stub whose end is free.
     for free in [&[][..], &[(0, 1), (1, 1)]] {
         let mut faces = Faces::default();
         for &(axis, side) in free {
@@ -187,7 +189,7 @@ fn only_faces_beside_a_clamp_draw_in() {
         assert_eq!(voxel(free, true).warping, Warping::of(&faces));
     }
     assert_ne!(voxel(&[(1, 1)], true).warping, plain(&[(1, 1)]));
-    // Under pressure on all that is free, and where something stiff is beside the face.
+    // All free faces under pressure, and a stiff face beside the free one.
     for change in [true, false] {
         let mut faces = Faces::default();
         faces.free[1][1] = true;

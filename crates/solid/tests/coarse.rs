@@ -1,4 +1,4 @@
-//! Bodies of voxels of two sizes: what the vertices between them must keep.
+//! Bodies of voxels of two sizes: invariants of the hanging nodes between them.
 
 use voxsoft_solid::conformance::check_term;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
@@ -8,7 +8,7 @@ use voxsoft_solid::{
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 
-/// A box of `2 n` small voxels of edge 1 along each axis, of which those of the large cubes that `is_coarse` says are one.
+/// A box of `2 n` small voxels of edge 1 along each axis; those of large cubes selected by `is_coarse` are one element.
 fn boxed(n: [usize; 3], is_coarse: impl Fn([usize; 3]) -> bool) -> Mesh {
     let shape = n.map(|n| 2 * n);
     let mut grid = Grid::empty(shape, [0.0; 3], 1.0, u64::MAX).unwrap();
@@ -36,7 +36,7 @@ fn boxed(n: [usize; 3], is_coarse: impl Fn([usize; 3]) -> bool) -> Mesh {
     mesh
 }
 
-/// Large and small cubes next to each other in all ways.
+/// Large and small cubes next to each other in all combinations.
 fn mixed(n: [usize; 3], seed: u64) -> Mesh {
     boxed(n, |[i, j, k]| {
         let place = (i * 7 + j * 31 + k * 101) as u64;
@@ -65,7 +65,7 @@ fn on_the_surface(mesh: &Mesh, vertex: u32) -> bool {
     (0..3).any(|axis| x[axis] == 0.0 || x[axis] == largest(axis))
 }
 
-/// All of the surface held.
+/// A clamp that holds the whole surface.
 fn held(mesh: &Mesh) -> Clamp {
     let vertices = 0..mesh.vertices.len() as u32;
     Clamp {
@@ -116,7 +116,7 @@ fn tied_vertices_are_on_the_faces_of_large_voxels() {
     let body = body(&mesh);
     assert!(!body.ties().is_empty());
     let bilinear = |x: Vec3| x[0] * x[1] + 0.3 * x[1] * x[2] - x[2] * x[0];
-    // What is linear along each axis over the whole body is interpolated exactly in cubes of any size.
+    // A function linear along each axis over the whole body is interpolated exactly in cubes of any size.
     let exact: Vec<Vec3> = body.rest().iter().map(|&x| [bilinear(x); 3]).collect();
     let mut followed = exact.clone();
     body.ties()
@@ -154,7 +154,7 @@ fn mass_center_and_weight_are_kept() {
 #[test]
 fn pressure_on_large_faces_has_the_slope_of_its_work() {
     let mesh = mixed([2, 2, 2], 3);
-    // Of each small face on x = 0, two triangles; it is left open on purpose.
+    // Two triangles of each small face on x = 0; the surface is left open on purpose.
     let flat = |corners: &[u32; 3]| corners.iter().all(|v| mesh.vertices[*v as usize][0] == 0.0);
     let faces = mesh
         .tets
@@ -216,14 +216,14 @@ fn a_face_between_sizes_is_not_free() {
     let body = body(&mesh);
     let large = body.bricks().iter().find(|b| b.side > 1.5).unwrap();
     assert_eq!(large.side, 2.0);
-    // Free on all sides but one, as the end of a bar of its size.
+    // Free on all sides but one, like the end of a bar of its size.
     let mut faces = voxsoft_solid::Faces {
         free: [[true; 2]; 3],
         ..Default::default()
     };
     faces.free[0][1] = false;
     assert_eq!(large.warping, Warping::of(&faces));
-    // The small ones are as they are without it.
+    // The small voxels are as they are without it.
     let plain = boxed([2, 1, 1], |_| false);
     let plain = self::body(&plain);
     for brick in body.bricks().iter().filter(|b| b.side < 1.5) {
@@ -244,7 +244,7 @@ fn groups_that_are_no_cubes_are_refused() {
     assert_eq!(refused(&mesh), ProblemError::NotOneCube { index: 0 });
     mesh.coarse[0][0] = 1000;
     assert_eq!(refused(&mesh), ProblemError::NotOneCube { index: 0 });
-    // Large cubes off the lattice of the others: the second hangs on the first.
+    // Large cubes off the grid of the others: a corner of the second is tied to the first.
     let mut mesh = boxed([3, 2, 1], |_| true);
     let cube = |low: [f64; 3]| -> [u32; 8] {
         let inside = |tets: &[[u32; 4]]| {

@@ -1,4 +1,4 @@
-//! Every term and every load keeps the laws of the suite, and the suite catches who breaks one.
+//! Every term and every load keeps the laws of the suite, and the suite catches every fault.
 
 use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::conformance::{Broken, Law, check_load, check_term};
@@ -26,7 +26,7 @@ fn block(cells: [usize; 3]) -> Mesh {
     }
 }
 
-/// Stretched by a tenth along x and y, so that membranes are taut, with a ripple across.
+/// Positions stretched by a tenth along x and y, so that membranes are taut, with a ripple across.
 fn strained(rest: &[Vec3]) -> Vec<Vec3> {
     let ripple = |x: f64| 0.03 * SIDE * (x / SIDE).sin();
     rest.iter()
@@ -106,7 +106,7 @@ fn every_term_of_a_body_keeps_the_laws() {
     assert_eq!(seen, expected);
 }
 
-/// Springs between points, attached to a body that knows nothing of them.
+/// Springs between points, a term of a type unknown to the body.
 #[derive(Debug)]
 struct Springs(Vec<[u32; 2]>, Fault);
 
@@ -231,7 +231,7 @@ impl Term for Springs {
         });
     }
 
-    /// One that forgets everything.
+    /// Prediction without data, with the fault [`Fault::Prediction`].
     fn predict(&self, _: &[Vec3], _: &[Vec3]) -> Option<Strain> {
         (self.1 == Fault::Prediction).then(|| Strain::Numbers(Vec::new()))
     }
@@ -246,7 +246,7 @@ fn rayon_threads() -> f64 {
     rayon::current_num_threads() as f64
 }
 
-/// Springs as long as at rest, in one plane and out of it.
+/// Springs unstressed at rest, in one plane and out of it.
 fn springs(fault: Fault) -> (Springs, Vec<Vec3>) {
     let rest = vec![
         [LENGTH, 0.0, 0.0],
@@ -264,7 +264,7 @@ fn a_term_from_outside_keeps_the_laws() {
 }
 
 #[test]
-fn a_body_heeds_what_is_attached_to_it() {
+fn attached_term_adds_its_energy_to_the_body() {
     let mut body = lattice();
     let positions = strained(body.rest());
     let (alone, count) = (elastic::energy(&body, &positions), body.rest().len() as u32);
@@ -346,7 +346,7 @@ fn every_kind_of_load_keeps_the_laws() {
     check(Mirrored::new(images(), pressure(4, vec![]))).unwrap();
 }
 
-/// Corners two of which are images of the third and fourth of a tetrahedron across planes.
+/// Images of which two are those of the third and fourth corner of a tetrahedron across planes.
 fn images() -> Images {
     Images {
         of: vec![0, 2, 3, 3],
@@ -361,7 +361,7 @@ fn images() -> Images {
 
 #[test]
 fn membranes_on_mirror_images_keep_the_laws() {
-    // Along the axes, where rest has a strain of zero without rounding.
+    // Edges along the axes, so that the strain at rest is zero without rounding.
     let rest = [[1.0, 1.0, 0.5], [1.0, 2.0, 0.5]];
     let images = Images {
         of: vec![0, 0, 1],
@@ -473,7 +473,7 @@ impl ExternalForce for Apart {
 
 #[test]
 fn the_suite_catches_every_fault_of_a_load() {
-    // The rule that none of its faults breaks: rigid motion is no law of loads.
+    // A fault in a law that loads do not have: rigid motion.
     check(Apart([0, 2], Law::RigidMotion)).unwrap();
     for law in [
         Law::Numbering,

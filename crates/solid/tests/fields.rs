@@ -45,7 +45,7 @@ fn lattice() -> Body {
     )
 }
 
-/// Held all over: an even shear needs tractions that free faces do not have.
+/// Rubber with all vertices held: a uniform shear needs tractions that free faces do not have.
 fn rubber() -> Body {
     let model = Model::NeoHookean { c10: C10 };
     let body = body(
@@ -58,7 +58,7 @@ fn rubber() -> Body {
     problem.body().clone()
 }
 
-/// All values of a field where every vertex is moved by `F`, turned and carried off.
+/// All values of a field where every vertex is moved by `F`, rotated and translated.
 fn values(body: &Body, f: &Mat3, field: Field) -> Vec<f64> {
     let place = |x: &Vec3| {
         let [a, b, c] = rotate(apply(f, *x), [0.6, 0.0, 0.8], 0.9);
@@ -85,8 +85,8 @@ fn diagonal(d: Vec3) -> Mat3 {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { d[i] } else { 0.0 }))
 }
 
-/// The energy density of a lattice voxel: a spring along each axis and two along the diagonals of each
-/// face orientation, half of them there in each voxel.
+/// The energy density of a lattice voxel: a spring along each axis and two along the diagonals of each face
+/// orientation, half of them in each voxel.
 fn lattice_energy(f: &Mat3, diagonals: &[Vec3]) -> f64 {
     let spring = |direction: Vec3, length: f64, stiffness: f64| {
         let [x, y, z] = apply(f, direction);
@@ -213,7 +213,7 @@ fn displacement_and_speed_are_those_of_vertices() {
     assert_eq!(Field::from_id(9), None);
 }
 
-/// A voxel's stress is that of its own deformation: what lies beyond the neighbors does not count.
+/// A voxel's stress is that of its own deformation: voxels beyond the neighbors do not count.
 #[test]
 fn vertices_average_their_own_voxels_only() {
     let body = rubber();
@@ -233,7 +233,7 @@ fn vertices_average_their_own_voxels_only() {
     assert!(values.iter().all(|&v| v > 0.1 * C10));
 }
 
-/// A voxel of a lattice that is turned inside out at a finite energy: no stress, and a count of it.
+/// A lattice voxel turned inside out at a finite energy: it has no stress, and its volume ratio shows it.
 #[test]
 fn an_inverted_voxel_has_no_stress() {
     for body in [lattice(), rubber()] {
@@ -259,14 +259,14 @@ fn an_inverted_voxel_has_no_stress() {
             assert_eq!(is_none, measure.volume_ratio <= 0.0);
             assert!(measure.energy_density.is_finite() && measure.stretches[0].is_finite());
         }
-        // A vertex of other voxels too has their mean; nothing is divided by next to nothing.
+        // A vertex shared with other voxels has their mean; nothing is divided by a vanishing volume.
         let smooth = fields.evaluate(&body, &state, Field::VonMises);
         let most = measures.iter().map(|m| m.von_mises).fold(0.0, f64::max);
         assert!(smooth.iter().all(|v| v.is_nan() || *v <= most));
     }
 }
 
-/// A hair from flat: the stress is that of the formula, and only beyond zero it ends.
+/// Nearly flat voxels: the stress is that of the formula until the volume is zero, and NaN beyond.
 #[test]
 fn stress_is_continuous_until_a_voxel_is_flat() {
     for body in [lattice(), rubber()] {
@@ -296,7 +296,7 @@ fn volume_ratio_and_stretches_of_an_affine_deformation() {
     }
 }
 
-/// Of positions that are carried off rigidly, what is left of strain and stress is rounding.
+/// Strain and stress of a rigid motion are rounding errors.
 #[test]
 fn rounding_is_reported_as_zero() {
     for body in [lattice(), rubber()] {
@@ -316,7 +316,7 @@ fn rounding_is_reported_as_zero() {
 }
 
 #[test]
-fn the_slope_of_a_stretch_is_that_of_differences() {
+fn stretch_slope_matches_differences() {
     for body in [lattice(), rubber()] {
         let fields = Fields::of_all(&body);
         let mut positions: Vec<Vec3> = body.rest().to_vec();
@@ -425,7 +425,7 @@ fn turned_voxels_measure_along_their_own_edges() {
     };
     let turned = Mesh {
         vertices: upright.vertices.iter().map(|x| turn(*x)).collect(),
-        // The rows are where x, y and z of the body point.
+        // The rows are the directions of x, y and z of the body.
         block_axes: vec![[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(turn); blocks],
         ..upright.clone()
     };

@@ -1,4 +1,5 @@
-//! Gas and liquid behind walls: forces from a potential, their stiffness with what joins all of a wall, and masses that are kept.
+//! Gas and liquid behind walls: forces from a potential, their stiffness with its low-rank part, and conservation of
+//! mass.
 
 use voxsoft_solid::conformance::check_load;
 use voxsoft_solid::fluid::{
@@ -39,7 +40,7 @@ fn wall(weight: f64) -> Pressure {
     }
 }
 
-/// All of it, after all histories.
+/// The end of the load path, after all histories.
 const END: Instant = Instant {
     part: 1.0,
     time: f64::INFINITY,
@@ -103,7 +104,7 @@ fn moved(by: f64, seed: usize) -> Vec<Vec3> {
     positions
 }
 
-/// Adds the product of a piece of stiffness with a field to another one.
+/// Adds the product of an element matrix with a field to another one.
 fn add_product(vertices: &[u32], matrix: &[f64], field: &[Vec3], product: &mut [Vec3]) {
     let size = 3 * vertices.len();
     for (place, k) in matrix.iter().enumerate() {
@@ -124,7 +125,7 @@ fn product(a: &[Vec3], b: &[Vec3]) -> f64 {
     pairs.map(|(a, b)| a * b).sum()
 }
 
-/// Differences of forces and of the potential, over `step`, beside stiffness and forces.
+/// Compares differences of forces and of the potential, over `step`, with stiffness and forces.
 fn check_derivatives(fluid: &Fluid, step: f64) {
     let x = moved(0.02, 1);
     let way = moved(1.0, 2);
@@ -145,7 +146,7 @@ fn check_derivatives(fluid: &Fluid, step: f64) {
     for vertex in 0..x.len() {
         for axis in 0..3 {
             let slope = (high[vertex][axis] - low[vertex][axis]) / (2.0 * step);
-            // Differences are good to the square of the step over the size of the volume.
+            // Differences are accurate to the square of the step over the size of the volume.
             assert!((slope + stiffness[vertex][axis]).abs() < 1e-5 * size);
         }
     }
@@ -168,7 +169,7 @@ fn sealed_contents_have_a_potential_and_the_stiffness_of_their_forces() {
 }
 
 #[test]
-fn so_have_those_that_flow_in_a_step() {
+fn flow_within_a_step_has_a_potential_and_the_stiffness_of_its_forces() {
     let source = Source {
         pressure: 5e4,
         history: always(),
@@ -188,7 +189,7 @@ fn so_have_those_that_flow_in_a_step() {
 }
 
 #[test]
-fn what_two_chambers_exchange_is_not_lost() {
+fn exchange_between_chambers_conserves_mass() {
     let branch = Branch {
         ends: [End::Chamber(0), End::Chamber(1)],
         line: line(AIR, false),
@@ -224,7 +225,7 @@ fn what_two_chambers_exchange_is_not_lost() {
 }
 
 #[test]
-fn nothing_flows_through_a_closed_valve_at_rest_or_over_time() {
+fn closed_valve_stops_flow_at_rest_and_over_time() {
     let branch = |opening: Vec<f64>| Branch {
         ends: [End::Source(0), End::Chamber(0)],
         line: line(AIR, true),
@@ -242,7 +243,7 @@ fn nothing_flows_through_a_closed_valve_at_rest_or_over_time() {
         );
         Fluid::new(one, vec![vec![wall(1.0)]]).unwrap()
     };
-    // At rest what counts is how it ends: sealed, or at the pressure of the source.
+    // At rest the final opening counts: sealed, or at the pressure of the source.
     for (opening, expected) in [(vec![1.0, 0.0], 0.0), (vec![0.0, 1.0], 5e4)] {
         let mut fluid = filled(opening);
         fluid.start(&corners(), None);
@@ -280,7 +281,7 @@ fn the_weight_of_a_liquid_keeps_the_laws_of_loads() {
 }
 
 #[test]
-fn a_pressure_that_is_carried_along_ends_at_that_of_the_volume() {
+fn carried_pressure_converges_to_that_of_the_volume() {
     let sealed = network(vec![chamber(WATER, 1.001)], vec![], vec![]);
     let mut fluid = Fluid::new(sealed, vec![vec![wall(1.0)]]).unwrap();
     fluid.start(&corners(), None);

@@ -1,4 +1,4 @@
-//! Voxels that are longer by themselves, each by its share.
+//! Voxels with growth, each with its share of the free stretch.
 
 use proptest::prelude::*;
 use voxsoft_solid::vector::Vec3;
@@ -46,7 +46,7 @@ const OGDEN: Model = Model::Ogden {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// Not all laws of a term: at rest these have stress.
+    /// Derivatives only, not all laws of a term: grown voxels have stress at rest.
     #[test]
     fn forces_and_stiffness_of_grown_voxels_are_derivatives(
         moves in prop::collection::vec(prop::array::uniform3(-0.08..0.08), 12),
@@ -79,7 +79,7 @@ proptest! {
                 bent += way(row) * entry * way(column);
             }
         });
-        // A central difference is off by the square of its step; energies and forces are of the order of one.
+        // A central difference has an error of the square of its step; energies and forces are of the order of one.
         let step = 1e-5;
         let slope = (energy(step) - energy(-step)) / (2.0 * step);
         let turn = (inner(&forces(-step)) - inner(&forces(step))) / (2.0 * step);
@@ -89,7 +89,7 @@ proptest! {
 }
 
 #[test]
-fn a_slope_along_the_bar_stretches_one_end_of_a_section_more() {
+fn share_gradient_across_the_bar_bends_it() {
     // Free of stress a strain of s z is the arc u = s (x z, y z, (z² − x² − y²)/2), to first order.
     let slope = 1e-4;
     let share = [1.0, 0.0, 0.0, 0.5 * slope / 0.1];

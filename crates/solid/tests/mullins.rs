@@ -1,4 +1,4 @@
-//! Voxels that soften where they were stretched more before.
+//! Softening of voxels that were stretched more before (Mullins effect).
 
 use proptest::prelude::*;
 use voxsoft_solid::conformance::check_term;
@@ -41,7 +41,7 @@ fn problem(material: HyperelasticMaterial) -> Problem {
     Problem::new(body, vec![], vec![], None).unwrap()
 }
 
-/// Drawn along x, as long as it keeps its volume, and bent by a part of its place.
+/// Positions of a bar drawn along x at constant volume, and bent.
 fn drawn(problem: &Problem, stretch: f64, bend: f64) -> Vec<Vec3> {
     let thin = stretch.powf(-0.5);
     let place = |x: &Vec3| {
@@ -69,7 +69,8 @@ fn largest_difference(a: &[Vec3], b: &[Vec3]) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// Derivatives, rigid motion, pattern, bounds and threads on both sides of the peak, near enough to it for `ψ''` to count.
+    /// Derivatives, rigid motion, pattern, bounds and threads on both sides of the peak, near enough to it for `ψ''` to
+    /// matter.
     #[test]
     fn softened_voxels_are_a_term(
         moves in prop::collection::vec(prop::array::uniform3(-0.08..0.08), 12),
@@ -91,14 +92,14 @@ proptest! {
 }
 
 #[test]
-fn the_first_way_is_that_of_the_virgin_material_and_the_way_back_is_softer() {
+fn first_loading_is_virgin_and_unloading_is_softer() {
     for model in [YEOH, OGDEN] {
         let (mut soft, hard) = (problem(soft(model, 0.0)), problem(rubber(model)));
         let mut virgin = Vec::new();
         for stretch in [1.1, 1.3, 1.5] {
             let there = drawn(&soft, stretch, 0.05);
             let (found, plain) = (forces(&soft, &there), forces(&hard, &there));
-            // The plain way and the lanes round differently.
+            // Scalar code and lanes round differently.
             assert!(largest_difference(&found, &plain) < 1e-12);
             accept(&mut soft, &there);
             assert!(largest_difference(&forces(&soft, &there), &plain) < 1e-12);
@@ -107,7 +108,7 @@ fn the_first_way_is_that_of_the_virgin_material_and_the_way_back_is_softer() {
         let back = drawn(&soft, 1.3, 0.05);
         let softer = forces(&soft, &back);
         assert!(largest_difference(&softer, &virgin[1]) > 0.1);
-        // The second cycle is the way back of the first.
+        // The second loading follows the unloading of the first.
         let unloaded = drawn(&soft, 1.0, 0.0);
         accept(&mut soft, &unloaded);
         assert_eq!(forces(&soft, &back), softer);
@@ -122,7 +123,7 @@ fn the_first_way_is_that_of_the_virgin_material_and_the_way_back_is_softer() {
 }
 
 #[test]
-fn what_was_stretched_before_is_soft_from_the_beginning() {
+fn initial_peak_softens_from_the_beginning() {
     let mut before = problem(soft(YEOH, 0.0));
     let far = drawn(&before, 1.5, 0.0);
     accept(&mut before, &far);

@@ -1,4 +1,4 @@
-//! Strips give what the plain loops over the same constraints give.
+//! Strips against plain loops over the same constraints.
 
 use proptest::prelude::*;
 use voxsoft_solid::strips::{Columns, Strips, Sweep};
@@ -6,8 +6,8 @@ use voxsoft_solid::vector::{Vec3, axpy, dot, sub};
 use voxsoft_solid::{Body, LatticeMaterial, Mesh, elastic};
 use voxsoft_voxel::{Grid, tet_mesh};
 
-/// Sums of some fifty terms, each with a few roundings, of numbers that cancel to about a hundredth: 50 ×
-/// 1e-16 × 100, against the largest of the answer.
+/// Sums of some fifty terms, each with a few roundings, of numbers that cancel to about a hundredth: 50 × 1e-16 × 100,
+/// against the largest result.
 const ROUNDING: f64 = 1e-12;
 
 /// A block of voxels of 5 mm, of which those in `missing` (C order) are left out, in two materials with
@@ -53,7 +53,7 @@ fn body(cells: [usize; 3], missing: &[usize], fractions: bool) -> Body {
     Body::new(&mesh, &materials).unwrap()
 }
 
-/// Every vertex moved by up to `part` of a voxel.
+/// Positions with every vertex moved by up to `part` of a voxel.
 fn shaken(body: &Body, part: f64) -> Vec<Vec3> {
     let noise = |seed: f64| part * 5e-3 * 2.0 * ((seed.sin() * 43_758.545_3).fract() - 0.5);
     let shake = |(v, p): (usize, &Vec3)| std::array::from_fn(|a| p[a] + noise((3 * v + a) as f64));
@@ -88,7 +88,7 @@ fn assert_same(got: &[Vec3], expected: &[Vec3], what: &str) {
     }
 }
 
-/// The sweep of the method, one constraint after the other on plain arrays.
+/// Reference sweep, one constraint after the other on plain arrays.
 fn plain_sweep(
     body: &Body,
     order: &[usize],
@@ -228,7 +228,7 @@ fn compare(body: &Body, part: f64) {
                     retardation,
                 });
             }
-            // What counts is how far vertices were moved, a fair part of a voxel.
+            // Displacements of vertices are compared, which are a fair part of a voxel.
             let moved = |p: &[Vec3]| -> Vec<Vec3> {
                 p.iter().zip(&positions).map(|(a, b)| sub(*a, *b)).collect()
             };
@@ -261,7 +261,7 @@ fn a_block_of_several_slabs() {
     compare(&body([26, 12, 40], &[], true), 0.2);
 }
 
-/// A body of ten slabs, with threads and without.
+/// Runs a body of ten slabs on one and on several threads.
 #[cfg(feature = "threads")]
 #[test]
 fn the_bits_do_not_depend_on_the_threads() {
@@ -304,7 +304,7 @@ fn the_bits_do_not_depend_on_the_threads() {
     };
     let one = answer(1);
     for threads in [2, 4, 7] {
-        // Threads that raced would differ now and then.
+        // A race between threads would show now and then.
         for _ in 0..5 {
             assert_eq!(answer(threads), one, "{threads} threads");
         }
@@ -312,7 +312,7 @@ fn the_bits_do_not_depend_on_the_threads() {
 }
 
 #[test]
-fn vertices_on_one_spot_are_no_trouble() {
+fn coincident_vertices_have_zero_forces() {
     let body = body([3, 3, 3], &[], false);
     let strips = Strips::of(&body).unwrap();
     let positions = vec![[0.1, 0.2, 0.3]; body.rest().len()];

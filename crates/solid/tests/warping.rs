@@ -1,4 +1,4 @@
-//! Which faces of rubber voxels are free to warp, and by how much: closed forms of the derivation in `src/warping.rs`.
+//! Free faces of rubber voxels and their warping: closed forms of the derivation in `src/warping.rs`.
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
@@ -53,7 +53,7 @@ fn voxel(body: &Body, at: Vec3) -> Brick {
         .unwrap()
 }
 
-/// The warping of a voxel where only these faces (axis, side) are free, and these must not move.
+/// The warping of a voxel whose only free faces (axis, side) are these, with these stiff ones.
 fn with(free: &[(usize, usize)], stiff: &[(usize, usize)]) -> Warping {
     let mut faces = Faces::default();
     for &(axis, side) in free {
@@ -65,7 +65,7 @@ fn with(free: &[(usize, usize)], stiff: &[(usize, usize)]) -> Warping {
     Warping::of(&faces)
 }
 
-/// The part of a small mean shear of the pair of axes other than `b` that is left.
+/// The remaining fraction of shear stiffness for a small mean shear of the pair of axes other than `b`.
 fn left(warping: Warping, b: usize) -> f64 {
     let brick = Brick {
         warping,
@@ -85,7 +85,7 @@ fn left(warping: Warping, b: usize) -> f64 {
 }
 
 #[test]
-fn the_shear_that_is_left_is_that_of_the_derivation() {
+fn remaining_shear_stiffness_matches_the_derivation() {
     for (free, part) in [
         (&[][..], 0.0),
         (&[(0, 0)][..], 5.0 / 26.0),
@@ -95,7 +95,7 @@ fn the_shear_that_is_left_is_that_of_the_derivation() {
         (&[(0, 0), (0, 1), (2, 0)], 10.0 / 22.0),
         (&[(0, 0), (0, 1), (1, 0), (2, 0)], 0.5),
         (&[(0, 0), (0, 1), (1, 0), (1, 1), (2, 1)], 10.0 / 17.0),
-        // A rod: none of its shear across is known.
+        // A rod: there is no relief of its shear.
         (&[(0, 0), (0, 1), (1, 0), (1, 1)], 0.0),
     ] {
         // Terms of fourth order in the shear are 1e-6 of those of second order, rounding is 1e-15/1e-6.
@@ -122,7 +122,7 @@ fn shear_stiffness(brick: &Brick, material: &HyperelasticMaterial, along: f64, a
 }
 
 #[test]
-fn at_a_free_face_the_same_part_of_the_shear_stiffness_is_left_at_any_stretch() {
+fn relief_of_shear_stiffness_is_the_same_at_any_stretch() {
     let gent = Model::Gent {
         shear: 1.0,
         limit: 30.0,
@@ -159,8 +159,8 @@ fn at_a_free_face_the_same_part_of_the_shear_stiffness_is_left_at_any_stretch() 
             let [whole, left] =
                 [&still, &warping].map(|brick| shear_stiffness(brick, &material, along, low));
             assert!(whole > 0.0);
-            // The least energy tells the width to 1e-8; terms of fourth order in the shear are 1e-6, times the limit
-            // of the rubber and the bulk modulus 1e-4.
+            // The least energy gives the width to 1e-8; terms of fourth order in the shear are 1e-6, times the limit of
+            // the rubber and the bulk modulus 1e-4.
             assert!(
                 (left / whole - 21.0 / 26.0).abs() < 1e-3,
                 "{along}: {}",
@@ -183,7 +183,7 @@ fn surface_voxels_of_a_bar_warp() {
 }
 
 #[test]
-fn a_clamped_face_does_not_warp_and_nothing_moves_it() {
+fn clamped_face_is_held_and_does_not_warp() {
     let mesh = bar();
     let clamps = vec![clamp(&mesh, [true; 3], |x| x[0] == 0.0)];
     let problem = Problem::new(body(&mesh), clamps, vec![], None).unwrap();
@@ -201,7 +201,7 @@ fn a_clamped_face_does_not_warp_and_nothing_moves_it() {
 }
 
 #[test]
-fn half_a_body_warps_as_the_whole() {
+fn half_of_a_body_warps_like_the_whole() {
     let whole = body(&bar());
     let mesh = boxed([4, 1, 2]);
     let slides = vec![clamp(&mesh, [false, true, false], |x| x[1] == 1.0)];
@@ -219,7 +219,7 @@ fn half_a_body_warps_as_the_whole() {
 }
 
 #[test]
-fn another_material_is_not_pushed() {
+fn face_to_another_material_is_stiff() {
     let mut mesh = bar();
     for (part, tet) in mesh.tet_part.iter_mut().zip(&mesh.tets) {
         let x: f64 = tet.iter().map(|&v| mesh.vertices[v as usize][0]).sum();

@@ -1,8 +1,8 @@
 //! The energy's gradient and Hessian by the generalized coordinates, one voxel in each lane; the formulas stand in
 //! [`crate::brick_energy`], [`crate::warping`] and [`crate::hyperelastic`].
 //!
-//! The mean of `det` over two points `S ± r Ĥ` is `det S + r² S : cof Ĥ` without remainder, so that the change of volume
-//! needs no points.
+//! The mean of `det` over two points `S ± r Ĥ` is `det S + r² S : cof Ĥ` without remainder, so that the change of
+//! volume needs no points.
 //!
 //! Long because gradient and Hessian are one derivation, part by part of the energy.
 
@@ -16,16 +16,16 @@ use crate::hyperelastic::Model;
 const HALF_ROOT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 const SQRT_2: f64 = std::f64::consts::SQRT_2;
 
-/// Ratios of volume for which [`inverse_cube_root`] converges, and the plain way goes on otherwise.
+/// Volume ratios for which [`inverse_cube_root`] converges; outside them the scalar code answers.
 const VOLUMES: [f64; 2] = [0.1, 10.0];
 /// Newton's method squares an error of a quarter to rounding.
 const ROOT_ITERATIONS: usize = 6;
-/// Where thickness ratios go on otherwise ([`crate::brick_thickness`]).
+/// Stretch below which the scalar code continues the thickness ratios ([`crate::brick_thickness`]).
 pub(super) const LEAST_STRETCH: f64 = 0.2;
 
-/// A row of generalized coordinates, or of slopes by them.
+/// A row of generalized coordinates, or of derivatives by them.
 pub(super) type Row<S> = [Number<S>; SHAPE];
-/// A matrix of them.
+/// A matrix of such rows, as a Hessian.
 pub(super) type Square<S> = [Row<S>; SHAPE];
 
 /// The coordinates that an energy depends on.
@@ -35,7 +35,7 @@ pub(super) struct Shape<S: Simd> {
     pub hourglass: [Three<S>; 3],
 }
 
-/// The row of the hourglass coordinate `axis` of a mode.
+/// Index of the hourglass coordinate `axis` of a mode.
 const fn place(mode: usize, axis: usize) -> usize {
     6 + 3 * mode + axis
 }
@@ -137,7 +137,7 @@ impl<S: Simd> Variation<S> {
         }
     }
 
-    /// The components of a [`Six`] that `h` has.
+    /// The components of a [`Six`] in which `h` is not zero.
     const fn places((n, i, j): Axes) -> [usize; 4] {
         [i, j, n, OFF + n]
     }
@@ -158,7 +158,7 @@ impl<S: Simd> Variation<S> {
         [place(j, i), place(i, j), place(i, i), place(j, j), n, i, j]
     }
 
-    /// A function of `Ĥₙ` by these coordinates, from its values along the four components.
+    /// The chain rule: derivatives by these coordinates, from those by the four components of `Ĥₙ`.
     #[inline(always)]
     fn through(&self, values: &[Number<S>; 4]) -> [Number<S>; 7] {
         let twist = values[3] * HALF_ROOT;
@@ -173,8 +173,8 @@ impl<S: Simd> Variation<S> {
         ]
     }
 
-    /// Adds the derivatives of a function of `S` and `Ĥₙ`: `moment` is its gradient by `Ĥₙ`, `mixed` its second derivatives
-    /// by `S` and `Ĥₙ`, `square` those by `Ĥₙ` alone.
+    /// Adds the derivatives of a function of `S` and `Ĥₙ`: `moment` is its gradient by `Ĥₙ`, `mixed` its second
+    /// derivatives by `S` and `Ĥₙ`, `square` those by `Ĥₙ` alone.
     #[inline(always)]
     fn add_hessian(
         &self,
@@ -241,7 +241,7 @@ impl<S: Simd> Variation<S> {
     }
 }
 
-/// The mean change of volume and its gradient.
+/// The mean volume ratio and its gradient.
 pub(super) struct Volume<S: Simd> {
     pub value: Number<S>,
     pub gradient: Row<S>,
@@ -343,9 +343,9 @@ fn add_square<S: Simd>(hessian: &mut Square<S>, square: &[Six<S>; 6]) {
     }
 }
 
-/// The gradient of the energy without that of the mean change of volume, and its Hessian where `hessian` is given.
+/// Adds the gradient of the energy without that of the mean change of volume, and its Hessian if `hessian` is given.
 ///
-/// `sound` falls below zero where the plain way would take continuations of the energy.
+/// `sound` falls below zero where the scalar code would use continuations of the energy.
 #[inline(always)]
 pub(super) fn add_deviatoric<S: Simd>(
     constants: &Constants<S>,
@@ -530,7 +530,7 @@ impl<S: Simd> Point<S> {
     }
 }
 
-/// The parts of [`crate::warping`] of each pair of axes and side: (pair, side, shear, across, along).
+/// The reliefs of [`crate::warping`] for each pair of axes and side: (pair, side, shear, across, along).
 const RELIEFS: [(usize, usize, usize, usize, usize); 6] = [
     (0, 0, 3, 1, 2),
     (0, 1, 3, 2, 1),
@@ -540,7 +540,7 @@ const RELIEFS: [(usize, usize, usize, usize, usize); 6] = [
     (2, 1, 5, 1, 0),
 ];
 
-/// The shear, the stretches across and along, and one over `a b + s²`.
+/// The shear, the stretches across and along, and the inverse of `a b + s²`.
 #[inline(always)]
 fn sheared<S: Simd>(stretch: &Six<S>, shear: usize, across: usize, along: usize) -> [Number<S>; 4] {
     let s = stretch[shear] * HALF_ROOT;
@@ -548,7 +548,7 @@ fn sheared<S: Simd>(stretch: &Six<S>, shear: usize, across: usize, along: usize)
     [s, a, b, a.times_plus(b, s * s).inverse()]
 }
 
-/// The stretch that the isochoric energy is that of, and its derivatives (rows).
+/// The relieved stretch at which the isochoric energy is evaluated, and its derivatives (rows).
 #[inline(always)]
 fn relief<S: Simd>(constants: &Constants<S>, stretch: &Six<S>) -> (Six<S>, [Six<S>; 6]) {
     let zero = constants.bulk.all(0.0);
@@ -596,7 +596,7 @@ fn through_relief<S: Simd>(slopes: &[Six<S>; 6], values: &Six<S>) -> Six<S> {
     sum
 }
 
-/// Adds the second derivatives of that stretch, each component times its `force`.
+/// Adds the second derivatives of the relieved stretch, each component times its `force`.
 #[inline(always)]
 fn add_relief_curvature<S: Simd>(
     constants: &Constants<S>,

@@ -21,14 +21,14 @@ const MASKS: [usize; 7] = [4, 2, 1, 3, 5, 6, 7];
 /// Iterations for the rotation: Newton's method squares the error of singular values from 1/15 to 15.
 const POLAR_ITERATIONS: usize = 9;
 
-/// How far a rotation may be from one by rounding.
+/// Largest departure from orthogonality that counts as rounding in a rotation.
 const NOT_ROTATED: f64 = 1e-13;
 
-/// Below this determinant of the gradient, or of what is solved for spins, the plain way answers: it knows voxels that
-/// are inside out or flat.
+/// Least determinant, of the deformation gradient and of the spin matrix `G`, for which lanes are valid; below it the
+/// scalar code answers, which handles inverted and flat voxels.
 const LEAST_DETERMINANT: f64 = 1e-3;
 
-/// A limit that materials without one never come near.
+/// Limit of materials without one, never approached.
 const FAR: f64 = 1e30;
 
 /// The constants of a group.
@@ -46,23 +46,23 @@ pub(super) struct Constants<S: Simd> {
     pub young: Number<S>,
     /// The energy by the excess `e` of the first invariant: `c₀ e + c₁ e² + c₂ e³`.
     pub series: Three<S>,
-    /// And that of Gent, with shear modulus and limit.
+    /// Shear modulus and limit of Gent's energy.
     pub gent: Option<[Number<S>; 2]>,
 }
 
-/// Where a voxel is in its rotated frame.
+/// Kinematics of a voxel: its rotation, and its modes in the rotated frame.
 #[derive(Clone, Copy)]
 pub(super) struct Frame<S: Simd> {
     pub rotation: Nine<S>,
     pub stretch: Six<S>,
     pub hourglass: [Three<S>; 3],
     pub bilinear: Three<S>,
-    /// Above zero where the plain way would find the same.
+    /// Positive where the scalar code would give the same.
     pub sound: Number<S>,
 }
 
-/// Whether a material has a kernel in lanes: an energy of the first invariant, no fibers, and a free stretch
-/// that is one number.
+/// Tests whether a material has a lane kernel: an energy of the first invariant, no fibers, no softening, and a free
+/// stretch that is uniform in the voxel.
 pub(super) fn has_lanes(material: &HyperelasticMaterial) -> bool {
     let simple = matches!(
         material.model(),
@@ -71,7 +71,7 @@ pub(super) fn has_lanes(material: &HyperelasticMaterial) -> bool {
     simple && material.fibers().is_empty() && material.mullins().is_none() && !material.varies()
 }
 
-/// A number of each voxel of a group.
+/// Gathers one number of each voxel of a group.
 #[inline(always)]
 fn gather<S: Simd>(
     simd: S,
@@ -173,7 +173,7 @@ impl<S: Simd> Constants<S> {
         modes
     }
 
-    /// What the mean gradient along `n` has of other modes, see [`Filling`].
+    /// Shares of other modes in the mean gradient along `n`, see [`Filling`].
     #[inline(always)]
     pub fn parts(&self, n: usize, i: usize, j: usize) -> [(usize, Number<S>); 3] {
         [
@@ -205,7 +205,7 @@ pub(super) fn butterflies<S: Simd>(mut values: [Number<S>; 8], forward: bool) ->
     values
 }
 
-/// The numbers at the corners of seven modes.
+/// The numbers at the corners from those of seven modes.
 #[inline(always)]
 pub(super) fn at_corners<S: Simd>(zero: Number<S>, modes: [Number<S>; 7]) -> [Number<S>; 8] {
     let mut values = [zero; 8];
@@ -216,7 +216,8 @@ pub(super) fn at_corners<S: Simd>(zero: Number<S>, modes: [Number<S>; 7]) -> [Nu
 }
 
 impl<S: Simd> Frame<S> {
-    /// The frame of some modes. `R` is what `X ← (X + X⁻ᵀ)/2` leads to from `F₀` (Higham 1986, doi 10.1137/0907079).
+    /// The frame of the given modes. `R` is the limit of `X ← (X + X⁻ᵀ)/2` from `F₀` (Higham 1986, doi
+    /// 10.1137/0907079).
     #[inline(always)]
     pub fn of(modes: &LaneModes<S>) -> Self {
         let mut gradient = [modes[0]; 3];
@@ -266,7 +267,7 @@ impl<S: Simd> Frame<S> {
     }
 }
 
-/// `G⁻¹` with `G = tr S − S`: what turns `axial(B − Bᵀ)` into the spin of a change `B`.
+/// `G⁻¹` with `G = tr S − S`: maps `axial(B − Bᵀ)` to the spin of a change `B`.
 pub(super) struct Spin<S: Simd> {
     pub inverse: Nine<S>,
 }
@@ -300,7 +301,7 @@ impl<S: Simd> Spin<S> {
     }
 }
 
-/// Puts stresses back from the rotated frame.
+/// Rotates a tensor back from the rotated frame: `R A Rᵀ`.
 #[inline(always)]
 pub(super) fn turned<S: Simd>(rotation: &Nine<S>, a: &Nine<S>) -> Nine<S> {
     let half = multiply(rotation, a);

@@ -1,9 +1,9 @@
-//! Several voxels at once, one in each lane of the processor: forces, stiffness and carried strains.
+//! Several voxels at once, one in each SIMD lane: forces, stiffness and carried strains.
 //!
-//! The formulas are those of [`crate::brick`], which stays the measure and answers for what is rare: materials
-//! without a form in invariants, softening, fibers, voxels at clamps ([`crate::clamped`]), voxels that are inside out, pressed flat or blown up tenfold. Groups are those of the
-//! list of voxels, whatever the number of threads. As in [`crate::lanes`] everything is inlined by force into the one
-//! function that the processor was chosen for.
+//! The formulas are those of [`crate::brick`], whose scalar code is the reference and handles the rare cases: materials
+//! without a form in invariants, softening, fibers, voxels at clamps ([`crate::clamped`]), voxels that are inside out,
+//! pressed flat or blown up tenfold. Groups follow the list of voxels, whatever the number of threads. As in
+//! [`crate::lanes`] everything is inlined by force into the one function that the processor was chosen for.
 
 mod energy;
 mod frame;
@@ -28,13 +28,13 @@ use spread::{ENTRIES, times};
 /// Voxels that share one call: a multiple of the lanes of any processor.
 pub(crate) const TOGETHER: usize = 8;
 
-/// Voxels that are answered for together, and where they are.
+/// Voxels that are evaluated together, with their positions.
 #[derive(Clone, Copy)]
 pub(crate) struct Together<'a> {
     pub bricks: &'a [Brick],
     pub materials: &'a [HyperelasticMaterial],
     pub positions: &'a [Vec3],
-    /// Strain and pressure that are carried along, for each voxel.
+    /// Strain and pressure of each voxel as unknowns of their own.
     pub carried: Option<&'a [Carried]>,
 }
 
@@ -57,16 +57,16 @@ impl<'a> Together<'a> {
         Arch::new().dispatch(Run(self, Forces(out)));
     }
 
-    /// Sets what is carried after a step `moves`, see [`Brick::carry`].
+    /// Sets the carried strain and pressure of each voxel after a step `moves`, see [`Brick::carry`].
     pub fn carry(self, moves: &[Vec3], out: &mut [Carried]) {
         Arch::new().dispatch(Run(self, Carry(moves, out)));
     }
 }
 
-/// What is asked of a group.
+/// A quantity that is computed for a group of voxels.
 trait Question {
-    /// Answers for the lanes of a group whose first voxel is `first`; the second result is above zero in lanes that are
-    /// right.
+    /// Computes it in the lanes of a group whose first voxel is `first`; `sound` becomes positive in lanes that are
+    /// valid.
     fn in_lanes<S: Simd>(
         &mut self,
         group: &Group<'_, S>,
@@ -75,11 +75,11 @@ trait Question {
         sound: &mut [f64; MOST_LANES],
     );
 
-    /// Answers for one voxel the plain way.
+    /// Computes it for one voxel with the scalar code.
     fn plainly(&mut self, together: &Together<'_>, index: usize);
 }
 
-/// The voxels of one step through the lanes.
+/// The voxels of one pass, one in each lane.
 struct Group<'a, S: Simd> {
     simd: S,
     together: &'a Together<'a>,
@@ -129,7 +129,7 @@ impl<Q: Question> WithSimd for Run<'_, Q> {
 }
 
 impl<S: Simd> Group<'_, S> {
-    /// The strain that stress is that of, and the shift of its pressure.
+    /// The strain at which the stress is evaluated, and the shift of its pressure.
     #[inline(always)]
     fn strain(&self, first: usize, count: usize) -> (Shape<S>, Number<S>) {
         let zero = Number::splat(self.simd, 0.0);
@@ -156,7 +156,8 @@ impl<S: Simd> Group<'_, S> {
         (Shape::of_row(&row), Number::load(self.simd, &lanes[SHAPE]))
     }
 
-    /// The gradient without that of the mean change of volume, the volume, and the Hessian at a shift of the pressure.
+    /// The gradient without that of the mean change of volume, the volume ratio, and the Hessian at a shift of the
+    /// pressure.
     #[inline(always)]
     fn moduli(
         &self,

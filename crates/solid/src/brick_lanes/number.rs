@@ -1,4 +1,4 @@
-//! A number in each lane, with operators, so that formulas read as they stand on paper.
+//! A number in each SIMD lane, with operators, so that formulas read as they stand on paper.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -42,7 +42,7 @@ impl<S: Simd> Number<S> {
             .partial_store_f64s(&mut values[..S::F64_LANES], self.lanes);
     }
 
-    /// The same number in each lane.
+    /// Broadcasts a number to all lanes.
     #[inline(always)]
     pub fn all(self, value: f64) -> Self {
         Self::splat(self.simd, value)

@@ -1,5 +1,5 @@
-//! From stress and moduli in the rotated frame to forces and stiffness at the corners, one voxel in each lane; the formulas
-//! stand in [`crate::brick`].
+//! Forces and stiffness at the corners from stress and moduli in the rotated frame, one voxel in each lane; the
+//! formulas stand in [`crate::brick`].
 
 use pulp::Simd;
 
@@ -14,7 +14,7 @@ use crate::brick_energy::{AXES, SHAPE};
 /// Entries of the stiffness matrix of a voxel.
 pub(super) const ENTRIES: usize = 24 * 24;
 
-/// What the stress of a group turns its frames by.
+/// Stress of a group in the rotated frame, with the terms from the rotation of the frame (`y` in [`crate::brick`]).
 struct Turned<S: Simd> {
     stress: Nine<S>,
     hourglass: [Three<S>; 3],
@@ -67,7 +67,7 @@ fn minus_cross<S: Simd>(a: &Nine<S>, y: &Three<S>) -> Nine<S> {
     ]
 }
 
-/// The forces on the corners of the stress `gradient`: numbers by corner and axis.
+/// The corner forces of the stress `gradient`: numbers by corner and axis.
 #[inline(always)]
 pub(super) fn forces<S: Simd>(
     constants: &Constants<S>,
@@ -168,7 +168,7 @@ pub(super) fn stiffness<S: Simd>(
     }
 }
 
-/// The blocks of all pairs of modes, turned back.
+/// The blocks of all pairs of modes, rotated back.
 #[inline(always)]
 fn rotated_blocks<S: Simd>(
     frame: &Frame<S>,
@@ -177,7 +177,7 @@ fn rotated_blocks<S: Simd>(
 ) -> [[Nine<S>; 7]; 7] {
     let zero = now.y[0].all(0.0);
     let mut blocks = [[[[zero; 3]; 3]; 7]; 7];
-    // What a spin alone changes, of `F₀` that differs in one pair of axes.
+    // Changes due to the spin alone, for a change of `F₀` in one pair of axes.
     let mut spun = [[zero; SHAPE]; 3];
     let mut responses = spun;
     let mut spun_skewed = [now.skewed; 3];
@@ -277,7 +277,7 @@ fn rotated_blocks<S: Simd>(
     blocks
 }
 
-/// What the mean gradient over the material has of other modes, for rows and for columns.
+/// Adds the shares of other modes in the mean gradient over the material, to rows and to columns.
 #[inline(always)]
 fn distribute<S: Simd>(constants: &Constants<S>, blocks: &mut [[Nine<S>; 7]; 7]) {
     for (n, x, y) in AXES {

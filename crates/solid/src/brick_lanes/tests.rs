@@ -1,4 +1,4 @@
-//! The lanes against the plain way.
+//! Lane kernels against the scalar code.
 
 use proptest::prelude::*;
 
@@ -7,7 +7,7 @@ use crate::brick::{Brick, BrickMatrix, Carried, Faces, Filling, Warping};
 use crate::hyperelastic::{Fiber, HyperelasticMaterial, Model};
 use crate::vector::Vec3;
 
-/// Rounding of some 10⁴ operations, of which few add up along one way, on moduli that differ by 10³.
+/// Rounding of some 10⁴ operations, of which few add up along one path, on moduli that differ by 10³.
 const ROUNDING: f64 = 1e-10;
 
 fn materials() -> Vec<HyperelasticMaterial> {
@@ -45,7 +45,7 @@ fn materials() -> Vec<HyperelasticMaterial> {
     ]
 }
 
-/// A voxel of a kind, with places of its corners around those of a cube.
+/// A voxel of a kind, with its corners displaced from those of a cube.
 fn voxel() -> impl Strategy<Value = (usize, bool, Warping, f64, [Vec3; 8], [Vec3; 8])> {
     let corners = |size: f64| prop::array::uniform8(prop::array::uniform3(-size..size));
     (
@@ -58,7 +58,7 @@ fn voxel() -> impl Strategy<Value = (usize, bool, Warping, f64, [Vec3; 8], [Vec3
     )
 }
 
-/// Inside, at the surface, and at a clamp.
+/// Warping of voxels inside the body, at its surface, and at a clamp.
 fn warpings() -> Vec<Warping> {
     let free = Faces {
         free: [[true, false], [false, true], [false, false]],
@@ -100,7 +100,7 @@ fn near(ours: &[f64], plain: &[f64], what: &str) -> Result<(), TestCaseError> {
 
 proptest! {
     #[test]
-    fn lanes_give_what_one_voxel_after_the_other_gives(voxels in prop::collection::vec(voxel(), 1..=TOGETHER)) {
+    fn lanes_match_scalar_code(voxels in prop::collection::vec(voxel(), 1..=TOGETHER)) {
         let materials = materials();
         let (mut bricks, mut positions, mut moves) = (Vec::new(), Vec::new(), Vec::new());
         for (kind, cut, warping, size, corners, steps) in voxels {
@@ -134,7 +134,7 @@ proptest! {
                 let plain = brick.carry(material, own, &positions, &moves);
                 let ours = if own.is_some() { &after[index] } else { &before[index] };
                 near(&ours.strain.row(), &plain.strain.row(), "strain")?;
-                // A difference of ratios of volume near one.
+                // A difference of volume ratios near one.
                 near(&[1.0 + ours.pressure.shift], &[1.0 + plain.pressure.shift], "pressure")?;
             }
         }

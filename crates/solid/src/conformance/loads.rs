@@ -6,7 +6,7 @@ use crate::assembly::add_product;
 use crate::vector::Vec3;
 use crate::{ExternalForce, Vertices};
 
-/// Checks the laws of a kind of load on some vertices, which are where a load works.
+/// Checks the laws of a load on some vertices, at the positions where it acts.
 pub fn check_load(load: &dyn ExternalForce, on: Vertices<'_>) -> Outcome {
     let check = Check {
         subject: Subject("a load"),
@@ -25,7 +25,7 @@ struct Check<'a> {
     subject: Subject,
     load: &'a dyn ExternalForce,
     on: Vertices<'a>,
-    /// m
+    /// Extent of the vertices, m.
     size: f64,
 }
 
@@ -77,7 +77,7 @@ impl Check<'_> {
         let allowed = ROUNDING * size(&expected);
         self.subject
             .at_most(law, "the change of the forces", off, allowed)?;
-        // One that takes no vertices at all must name none.
+        // A load that accepts a body of no vertices must address none.
         let none = Vertices {
             rest: &[],
             positions: &[],

@@ -1,8 +1,8 @@
-//! The laws that every [`Term`], [`ExternalForce`], [`Solver`] and [`Stepper`] keeps, as checks for the tests of
-//! whoever implements one.
+//! The laws that every [`Term`], [`ExternalForce`], [`Solver`] and [`Stepper`] keeps, as checks for the tests of their
+//! implementations.
 //!
-//! A check returns the first law that is broken, and how. Laws are tried in random directions from a fixed seed,
-//! so that they cost a few evaluations each; sizes are compared with what the same evaluation is made of.
+//! A check returns the first law that is broken, and by how much. Laws are tried in random directions from a fixed
+//! seed, so that they cost a few evaluations each; errors are relative to the size of the summands.
 //!
 //! # Example
 //!
@@ -43,35 +43,35 @@ pub enum Law {
     Tangent,
     /// A stiffness that comes from a potential is symmetric.
     Symmetry,
-    /// A body that moves as a whole has no energy and no forces, and turns along with those it has.
+    /// A rigid motion of the rest shape costs no energy and no force; forces of a strained body rotate along.
     RigidMotion,
     /// Any number of threads gives the same bits.
     Threads,
-    /// The pattern has a place for every entry of the stiffness.
+    /// The pattern has an entry for every entry of the stiffness.
     Pattern,
-    /// The bounds of rows bound the spectrum.
+    /// The bounds of row sums bound the spectrum.
     Bounds,
-    /// The product with the stiffness is the product with the stiffness.
+    /// `add_product` equals the product with the visited stiffness.
     Product,
-    /// Strains carried along nowhere are those that are there.
+    /// Strains predicted for a step of zero length give the forces and the stiffness of the state.
     Prediction,
     /// Forces grow in proportion to their factor.
     Proportion,
-    /// A dead load is the same wherever the body is, a weight is proportional to the masses.
+    /// A dead load does not depend on positions, a weight is proportional to the masses.
     Kind,
-    /// Numbers of vertices mean nothing, and those that do not exist are refused.
+    /// A renumbering of vertices changes nothing, and vertices that do not exist are refused.
     Numbering,
-    /// What counts as at rest is at rest, by a balance of forces of its own.
+    /// A state reported at rest balances the forces, evaluated independently.
     Equilibrium,
-    /// Held vertices are where their clamps want them, and none is below the floor.
+    /// Held vertices are at their prescribed positions, and none is below the floor.
     Supports,
     /// Reactions carry the loads, force and moment.
     Reactions,
-    /// A solution that is stopped says so and hands over a sound state.
+    /// A cancelled solution reports so and returns a finite state.
     Cancellation,
-    /// The same start gives the same bits, also after others went before.
+    /// Runs from one start give the same bits, also after other runs.
     Repetition,
-    /// What is changed on the way is heeded, and only that.
+    /// Changes of loads and grabs during a run take effect, and nothing else does.
     Changes,
 }
 
@@ -79,23 +79,23 @@ pub enum Law {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{name} breaks the law {law:?}: {how}")]
 pub struct Broken {
-    /// What breaks it.
+    /// The implementation that breaks it.
     pub name: &'static str,
     /// The law.
     pub law: Law,
-    /// What was found and what was expected.
+    /// The measured value and the expected one.
     pub how: String,
 }
 
 /// The outcome of a check.
 pub type Outcome = Result<(), Broken>;
 
-/// Whose laws are checked.
+/// The implementation whose laws are checked.
 #[derive(Clone, Copy)]
 struct Subject(&'static str);
 
 impl Subject {
-    /// Holds `found` to no more than `allowed`.
+    /// Checks that `found` is no more than `allowed`.
     fn at_most(self, law: Law, what: &str, found: f64, allowed: f64) -> Outcome {
         if found <= allowed {
             return Ok(());

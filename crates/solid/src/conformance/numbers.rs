@@ -1,17 +1,17 @@
-//! Fields of vectors: random ones, sums, differences, turns.
+//! Vector fields: random ones, sums, differences, rotations.
 
 use crate::matrix::{Mat3, apply};
 use crate::vector::{Vec3, add, axpy, dot, norm, sub};
 
-/// How many random directions a law is tried in.
+/// Number of random directions in which a law is tried.
 pub(super) const TRIES: u64 = 4;
 
 /// Central differences with this step, over the size of a body, err by its square times the third derivative and
 /// by rounding over it: about 1e-10 of the largest part of a sum each.
 pub(super) const STEP: f64 = 1e-5;
 
-/// What differences may be off by, over what they are made of: stiff directions next to soft ones take up to four
-/// digits of the ten that [`STEP`] leaves.
+/// Error allowed in differences, relative to their summands: stiff directions next to soft ones take up to four digits
+/// of the ten that [`STEP`] leaves.
 pub(super) const SLACK: f64 = 1e-6;
 
 /// Rounding of sums of many terms that cancel.
@@ -54,7 +54,7 @@ pub(super) fn distance(a: &[Vec3], b: &[Vec3]) -> f64 {
     size(&plus(a, -1.0, b))
 }
 
-/// The largest extent of points from their first.
+/// The largest distance of points from their first.
 pub(super) fn extent(points: &[Vec3]) -> f64 {
     let first = points.first().copied().unwrap_or_default();
     points
@@ -63,10 +63,10 @@ pub(super) fn extent(points: &[Vec3]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// A rotation by some angle about some axis.
+/// A rotation about an oblique axis.
 pub(super) const TURN: Mat3 = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]];
 
-/// Points turned and moved away by about their extent.
+/// Points rotated and moved away by about their extent.
 pub(super) fn carried(points: &[Vec3]) -> Vec<Vec3> {
     let away = [
         0.7 * extent(points),
@@ -76,7 +76,7 @@ pub(super) fn carried(points: &[Vec3]) -> Vec<Vec3> {
     points.iter().map(|p| add(apply(&TURN, *p), away)).collect()
 }
 
-/// Vectors turned.
+/// Vectors rotated.
 pub(super) fn turned(vectors: &[Vec3]) -> Vec<Vec3> {
     vectors.iter().map(|v| apply(&TURN, *v)).collect()
 }
@@ -86,13 +86,13 @@ pub(super) fn turned(vectors: &[Vec3]) -> Vec<Vec3> {
 pub(super) fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> Vec<T> {
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        // Without threads there is nothing to compare.
+        // A pool that cannot be built leaves nothing to compare.
         pool.map(|pool| pool.install(&work)).ok()
     };
     (1..=3).filter_map(on).collect()
 }
 
-/// Without threads there is one result.
+/// Runs the work once: without threads there is one result.
 #[cfg(not(feature = "threads"))]
 pub(super) fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> Vec<T> {
     vec![work()]

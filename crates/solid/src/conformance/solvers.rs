@@ -6,10 +6,10 @@ use crate::balance::{balance, total_load};
 use crate::vector::{Vec3, add, norm, sub};
 use crate::{Problem, Solution, Solver, Status};
 
-/// What a residual may be by another sum of the same forces, over the tolerance.
+/// Factor on the tolerance for a residual from another order of summation.
 const OTHER_SUM: f64 = 2.0;
 
-/// Checks the laws of a solver on a problem that comes to rest, whose residual is then below `tolerance`.
+/// Checks the laws of a solver on a problem that has an equilibrium, at which the residual is below `tolerance`.
 pub fn check_solver(solver: &(dyn Solver + Sync), problem: &Problem, tolerance: f64) -> Outcome {
     let check = Check {
         subject: Subject(solver.name()),
@@ -70,7 +70,7 @@ impl Check<'_> {
                 .at_most(law, "the way of a held vertex to its clamp", off, allowed)?;
         }
         if let Some(floor) = self.problem.floor() {
-            // A clamp may carry a vertex below.
+            // A clamp may hold a vertex below the floor.
             let free = |(_, held): &(_, &[bool; 3])| !held[2];
             let vertices = positions.iter().zip(self.problem.held());
             for (x, _) in vertices.filter(free) {
@@ -82,7 +82,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Forces within the body cancel, so that loads and reactions leave the residual forces.
+    /// Internal forces cancel, so that loads and reactions add up to the residual forces.
     fn reactions(&self, positions: &[Vec3]) -> Outcome {
         let law = Law::Reactions;
         let found = balance(self.problem, positions, f64::INFINITY);

@@ -4,15 +4,15 @@ use crate::balance::balance_of_forces;
 use crate::vector::{add, norm, sub};
 use crate::{Ask, LiveStatus, Method, Stepper, elastic};
 
-/// What a residual may be by another sum of the same forces, over the tolerance.
+/// Factor on the tolerance for a residual from another order of summation.
 const OTHER_SUM: f64 = 2.0;
-/// Steps after which a body counts as never at rest.
+/// Number of steps after which a body counts as never at rest.
 const MOST_STEPS: u32 = 1_000_000;
-/// Steps whose bits are compared.
+/// Number of steps after which bits are compared.
 const STEPS: u32 = 150;
 
-/// Checks the laws of a stepper on a problem whose clamps stand still and whose loads hold it away from its rest
-/// pose. `make` gives a fresh one; at rest, the residual is below `tolerance`.
+/// Checks the laws of a stepper on a problem whose clamps stand still and whose loads hold it away from its rest pose.
+/// `make` gives a fresh one; at rest, the residual is below `tolerance`.
 pub fn check_stepper(make: &(dyn Fn() -> Box<dyn Stepper> + Sync), tolerance: f64) -> Outcome {
     let stepper = make();
     let check = Check {
@@ -71,7 +71,7 @@ impl Check<'_> {
             .holds(Law::Threads, "other bits on other threads", same)
     }
 
-    /// Settles under all loads, then without any, which gives the rest pose back.
+    /// Settles under all loads, then without any, which must restore the rest pose.
     fn rest_and_back(&self) -> Outcome {
         let mut stepper = (self.make)();
         self.settle(&mut *stepper)?;
@@ -83,7 +83,8 @@ impl Check<'_> {
             }
         }
         self.settle(&mut *stepper)?;
-        // Rest is known to the tolerance, and slender bodies turn a residual into some ten times as much.
+        // The rest pose is reached to the tolerance, and slender bodies turn a residual into some ten times as much
+        // displacement.
         let left = distance(&stepper.state().positions, &rest);
         let allowed = 100.0 * self.tolerance * distance(&loaded, &rest);
         let what = "the way to the rest pose without loads";
@@ -107,7 +108,7 @@ impl Check<'_> {
             let vertex = grab.vertex as usize;
             external[vertex] = add(external[vertex], grab.force(positions[vertex]));
         }
-        // Without any force nothing but the kinetic energy tells rest.
+        // Without any force only the kinetic energy shows rest.
         if external.iter().flatten().all(|force| *force == 0.0) {
             return Ok(());
         }

@@ -9,10 +9,10 @@ use crate::Term;
 use crate::assembly::{Visitor, add_product};
 use crate::vector::Vec3;
 
-/// Checks the laws of a term, from its rest and where it is strained.
+/// Checks the laws of a term, at rest and in a strained state.
 ///
-/// `positions` are those of a sound, strained body away from kinks of the energy, such as where a membrane
-/// begins to wrinkle.
+/// `positions` are those of a strained body without inverted elements, away from kinks of the energy, such as the onset
+/// of wrinkling of a membrane.
 pub fn check_term(term: &dyn Term, rest: &[Vec3], positions: &[Vec3]) -> Outcome {
     let check = Check {
         subject: Subject(term.name()),
@@ -35,7 +35,7 @@ struct Check<'a> {
     term: &'a dyn Term,
     rest: &'a [Vec3],
     positions: &'a [Vec3],
-    /// m
+    /// Extent of the body at rest, m.
     size: f64,
 }
 
@@ -52,8 +52,8 @@ impl Check<'_> {
         })
     }
 
-    /// The forces at a strain of about one, by the stiffness at rest and, for what is slack there, where it is
-    /// strained.
+    /// Scale of forces at a strain of about one, from the stiffness at rest and, for terms that are slack there, from
+    /// that of the strained state.
     fn unit_force(&self) -> f64 {
         let at = |x: &[Vec3]| {
             let along = size(&self.stiffness_times(x, self.rest));
@@ -151,7 +151,7 @@ impl Check<'_> {
         }
     }
 
-    /// Power iteration finds the largest `vᵀKv` over `vᵀDv` from below.
+    /// Tests row sums by power iteration, which finds the largest `vᵀKv` over `vᵀDv` from below.
     fn bounds(&self) -> Outcome {
         const ITERATIONS: usize = 60;
         let mut sums = vec![0.0; self.rest.len()];

@@ -1,11 +1,11 @@
-//! What a body is measured by: its voxels, or single tetrahedra where a lattice is not made of voxels.
+//! Elements for the evaluation of fields: voxels, or single tetrahedra where a lattice is not made of voxels.
 
 use std::collections::HashMap;
 
 use crate::Body;
 use crate::body::{TET_EDGES, dihedral};
 
-/// A tetrahedron of a lattice, with its six edges and its part in each.
+/// A tetrahedron of a lattice, with its six edges and its share in each.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
     pub tet: u32,
@@ -14,14 +14,14 @@ pub(super) struct Piece {
 
 #[derive(Debug, Clone)]
 pub(super) enum Element {
-    /// One of the body's elements, and the voxel of the mesh that it is or is a part of.
+    /// A hyperelastic element of the body, and the voxel of the mesh that it is or contains.
     Brick(u32, u32),
     Lattice(Vec<Piece>),
 }
 
 impl Element {
-    /// Calls `found` with the corners, the rest volume in m³ and the element, for all of a body: first
-    /// hyperelastic voxels, then those of lattices, then tetrahedra that are no part of a voxel.
+    /// Calls `found` with the corners, the rest volume in m³ and the element, for all of a body: first hyperelastic
+    /// voxels, then those of lattices, then tetrahedra that are no part of a voxel.
     pub fn for_each(body: &Body, mut found: impl FnMut(&[u32], f64, &dyn Fn() -> Self)) {
         for (index, brick) in body.small_bricks().iter().enumerate() {
             let element = body.element_of(index) as u32;
@@ -63,7 +63,7 @@ impl Element {
     }
 }
 
-/// The corners of all tetrahedra that either split of a voxel has: one at each corner, two in the middle.
+/// The corners of all tetrahedra of both splits of a voxel: one at each corner, two in the middle.
 pub(super) fn tets_of(voxel: &[u32; 8]) -> impl Iterator<Item = [u32; 4]> + '_ {
     let at_corners = (0..8).map(|c| [c, c ^ 1, c ^ 2, c ^ 4]);
     let tets = at_corners.chain([[0, 3, 5, 6], [1, 2, 4, 7]]);

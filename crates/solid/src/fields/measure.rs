@@ -5,21 +5,20 @@ use crate::Body;
 use crate::matrix::{Mat3, determinant, multiply, symmetric_eigen, transpose};
 use crate::vector::{Vec3, dot};
 
-/// Stress and strain of one element: the means over it.
+/// Stress and strain of one element, averaged over it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measure {
-    /// The Cauchy stress in Pa; not a number where the element is inverted, see
-    /// [`Measure::volume_ratio`].
+    /// The Cauchy stress in Pa; NaN where the element is inverted, see [`Measure::volume_ratio`].
     pub stress: Mat3,
-    /// The von Mises stress in Pa; not a number where the stress is none.
+    /// The von Mises stress in Pa; NaN where the stress is.
     pub von_mises: f64,
-    /// The principal stretches, largest first. Their product is the ratio of the mean deformation, so
+    /// The principal stretches, largest first. Their product is the determinant of the mean deformation gradient, so
     /// that the last is negative where that is inside out.
     pub stretches: Vec3,
     /// Elastic energy per rest volume in J/m³.
     pub energy_density: f64,
-    /// The smallest ratio of a volume now to that at rest: over the tetrahedra of a lattice, over the points
-    /// at which a hyperelastic voxel is integrated. At zero and below, the element is inverted.
+    /// The smallest volume ratio: over the tetrahedra of a lattice, over the integration points of a hyperelastic
+    /// voxel. At zero and below, the element is inverted.
     pub volume_ratio: f64,
 }
 
@@ -35,7 +34,7 @@ impl Element {
         }
     }
 
-    /// See [`Measure::stress`].
+    /// The Cauchy stress, see [`Measure::stress`].
     pub fn stress(&self, body: &Body, positions: &[Vec3]) -> Mat3 {
         if self.volume_ratio(body, positions) > 0.0 {
             self.upright_stress(body, positions)
@@ -44,7 +43,7 @@ impl Element {
         }
     }
 
-    /// See [`Measure::stretches`].
+    /// The principal stretches, see [`Measure::stretches`].
     pub fn stretches(&self, body: &Body, positions: &[Vec3]) -> Vec3 {
         let f = self.deformation(body, positions);
         let (squares, _) = symmetric_eigen(&multiply(&transpose(&f), &f));
@@ -54,7 +53,7 @@ impl Element {
         stretches
     }
 
-    /// How the mean deformation gradient depends on each vertex: `F = Σ x ⊗ g`.
+    /// Derivatives of the mean deformation gradient by each vertex: `F = Σ x ⊗ g`.
     pub fn gradients(&self, body: &Body) -> Vec<(u32, Vec3)> {
         let pieces = match self {
             Self::Brick(index, _) => {
@@ -88,7 +87,7 @@ impl Element {
         sum
     }
 
-    /// See [`Measure::volume_ratio`].
+    /// The smallest volume ratio, see [`Measure::volume_ratio`].
     pub fn volume_ratio(&self, body: &Body, positions: &[Vec3]) -> f64 {
         match self {
             Self::Brick(index, _) => {
@@ -139,7 +138,7 @@ impl Element {
         virial.map(|row| row.map(|x| x / volume))
     }
 
-    /// See [`Measure::energy_density`].
+    /// The energy density, see [`Measure::energy_density`].
     pub fn energy_density(&self, body: &Body, positions: &[Vec3]) -> f64 {
         let pieces = match self {
             Self::Brick(index, _) => {
@@ -188,8 +187,8 @@ pub(super) fn pressure(stress: &Mat3) -> f64 {
     -(stress[0][0] + stress[1][1] + stress[2][2]) / 3.0
 }
 
-/// The derivative of the largest principal stretch by the deformation gradient: `F v ⊗ v / λ` with `v` the
-/// direction that is stretched most.
+/// The derivative of the largest principal stretch by the deformation gradient: `F v ⊗ v / λ` with `v` the direction of
+/// the largest stretch.
 pub(super) fn stretch_slope(f: &Mat3) -> Mat3 {
     let (squares, vectors) = symmetric_eigen(&multiply(&transpose(f), f));
     let most = (0..3).fold(

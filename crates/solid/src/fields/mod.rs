@@ -1,4 +1,4 @@
-//! Numbers to color a body by: displacement, stretch, stress, energy, speed.
+//! Fields to color a body by: displacement, stretch, stress, energy, speed.
 //!
 //! Displacement and speed belong to vertices. The others belong to elements (voxels; tetrahedra where a
 //! lattice is not made of voxels) and are averaged on the vertices, weighed by the elements' volumes.
@@ -13,15 +13,15 @@
 //!
 //! # Inverted elements
 //!
-//! The energy of a lattice is finite at any volume, and a load can push a voxel of it through zero to its mirror
-//! image (springs do not tell the two apart), where it comes to rest. A force over the present area
-//! has no meaning there: the stress of an element of which any part is inverted is not a number, and the
-//! averages on vertices are taken over the others.
+//! The energy of a lattice is finite at any volume, and a load can push a voxel of it through zero to its mirror image
+//! (springs do not distinguish the two), where it comes to rest. A force over the present area has no meaning there:
+//! the stress of an element of which any part is inverted is NaN, and the averages on vertices are taken over the
+//! others.
 //!
 //! # Stress of hyperelastic voxels
 //!
-//! The Cauchy stress of the mean deformation of a voxel: bending within a voxel does not show, nor does
-//! viscous stress. Membranes do not count.
+//! The Cauchy stress of the mean deformation of a voxel: it includes neither bending within a voxel nor viscous stress.
+//! Membranes do not count.
 
 mod element;
 mod measure;
@@ -37,7 +37,7 @@ use element::{Element, sorted, tets_of};
 pub use measure::Measure;
 use measure::{pressure, von_mises};
 
-/// What to color by. The numbers are those of [`Field::from_id`].
+/// A field to color by. The numbers are those of [`Field::from_id`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Field {
     /// Length of the displacement in m.
@@ -74,7 +74,7 @@ impl Field {
         Self::Speed,
     ];
 
-    /// The field of a number.
+    /// The field with a number.
     pub fn from_id(id: u16) -> Option<Self> {
         Self::ALL.get(usize::from(id)).copied()
     }
@@ -96,8 +96,8 @@ pub struct Fields {
 
 const NOT_SHOWN: u32 = u32::MAX;
 
-/// What is smaller than this part of its natural scale is the rounding of positions (1e-16 of the size),
-/// grown by the differences that a strain is made of, and counts as zero.
+/// Relative size, over the natural scale of a field, below which it counts as zero: the rounding of positions (1e-16 of
+/// the size), grown by the differences that a strain is made of.
 const ROUNDING: f64 = 1e-12;
 
 impl Fields {
@@ -136,12 +136,12 @@ impl Fields {
         fields
     }
 
-    /// The elements around all vertices: all there are.
+    /// The elements around all vertices: all elements of the body.
     pub fn of_all(body: &Body) -> Self {
         Self::new(body, (0..body.rest().len() as u32).collect())
     }
 
-    /// The vertices asked for.
+    /// The vertices at which fields are evaluated.
     pub fn vertices(&self) -> &[u32] {
         &self.vertices
     }
@@ -151,7 +151,7 @@ impl Fields {
         &self.volumes
     }
 
-    /// The block of the mesh that each element is, or is a part of.
+    /// The block of the mesh for each element: the voxel that it is, or that it contains.
     ///
     /// # Panics
     ///
@@ -201,8 +201,8 @@ impl Fields {
         slope
     }
 
-    /// The values of a field on the vertices asked for; not a number where all elements are inverted and the
-    /// field is a stress. What is below rounding is zero.
+    /// The values of a field on the vertices of [`Fields::vertices`]; NaN where all elements are inverted and the field
+    /// is a stress. Values below rounding are zero.
     ///
     /// # Panics
     ///
@@ -254,7 +254,7 @@ impl Fields {
         values
     }
 
-    /// Averages on the vertices of something measured in elements.
+    /// Averages an element quantity on the vertices.
     fn averages(&self, value: impl Fn(&Element) -> f64 + Sync) -> Vec<f64> {
         let mut sums = vec![(0.0, 0.0); self.vertices.len()];
         in_order(
@@ -266,8 +266,7 @@ impl Fields {
         means(&sums)
     }
 
-    /// Averages on the vertices of one number for each element, weighed by volume; elements without a number
-    /// do not count.
+    /// Averages on the vertices of one number for each element, weighed by volume; elements with NaN do not count.
     ///
     /// # Panics
     ///
@@ -292,7 +291,7 @@ impl Fields {
     }
 }
 
-/// Sums over volumes; not a number where there is no volume.
+/// Quotients of sums and volumes; NaN where there is no volume.
 fn means(sums: &[(f64, f64)]) -> Vec<f64> {
     sums.iter().map(|(sum, volume)| sum / volume).collect()
 }

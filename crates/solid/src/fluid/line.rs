@@ -1,4 +1,4 @@
-//! Valves, tubes and pumps: how much flows between two pressures.
+//! Valves, tubes and pumps: mass flow between two pressures.
 
 use std::f64::consts::PI;
 
@@ -6,30 +6,30 @@ use serde::{Deserialize, Serialize};
 
 use super::medium::Medium;
 
-/// The density of air at 100 kPa and 20 °C, 65 % humid, by which ISO 6358-1:2013 gives conductances, kg/m³; and that
+/// The density of air at 100 kPa and 20 °C, 65 % humid, to which ISO 6358-1:2013 refers conductances, kg/m³; and that
 /// temperature, K.
 const REFERENCE_DENSITY: f64 = 1.185;
 const REFERENCE_TEMPERATURE: f64 = 293.15;
-/// Above this ratio of pressures the flow through a valve is linear in their difference: the ellipse of ISO 6358 has no
-/// slope at equal pressures.
+/// Pressure ratio above which the flow through a valve is linear in the pressure difference: the ellipse of ISO 6358
+/// has no finite slope at equal pressures.
 const LAMINAR: f64 = 0.999;
-/// The same of a liquid, a difference in Pa.
+/// Pressure difference (Pa) below which the flow of a liquid through a valve becomes linear in it.
 const LAMINAR_DIFFERENCE: f64 = 10.0;
-/// Bisections and steps of Newton's method to the pressure between a valve and a tube.
+/// Most bisections and Newton steps for the pressure between a valve and a tube.
 const ITERATIONS: u32 = 100;
 
 /// A restriction that flow goes through.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Valve {
-    /// By ISO 6358-1.
+    /// A valve for gas by ISO 6358-1.
     Gas {
         /// Sonic conductance `C` in m³/(s Pa).
         conductance: f64,
         /// Critical ratio of pressures `b`, 0 to 1.
         critical_ratio: f64,
     },
-    /// An orifice.
+    /// An orifice for liquid.
     Liquid {
         /// Its area times its coefficient of discharge, m².
         area: f64,
@@ -39,33 +39,33 @@ pub enum Valve {
 /// A tube with laminar flow, by Hagen and Poiseuille.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Tube {
-    /// m
+    /// Length, m.
     pub length: f64,
-    /// m
+    /// Inner diameter, m.
     pub diameter: f64,
-    /// Dynamic, Pa s.
+    /// Dynamic viscosity, Pa s.
     pub viscosity: f64,
 }
 
-/// A valve, a tube, or one after the other.
+/// A valve, a tube, or both in series.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Line {
-    /// At its beginning.
+    /// The valve at its beginning.
     pub valve: Option<Valve>,
-    /// At its end.
+    /// The tube at its end.
     pub tube: Option<Tube>,
-    /// What flows in it.
+    /// The gas or liquid that flows in it.
     pub medium: Medium,
-    /// K
+    /// Temperature, K.
     pub temperature: f64,
 }
 
 /// A mass flow (kg/s) with its derivatives by the pressures at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flow {
-    /// From the first end to the second.
+    /// Mass flow from the first end to the second.
     pub mass: f64,
-    /// By the pressures at the first end and at the second.
+    /// Derivatives by the pressures at the first end and at the second.
     pub slopes: [f64; 2],
 }
 
@@ -80,7 +80,7 @@ impl Flow {
 }
 
 impl Line {
-    /// The same with its valve open to a part.
+    /// This line with its valve opened to a fraction.
     #[must_use]
     pub fn opened(mut self, part: f64) -> Self {
         match &mut self.valve {
@@ -177,7 +177,7 @@ impl Line {
         }
     }
 
-    /// Both carry the same flow, which decides the pressure between them.
+    /// Solves for the pressure between valve and tube at which both carry the same flow.
     fn through_both(&self, from: f64, to: f64) -> Flow {
         let (Some(valve), Some(tube)) = (self.valve, self.tube) else {
             unreachable!("asked for with both alone");
@@ -225,18 +225,18 @@ impl Line {
     }
 }
 
-/// The volume flow (m³/s) of a pump against a pressure difference (Pa), falling and linear between its points; it lets
-/// nothing back.
+/// The volume flow (m³/s) of a pump against a pressure difference (Pa), falling and piecewise linear; there is no
+/// backflow.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
-    /// Rising, from 0.
+    /// Pressure differences, rising from 0.
     pub pressures: Vec<f64>,
-    /// Falling, to 0.
+    /// Volume flows, falling to 0.
     pub flows: Vec<f64>,
 }
 
 impl Curve {
-    /// The flow and its slope at a part of the pump's speed, to which both flow and pressure are proportional.
+    /// The flow and its slope at a fraction of full speed, to which both flow and pressure are proportional.
     pub fn flow(&self, pressure: f64, speed: f64) -> (f64, f64) {
         let stall = self.stall();
         if speed <= 0.0 || pressure >= stall * speed {
@@ -253,7 +253,7 @@ impl Curve {
         (speed * (q0 + slope * (at - p0)), slope)
     }
 
-    /// The pressure at which nothing flows, at full speed.
+    /// The stall pressure, at which nothing flows, at full speed.
     pub fn stall(&self) -> f64 {
         self.pressures.last().copied().unwrap_or(0.0)
     }
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn slopes_are_those_of_the_flow_and_it_turns_with_the_pressures() {
+    fn flow_slopes_match_differences_and_flow_reverses_with_pressures() {
         for medium in [AIR, WATER] {
             for (valve, tube) in [(true, false), (false, true), (true, true)] {
                 let line = line(valve, tube, medium);
@@ -303,7 +303,7 @@ mod tests {
                         (line.flow(from + step, to).mass - line.flow(from - step, to).mass) / 2.0;
                     let by_to =
                         (line.flow(from, to + step).mass - line.flow(from, to - step).mass) / 2.0;
-                    // Differences over 2 Pa are good to the square of that over the smallest pressure difference.
+                    // Differences over 2 Pa are accurate to the square of that over the smallest pressure difference.
                     for (slope, expected) in flow.slopes.into_iter().zip([by_from, by_to]) {
                         let size = flow.slopes[0].abs().max(flow.slopes[1].abs());
                         assert!(
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_choked_knows_nothing_of_the_pressure_behind() {
+    fn choked_flow_does_not_depend_on_downstream_pressure() {
         let line = line(true, false, AIR);
         let (a, b) = (line.flow(4e5, 1e5), line.flow(4e5, 0.5e5));
         assert_eq!(a.mass, b.mass);
@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn a_valve_that_is_half_open_has_half_of_its_size_and_a_tube_behind_it_all_of_its_own() {
+    fn half_open_valve_halves_its_own_conductance_only() {
         for medium in [AIR, WATER] {
             let valve = line(true, false, medium);
             let (half, full) = (valve.opened(0.5).flow(2e5, 1e5), valve.flow(2e5, 1e5));
@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pump_stops_at_its_stall_pressure_and_lets_nothing_back() {
+    fn pump_stops_at_stall_pressure_without_backflow() {
         let curve = Curve {
             pressures: vec![0.0, 2e4, 5e4],
             flows: vec![1e-5, 6e-6, 0.0],

@@ -1,4 +1,4 @@
-//! What fills a chamber: how dense it is under a pressure.
+//! The gas or liquid in a chamber: density as a function of pressure.
 
 use serde::{Deserialize, Serialize};
 
@@ -35,8 +35,8 @@ impl Medium {
         }
     }
 
-    /// How much of it there is in `mass` kg, in the unit that [`Medium::pressure_of`] takes: the product of absolute pressure
-    /// and volume of a gas (J), the volume of a liquid under the atmosphere (m³). Amounts in joined chambers add up.
+    /// The amount in `mass` kg, in the unit that [`Medium::pressure_of`] takes: the product of absolute pressure and
+    /// volume of a gas (J), the volume of a liquid under the atmosphere (m³). Amounts in connected chambers add up.
     pub fn amount(self, mass: f64, temperature: f64) -> f64 {
         match self {
             Self::Gas { constant } => mass * constant * temperature,
@@ -55,7 +55,7 @@ impl Medium {
         }
     }
 
-    /// The volume in which an amount has a pressure.
+    /// The volume in which an amount has the given pressure.
     pub fn volume_of(self, amount: f64, pressure: f64, atmosphere: f64) -> f64 {
         match self {
             Self::Gas { .. } => amount / (pressure + atmosphere),
@@ -63,7 +63,7 @@ impl Medium {
         }
     }
 
-    /// The work (J) that an amount does by its pressure where it grows to a volume, up to a constant.
+    /// The work (J) that an amount does by its pressure when it expands to a volume, up to a constant.
     pub fn work(self, amount: f64, volume: f64, atmosphere: f64) -> f64 {
         match self {
             // Relative to the volume under the atmosphere, which keeps the number small.
@@ -77,7 +77,8 @@ impl Medium {
         }
     }
 
-    /// Whether its pressure follows small changes of volume so steeply that Newton's method carries the pressure along.
+    /// Tests whether its pressure follows small changes of volume so steeply that Newton's method carries the pressure
+    /// as an unknown.
     pub fn is_stiff(self) -> bool {
         matches!(self, Self::Liquid { .. })
     }

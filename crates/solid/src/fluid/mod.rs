@@ -1,15 +1,15 @@
-//! Chambers as volumes of gas or liquid: what drives them is a mass, a syringe, a source or a pump, and their pressure is what
-//! comes of that and of the volume that the body's walls leave.
+//! Chambers as volumes of gas or liquid: a mass, a syringe, a source or a pump drives them, and their pressure follows
+//! from that and from the volume that the body's walls enclose.
 //!
-//! [`Network`] says which pressures go with which volumes; [`Fluid`] puts them on the walls. A pressure `p(V)` that falls with
+//! [`Network`] computes pressures from volumes; [`Fluid`] applies them to the walls. A pressure `p(V)` that falls with
 //! the volume does the work `W(V) = ∫ p dV`, so that its forces have the potential `−W` and the stiffness
 //!
 //! ```text
 //! −p ∂²V/∂x² + g (−∂p/∂V) gᵀ,   g = ∂V/∂x.
 //! ```
 //!
-//! The first part joins neighbors, as that of a pressure does; the second one, of the rank of the number of chambers, joins all
-//! of a chamber's wall, and solvers take it apart from the rest ([`Coupling`]).
+//! The first part couples neighbors, as that of a pressure does; the second one, of the rank of the number of chambers,
+//! couples all of a chamber's wall, and solvers treat it separately ([`Coupling`]).
 
 mod line;
 mod medium;
@@ -33,7 +33,8 @@ pub use motion::Reading;
 pub use network::{Branch, Chamber, Course, End, Network, Pressures, Pump, Ramp, Source, Step};
 pub use small::solve_small;
 
-/// Points and weights of the formula of Gauss and Legendre on 0 to 1, five of them: exact for polynomials up to the ninth power.
+/// Points and weights of Gauss–Legendre quadrature on 0 to 1, five of them: exact for polynomials up to the ninth
+/// power.
 const GAUSS: [(f64, f64); 5] = [
     (0.046_910_077_030_668_0, 0.118_463_442_528_094_5),
     (0.230_765_344_947_158_4, 0.239_314_335_249_683_2),
@@ -41,23 +42,23 @@ const GAUSS: [(f64, f64); 5] = [
     (0.769_234_655_052_841_6, 0.239_314_335_249_683_2),
     (0.953_089_922_969_332, 0.118_463_442_528_094_5),
 ];
-/// Into how many parts of equal ratio the way from one volume to another is cut for it.
+/// Number of quadrature intervals, of equal volume ratio, between two volumes.
 const PARTS: i32 = 4;
 
-/// What rounding may leave of a time, as a part of it.
+/// Relative rounding error of a time.
 const ROUNDING: f64 = 1e-12;
 
-/// An instant of a body at rest.
+/// A point of a load path: load factor and time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instant {
-    /// How far everything has gone on the way from the unloaded body.
+    /// Fraction of the load path from the unloaded body (load factor).
     pub part: f64,
-    /// The time of histories in s.
+    /// The time of load histories in s.
     pub time: f64,
 }
 
 impl Instant {
-    /// After all histories.
+    /// The instant after all load histories.
     pub fn at_the_end(part: f64) -> Self {
         Self {
             part,
@@ -66,7 +67,8 @@ impl Instant {
     }
 }
 
-/// The walls of a chamber, each with its weight in place of a pressure: both ways to cut them have a half.
+/// The walls of a chamber, as surfaces with a weight in place of a pressure: the two ways to cut them into triangles
+/// count half each.
 pub type Walls = Vec<Pressure>;
 
 /// Gas or liquid in the chambers of a body.
@@ -74,14 +76,14 @@ pub type Walls = Vec<Pressure>;
 pub struct Fluid {
     network: Arc<Network>,
     walls: Arc<Vec<Walls>>,
-    /// A load whose factor is the part of the way from the unloaded body.
+    /// Auxiliary load whose factor is the fraction of the load path from the unloaded body.
     part: Load,
-    /// A load whose factor is that times the time in s, up to the end of all histories.
+    /// Auxiliary load whose factor is that fraction times the time in s, up to the end of all histories.
     clock: Load,
     state: State,
 }
 
-/// The part of a stiffness that joins all of the walls: `Σ gᵢ Cᵢⱼ gⱼᵀ`.
+/// The low-rank part of the stiffness, which couples all of a chamber's wall: `Σ gᵢ Cᵢⱼ gⱼᵀ`.
 #[derive(Debug, Clone)]
 pub struct Coupling {
     /// The derivative of each volume by all positions, m².
@@ -91,7 +93,7 @@ pub struct Coupling {
 }
 
 impl Fluid {
-    /// A fluid behind walls, a list of surfaces for each chamber of the network.
+    /// A fluid in chambers, with a list of wall surfaces for each chamber of the network.
     pub fn new(network: Network, walls: Vec<Walls>) -> Result<Self, ProblemError> {
         network
             .check()
@@ -132,7 +134,7 @@ impl Fluid {
         })
     }
 
-    /// The same as it was made, without memory.
+    /// A fluid with the same network and walls, without memory.
     pub fn anew(&self) -> Result<Self, ProblemError> {
         Self::new((*self.network).clone(), (*self.walls).clone())
     }
@@ -145,7 +147,7 @@ impl Fluid {
             .try_for_each(|wall| wall.check(vertices))
     }
 
-    /// Whether its forces have a potential.
+    /// Tests whether its forces have a potential.
     pub fn is_conservative(&self) -> bool {
         !self.network.joins()
             && self
@@ -155,12 +157,12 @@ impl Fluid {
                 .all(ExternalForce::is_conservative)
     }
 
-    /// When nothing is changed from outside any more, s.
+    /// The time (s) after which no supply, source, pump or valve changes.
     pub fn end(&self) -> f64 {
         self.network.end()
     }
 
-    /// The instant of a state at rest, told by the factors that loads have in it.
+    /// The instant of an equilibrium, from the load factors in it.
     pub fn instant(&self, factor_of: &dyn Fn(&Load) -> f64) -> Instant {
         let part = factor_of(&self.part);
         let (time, end) = (factor_of(&self.clock) / part, self.network.end());
@@ -171,7 +173,7 @@ impl Fluid {
         }
     }
 
-    /// The triangles that it pushes.
+    /// The triangles under its pressure.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.walls
             .iter()
@@ -179,7 +181,7 @@ impl Fluid {
             .flat_map(|wall| wall.triangles.iter().copied())
     }
 
-    /// Its memory.
+    /// The memory of the fluid.
     pub(crate) fn memory(&self) -> &FluidMemory {
         &self.state
     }
@@ -195,7 +197,8 @@ impl Fluid {
         self.walls.iter().map(volume).collect()
     }
 
-    /// The pressures that push, those whose stiffness the walls feel, and how pressures follow volumes.
+    /// The pressures on the walls with their derivatives by the volumes, and the pressures that enter the stiffness of
+    /// the walls.
     fn answer(&self, volumes: &[f64], instant: Instant) -> (Pressures, Vec<f64>) {
         let Instant { part, time } = instant;
         let state = &self.state;
@@ -228,7 +231,7 @@ impl Fluid {
         }
     }
 
-    /// Its potential (J), up to a constant of the step.
+    /// The potential of its forces (J), up to a constant of the step.
     pub fn potential(&self, positions: &[Vec3], instant: Instant) -> f64 {
         let volumes = self.volumes(positions);
         let step = self.state.step.clone();
@@ -241,7 +244,7 @@ impl Fluid {
         }
     }
 
-    /// The work up to these volumes from those that a step counts from.
+    /// The work from the volumes at which a step counts it as zero to these.
     fn work_in(&self, step: &Step, volumes: &[f64]) -> f64 {
         let mut work = 0.0;
         for number in 0..PARTS {
@@ -275,7 +278,7 @@ impl Fluid {
         work
     }
 
-    /// Hands over the part of the stiffness that joins neighbors (N/m).
+    /// Visits the part of the stiffness that couples neighbors (N/m).
     pub fn visit_stiffness(&self, positions: &[Vec3], instant: Instant, visit: Visitor<'_>) {
         let (_, bent) = self.answer(&self.volumes(positions), instant);
         for (walls, pressure) in self.walls.iter().zip(bent) {
@@ -285,7 +288,7 @@ impl Fluid {
         }
     }
 
-    /// Hands over the vertices of every piece of that.
+    /// Visits the vertices of each element of that part.
     pub fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
         self.walls
             .iter()
@@ -293,7 +296,7 @@ impl Fluid {
             .for_each(|wall| wall.visit_pattern(visit));
     }
 
-    /// The part of the stiffness that joins all of the walls.
+    /// The low-rank part of the stiffness, which couples all of a chamber's wall.
     pub fn coupling(&self, positions: &[Vec3], instant: Instant) -> Coupling {
         let (found, _) = self.answer(&self.volumes(positions), instant);
         Coupling {
@@ -314,17 +317,17 @@ impl Fluid {
         self.walls.iter().map(gradient).collect()
     }
 
-    /// Whether Newton's method carries its pressures along.
+    /// Tests whether Newton's method carries its pressures as unknowns.
     pub fn is_stiff(&self) -> bool {
         self.network.is_stiff()
     }
 
-    /// From here on forces and stiffness are those of pressures that are carried along; none lets them go.
+    /// Sets the carried pressures, at which forces and stiffness are linearized from here on; `None` removes them.
     pub fn carry(&mut self, pressures: Option<Vec<f64>>) {
         self.state.carried = pressures;
     }
 
-    /// The pressures to carry along after a move of the vertices, to first order.
+    /// Predicts the carried pressures after a move of the vertices, to first order.
     pub fn carried_on(&self, positions: &[Vec3], instant: Instant, moves: &[Vec3]) -> Vec<f64> {
         let (found, _) = self.answer(&self.volumes(positions), instant);
         let grown: Vec<f64> = (self.gradients(positions).iter())
@@ -343,7 +346,7 @@ impl Fluid {
 }
 
 impl Coupling {
-    /// Adds its product with a field to another one.
+    /// Adds its product with a field.
     pub fn add_product(&self, field: &[Vec3], product: &mut [Vec3]) {
         let n = self.gradients.len();
         let along: Vec<f64> = (self.gradients.iter())
@@ -362,7 +365,7 @@ impl Coupling {
     }
 }
 
-/// Vertices for walls, which ask for their positions alone.
+/// The vertices as seen by walls, which use positions alone.
 fn bare(positions: &[Vec3]) -> Vertices<'_> {
     Vertices {
         rest: positions,

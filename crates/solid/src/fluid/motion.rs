@@ -1,22 +1,22 @@
-//! A fluid from one accepted state to the next: along a path of equilibria, or over time.
+//! Steps of a fluid from one accepted state to the next: along a path of equilibria, or over time.
 
 use super::network::{Network, Step};
 use super::{Fluid, Instant};
 use crate::vector::Vec3;
 
-/// What it remembers between steps and iterations.
+/// Memory of a fluid between steps and iterations.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
     pub(super) step: Option<Step>,
-    /// Pressures that Newton's method carries along.
+    /// Pressures carried by Newton's method.
     pub(super) carried: Option<Vec<f64>>,
-    /// Masses that have been exchanged since the start, now and a step ago, kg.
+    /// Masses exchanged since the start, now and one step ago, kg.
     pub(super) exchanged: Vec<f64>,
     pub(super) before: Vec<f64>,
     pub(super) last: Option<Last>,
-    /// The largest pressure so far, of either sign, Pa.
+    /// The largest absolute value of a pressure so far, Pa.
     pub(super) largest: f64,
-    /// Work on the walls and energy given so far, J, for each chamber.
+    /// Work on the walls and energy supplied so far, J, for each chamber.
     pub(super) work: Vec<f64>,
     pub(super) energy: Vec<f64>,
 }
@@ -32,25 +32,25 @@ pub(super) struct Last {
     pub masses: Vec<f64>,
 }
 
-/// A chamber as it is.
+/// The state of a chamber, as reported.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
-    /// Pa
+    /// Gauge pressure, Pa.
     pub pressure: f64,
-    /// Of its cavities, m³.
+    /// Volume of its cavities, m³.
     pub volume: f64,
-    /// With that in lines and syringes, kg.
+    /// Mass including that in lines and syringes, kg.
     pub mass: f64,
-    /// Into it, kg/s.
+    /// Mass flow into it, kg/s.
     pub flow: f64,
-    /// On the walls, J.
+    /// Work on the walls, J.
     pub work: f64,
-    /// What it took, J.
+    /// Energy supplied to it, J.
     pub energy: f64,
 }
 
 impl Reading {
-    /// Its numbers in the order above.
+    /// All numbers in the order above.
     pub fn numbers(self) -> [f64; 6] {
         let Self {
             pressure,
@@ -65,13 +65,13 @@ impl Reading {
 }
 
 impl Fluid {
-    /// Starts a path from rest, or a motion: nothing has been exchanged.
+    /// Starts a path from rest, or a motion: exchanged masses are zero.
     pub fn start(&mut self, positions: &[Vec3], time: Option<f64>) {
         let volumes = self.volumes(positions);
         let network = &self.network;
         let (part, instant) = time.map_or((0.0, f64::INFINITY), |time| (1.0, time));
         let n = volumes.len();
-        // What has not been joined yet is as it was put in.
+        // Before any flow, each chamber has the pressure of its own contents.
         let alone = Network {
             branches: Vec::new(),
             pumps: Vec::new(),
@@ -110,8 +110,8 @@ impl Fluid {
         }
     }
 
-    /// Begins a step of a motion to `time`, at whose end the derivative of the masses is `rate` times what they differ by from
-    /// a mean of those now and a step ago, with these weights.
+    /// Begins a step of a motion to `time`, at whose end the derivative of the masses is `rate` times their difference
+    /// from a mean of the masses now and one step ago, with these weights.
     pub fn begin(&mut self, time: f64, rate: f64, [now, ago]: [f64; 2]) {
         let state = &self.state;
         let pairs = state.exchanged.iter().zip(&state.before);
@@ -129,14 +129,14 @@ impl Fluid {
         });
     }
 
-    /// Takes a state as the end of a step of a motion.
+    /// Accepts a state as the end of a step of a motion.
     pub fn take_step(&mut self, positions: &[Vec3]) {
         let before = self.state.exchanged.clone();
         self.take_stage(positions);
         self.state.before = before;
     }
 
-    /// The same of a stage after the first one of a step: what was a step ago stays so.
+    /// Accepts a state as the end of a later stage of a step: the masses of one step ago are kept.
     pub fn take_stage(&mut self, positions: &[Vec3]) {
         let volumes = self.volumes(positions);
         let Some(step) = self.state.step.clone() else {
@@ -174,7 +174,7 @@ impl Fluid {
         );
     }
 
-    /// Takes a state as a point of a path of equilibria.
+    /// Accepts a state as a point of a path of equilibria.
     pub fn take_rest(&mut self, positions: &[Vec3], instant: Instant) {
         let volumes = self.volumes(positions);
         let Instant { part, time } = instant;
@@ -195,7 +195,7 @@ impl Fluid {
         }
     }
 
-    /// The instant of the last accepted state; that of the unloaded body where there is none.
+    /// The instant of the last accepted state; that of the unloaded body if there is none.
     pub fn last_instant(&self) -> Instant {
         let state = &self.state;
         let last = state.last.as_ref();
@@ -205,14 +205,15 @@ impl Fluid {
         })
     }
 
-    /// Those of the last accepted state, Pa.
+    /// Pressures of the last accepted state, Pa.
     pub fn last_pressures(&self) -> Vec<f64> {
         let state = &self.state;
         let last = state.last.as_ref();
         last.map_or(vec![0.0; self.walls.len()], |last| last.pressures.clone())
     }
 
-    /// Whether pressures have come to rest, up to a part of the largest one so far, if volumes stay.
+    /// Tests whether pressures are at rest at the present volumes, to a tolerance relative to the largest pressure so
+    /// far.
     pub fn is_at_rest(&self, tolerance: f64) -> bool {
         let state = &self.state;
         let (Some(last), Some(step)) = (&state.last, &state.step) else {
@@ -227,7 +228,7 @@ impl Fluid {
         off <= tolerance * state.largest
     }
 
-    /// Every chamber where the vertices are at `positions`.
+    /// The state of every chamber with the vertices at `positions`.
     pub fn read(&self, positions: &[Vec3], instant: Instant) -> Vec<Reading> {
         let volumes = self.volumes(positions);
         let (found, _) = self.answer(&volumes, instant);
@@ -267,7 +268,7 @@ impl Fluid {
 }
 
 impl State {
-    /// Adds up work and energy on the way to a state, by the trapezoidal rule.
+    /// Accumulates work and energy up to a new state, by the trapezoidal rule.
     fn count(&mut self, network: &Network, now: Last) {
         if let Some(last) = &self.last {
             let step = if now.time.is_finite() && last.time.is_finite() {

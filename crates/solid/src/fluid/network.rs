@@ -1,4 +1,4 @@
-//! Chambers, what joins them and what drives them: masses, flows, and what these are worth.
+//! Chambers with their lines, sources and pumps: masses, flows, and the work that these can do.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use super::line::{Curve, Line};
 use super::medium::Medium;
 use crate::History;
 
-/// A number that goes from its value at rest to another one as a history goes from 0 to 1.
+/// A number that goes from its value at rest to another one as a load history goes from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Ramp(pub f64, pub f64);
 
@@ -19,25 +19,25 @@ impl Ramp {
 /// A volume of gas or liquid, behind one or more cavities that share a manifold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Chamber {
-    /// What fills it.
+    /// The gas or liquid that fills it.
     pub medium: Medium,
-    /// What is put into it, kg.
+    /// Mass supplied to it, kg.
     pub mass: Ramp,
-    /// K
+    /// Temperature, K.
     pub temperature: Ramp,
-    /// Of lines and syringes, m³.
+    /// Volume of lines and syringes, m³.
     pub outside: Ramp,
-    /// Times in s and factors of the three.
+    /// Load history of the three.
     pub history: Course,
-    /// Times in s and what the three come to at them, in place of their last values and the history.
+    /// Values of the three over time (s), which replace their final values and the history.
     #[serde(default)]
     pub path: Option<[Course; 3]>,
-    /// The source whose pressure it has whatever flows, by its index.
+    /// Index of the source that prescribes its pressure, if one does.
     #[serde(default)]
     pub held: Option<usize>,
 }
 
-/// Times in s, and factors at them.
+/// A time course: times in s, and factors at them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Course(pub Vec<f64>, pub Vec<f64>);
 
@@ -54,21 +54,21 @@ pub enum End {
 /// A line between two ends.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Branch {
-    /// From the valve to the tube.
+    /// Its ends, from the valve to the tube.
     pub ends: [End; 2],
-    /// What is in between.
+    /// Valve and tube between the ends.
     pub line: Line,
-    /// Times in s, and to which part the valve is open then; without it: always and all.
+    /// Opening of the valve over time (s), as a fraction; fully open at all times if `None`.
     #[serde(default)]
     pub opening: Option<Course>,
 }
 
-/// Something that holds a pressure whatever flows.
+/// A source that prescribes a pressure, whatever the flow.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Source {
-    /// Pa, over the atmosphere.
+    /// Gauge pressure, Pa.
     pub pressure: f64,
-    /// Times in s and factors.
+    /// Load history of the pressure.
     pub history: Course,
 }
 
@@ -77,25 +77,25 @@ pub struct Source {
 pub struct Pump {
     /// The index of the chamber.
     pub chamber: usize,
-    /// What it delivers.
+    /// Its characteristic curve.
     pub curve: Curve,
-    /// The density of what it draws, kg/m³.
+    /// Density of the fluid that it draws, kg/m³.
     pub density: f64,
-    /// Times in s and parts of its speed.
+    /// Speed over time (s), as a fraction of full speed.
     pub history: Course,
 }
 
-/// Everything but the surfaces.
+/// The network of a fluid: everything but the wall surfaces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Network {
-    /// Pa
+    /// Pressure of the atmosphere, Pa.
     pub atmosphere: f64,
-    /// What has a pressure of its own.
+    /// Chambers, each with a pressure of its own.
     pub chambers: Vec<Chamber>,
-    /// Lines.
+    /// Lines between chambers and sources.
     #[serde(default)]
     pub branches: Vec<Branch>,
-    /// What they may come from.
+    /// Sources at ends of lines.
     #[serde(default)]
     pub sources: Vec<Source>,
     /// Pumps.
@@ -103,31 +103,31 @@ pub struct Network {
     pub pumps: Vec<Pump>,
 }
 
-/// A step of a motion.
+/// A time step of a motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// The time at its end, s.
     pub time: f64,
-    /// `σ` in 1/s.
+    /// `σ` of the time integration formula, 1/s.
     pub rate: f64,
-    /// `m̂` without what is put in, kg.
+    /// `m̂` without the supplied masses, kg.
     pub exchanged: Vec<f64>,
-    /// Volumes from which work counts, m³.
+    /// Volumes from which the work is counted, m³.
     pub from: Vec<f64>,
-    /// Pressures near those at the end, Pa.
+    /// Initial guess of the pressures at the end, Pa.
     pub guess: Vec<f64>,
 }
 
-/// What chambers answer to their volumes.
+/// Pressures of chambers as functions of their volumes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pressures {
-    /// Pa
+    /// Gauge pressures, Pa.
     pub pressures: Vec<f64>,
     /// Minus the derivative of each by each volume (n × n, row by row), Pa/m³.
     pub stiffness: Vec<f64>,
 }
 
-/// A chamber at a moment.
+/// Contents of a chamber at a moment.
 #[derive(Clone, Copy)]
 pub(super) struct Content {
     pub medium: Medium,
@@ -164,7 +164,7 @@ impl Chamber {
 }
 
 impl Network {
-    /// What is wrong with it, if anything.
+    /// Checks the network; the error names the first fault.
     pub fn check(&self) -> Result<(), &'static str> {
         let count = self.chambers.len();
         let known = |end: End| match end {
@@ -193,7 +193,7 @@ impl Network {
         Ok(())
     }
 
-    /// When nothing is changed from outside any more, s.
+    /// The time (s) after which no supply, source, pump or valve changes.
     pub fn end(&self) -> f64 {
         let courses = self.chambers.iter().flat_map(Chamber::courses);
         let chambers = courses.map(Course::end);
@@ -204,14 +204,14 @@ impl Network {
         (chambers.chain(sources).chain(pumps).chain(valves)).fold(0.0, f64::max)
     }
 
-    /// Whether lines join chambers: their pressures over time have no potential then.
+    /// Tests whether lines join chambers: their pressures over time then have no potential.
     pub fn joins(&self) -> bool {
         let joins =
             |branch: &Branch| matches!(branch.ends, [End::Chamber(a), End::Chamber(b)] if a != b);
         self.branches.iter().any(joins)
     }
 
-    /// The branches through which something may flow at a time, each with its line as far as its valve is open then.
+    /// The branches that are open at a time, each with its line as far as its valve is open then.
     pub(super) fn open_branches(&self, time: f64) -> impl Iterator<Item = (&Branch, Line)> {
         self.branches.iter().filter_map(move |branch| {
             let part = branch
@@ -241,7 +241,7 @@ impl Network {
         self.chambers.iter().map(at).collect()
     }
 
-    /// What is put into each chamber at a time, kg.
+    /// Mass supplied to each chamber at a time, kg.
     pub fn put_in(&self, time: f64) -> Vec<f64> {
         self.contents(1.0, time).iter().map(|c| c.mass).collect()
     }
@@ -251,7 +251,7 @@ impl Network {
         self.sources.iter().map(at).collect()
     }
 
-    /// What flows into each chamber (kg/s), and the derivatives by the pressures (n × n).
+    /// Mass flow into each chamber (kg/s), and the derivatives by the pressures (n × n).
     pub(super) fn flows(
         &self,
         pressures: &[f64],
@@ -287,8 +287,8 @@ impl Network {
         (flows, slopes)
     }
 
-    /// The power (W) that sources and pumps give to each chamber, at its temperature: of gas what could be got back by
-    /// letting it expand to the atmosphere at that temperature, of liquid the pressure times the volume flow.
+    /// The power (W) that sources and pumps give to each chamber, at its temperature: for gas the work recoverable by
+    /// isothermal expansion to the atmosphere, for liquid the pressure times the volume flow.
     pub fn power(&self, pressures: &[f64], time: f64) -> Vec<f64> {
         let sources = self.sources_at(1.0, time);
         let mut power = vec![0.0; pressures.len()];
@@ -313,7 +313,7 @@ impl Network {
         power
     }
 
-    /// What a mass is worth under a pressure, J/kg.
+    /// Recoverable work per mass under a pressure, J/kg.
     fn worth(&self, content: Content, pressure: f64) -> f64 {
         match content.medium {
             Medium::Gas { constant } => {
@@ -323,8 +323,8 @@ impl Network {
         }
     }
 
-    /// The energy (J) that it takes to put into each chamber what is put in between two moments, the pressures being the mean
-    /// ones: that of the mass, and the work of syringes.
+    /// The energy (J) supplied to each chamber between two moments with its mass and by its syringes, at mean
+    /// pressures.
     pub fn energy_put_in(&self, pressures: &[f64], [from, to]: [(f64, f64); 2]) -> Vec<f64> {
         let before = self.contents(from.0, from.1);
         let after = self.contents(to.0, to.1);
@@ -336,17 +336,17 @@ impl Network {
         .collect()
     }
 
-    /// Whether nothing flows anywhere but to what holds its pressure anyway.
+    /// Tests whether there is no flow, except into chambers whose pressure a source prescribes.
     pub fn is_closed(&self) -> bool {
         self.branches.is_empty() && self.pumps.is_empty()
     }
 
-    /// Whether a source holds the pressure of a chamber.
+    /// Tests whether a source prescribes the pressure of a chamber.
     pub fn is_held(&self, chamber: usize) -> bool {
         self.chambers[chamber].held.is_some()
     }
 
-    /// The energy (J) that masses (kg) take, one for each chamber, that flow into those which a source holds.
+    /// The energy (J) of masses (kg), one for each chamber, that flow into those whose pressure a source prescribes.
     pub fn energy_held(&self, pressures: &[f64], masses: &[f64], time: f64) -> Vec<f64> {
         let contents = self.contents(1.0, time);
         let each = contents.iter().zip(pressures).zip(masses).enumerate();
@@ -360,7 +360,7 @@ impl Network {
         .collect()
     }
 
-    /// What flows into each chamber at the end of a step, kg/s.
+    /// Mass flow into each chamber at the end of a step, kg/s.
     pub fn flows_at(&self, pressures: &[f64], time: f64) -> Vec<f64> {
         self.flows(pressures, &self.sources_at(1.0, time), 1.0, time)
             .0
@@ -380,7 +380,8 @@ impl Network {
         .collect()
     }
 
-    /// Whether pressures follow small changes of volumes so steeply that Newton's method carries them along.
+    /// Tests whether pressures follow small changes of volumes so steeply that Newton's method carries them as
+    /// unknowns.
     pub fn is_stiff(&self) -> bool {
         !self.chambers.is_empty() && self.chambers.iter().all(|each| each.medium.is_stiff())
     }

@@ -1,33 +1,34 @@
-//! Which pressures go with which volumes: chambers, what joins them, and what drives them.
+//! Pressures of chambers as functions of their volumes, with lines, sources and pumps.
 //!
-//! At rest nothing flows: joined chambers have one pressure, that of the sources where there are any, else that of all their
-//! contents together. Over time the masses at the end of a step are unknown with the pressures: of a formula that gives
-//! derivatives as `σ (m − m̂)` (see the implicit steps of the statics crate),
+//! At rest nothing flows: connected chambers have one pressure, that of the sources if there are any, else that of all
+//! their contents together. Over time the masses at the end of a step are unknown with the pressures: for a formula
+//! that gives derivatives as `σ (m − m̂)` (see the implicit steps of the statics crate),
 //!
 //! ```text
 //! ρ(p) (V + L) = m̂ + ṁ(p)/σ
 //! ```
 //!
-//! for each chamber, with the volume `V` of the body's walls, that of lines and syringes `L`, and the flows `ṁ` at the end
-//! of the step: stiff lines need no short steps. What leaves one chamber enters another, so that mass is kept to rounding.
+//! for each chamber, with the volume `V` of the body's walls, that of lines and syringes `L`, and the flows `ṁ` at the
+//! end of the step: stiff lines need no short steps. The mass that leaves one chamber enters another, so that mass is
+//! kept to rounding.
 
 use super::network::{Branch, Content, End, Network, Pressures, Step};
 use super::small::solve_small;
 
-/// Steps of Newton's method to the pressures, and how often one may be halved.
+/// Limits of Newton's method for the pressures: iterations, and halvings of one step.
 const ITERATIONS: u32 = 100;
 const HALVINGS: u32 = 40;
-/// Pressures are known to this part of the absolute ones.
+/// Relative accuracy of absolute pressures.
 const PRECISION: f64 = 1e-13;
-/// No absolute pressure falls below this part of itself in a step of Newton's method.
+/// Least ratio of an absolute pressure to that before a Newton step.
 const LEAST: f64 = 0.1;
 
-/// What equations for pressures are off by, with the derivatives (n × n).
+/// Residuals of the equations for pressures, with their derivatives (n × n).
 type Equations<'a> = &'a mut dyn FnMut(&[f64]) -> (Vec<f64>, Vec<f64>);
 
 impl Network {
-    /// The chambers that lines join, as lists of them, and the pressures that something holds there at `part` of everything;
-    /// none where nothing does, or `None` where that is not found.
+    /// The groups of connected chambers, each with the pressures that sources or pumps impose there at the fraction
+    /// `part` of the load path, if any do; `None` if these pressures are not found.
     #[expect(clippy::type_complexity, reason = "lists of groups and what they hold")]
     fn groups(&self, part: f64, time: f64) -> Option<Vec<(Vec<usize>, Option<Vec<f64>>)>> {
         let mut group: Vec<usize> = (0..self.chambers.len()).collect();
@@ -71,7 +72,7 @@ impl Network {
         Some(found)
     }
 
-    /// Pressures at which nothing flows into any chamber that something holds.
+    /// Steady pressures: no net flow into any chamber of a group with a source or pump.
     fn steady(&self, part: f64, time: f64, held: &[bool], group: &[usize]) -> Option<Vec<f64>> {
         let n = self.chambers.len();
         let is_held =
@@ -99,7 +100,7 @@ impl Network {
             .then_some(pressures)
     }
 
-    /// Where to look for a steady pressure: the stall pressure of a pump, else the mean of the sources.
+    /// Initial guess of a steady pressure: the stall pressure of a pump, else the mean of the sources.
     fn first(&self, chamber: usize, group: &[usize], sources: &[f64], part: f64, time: f64) -> f64 {
         let same = |other: usize| group[other] == group[chamber];
         let mut members = (0..group.len()).filter(|&c| same(c));
@@ -129,7 +130,8 @@ impl Network {
         found.iter().sum::<f64>() / found.len().max(1) as f64
     }
 
-    /// Newton's method on equations `off(p) = 0` whose derivatives come with them; whether it found the pressures.
+    /// Newton's method on equations `off(p) = 0` whose derivatives come with the residuals; returns whether it
+    /// converged.
     fn newton(&self, pressures: &mut Vec<f64>, equations: Equations<'_>) -> bool {
         let n = pressures.len();
         let size = |off: &[f64]| off.iter().map(|x| x * x).sum::<f64>();
@@ -180,7 +182,7 @@ impl Network {
         false
     }
 
-    /// The pressures at rest of chambers with these volumes (m³), where everything has gone `part` of the way from the
+    /// The pressures at rest of chambers with these volumes (m³), at the fraction `part` of the load path from the
     /// unloaded body to the final values of all histories, or to those at a finite time.
     pub fn at_rest(&self, volumes: &[f64], part: f64, time: f64) -> Option<Pressures> {
         self.rest_of(volumes, &self.contents(part, time), part, time)
@@ -252,8 +254,8 @@ impl Network {
         work
     }
 
-    /// The line through the pressures at rest that touches them where they are `near` (Pa), at these volumes: what a step of
-    /// Newton's method on both volumes and pressures goes along.
+    /// The tangent of the pressures at rest at the point where they are `near` (Pa), evaluated at these volumes:
+    /// Newton's method on both volumes and pressures steps along it.
     pub fn along_rest(
         &self,
         near: &[f64],
@@ -294,7 +296,7 @@ impl Network {
         found.is_finite().then_some(found)
     }
 
-    /// The pressures at the end of a step of chambers with these volumes then.
+    /// The pressures at the end of a step of chambers with these volumes at that time.
     pub fn at_end_of(&self, step: &Step, volumes: &[f64]) -> Option<Pressures> {
         if self.is_closed() {
             return self.at_rest(volumes, 1.0, step.time);
@@ -302,7 +304,7 @@ impl Network {
         self.end_of(step, &step.guess, volumes, true)
     }
 
-    /// As [`Network::along_rest`] at the end of a step.
+    /// Variant of [`Network::along_rest`] at the end of a step.
     pub fn along_end_of(&self, step: &Step, near: &[f64], volumes: &[f64]) -> Option<Pressures> {
         if self.is_closed() {
             return self.along_rest(near, volumes, 1.0, step.time);
@@ -310,7 +312,7 @@ impl Network {
         self.end_of(step, near, volumes, false)
     }
 
-    /// Pressures from a guess, to the end or one step of Newton's method on.
+    /// Pressures from a guess, converged if `exact`, else after one step of Newton's method.
     fn end_of(
         &self,
         step: &Step,
@@ -385,7 +387,7 @@ impl Network {
         found.is_finite().then_some(found)
     }
 
-    /// Where pressures come to rest from here if volumes stay, with masses that have been exchanged (kg).
+    /// The pressures to which chambers settle at constant volumes, given the masses exchanged so far (kg).
     pub fn settled(&self, volumes: &[f64], exchanged: &[f64], time: f64) -> Option<Vec<f64>> {
         let mut contents = self.contents(1.0, time);
         for (content, exchanged) in contents.iter_mut().zip(exchanged) {

@@ -1,7 +1,7 @@
-//! Dense systems as small as there are chambers.
+//! Dense linear systems with one unknown for each chamber.
 
-/// Solves `matrix x = side` for each of the sides, in place, by elimination with row exchanges; `false` where it is singular.
-/// The matrix (n × n, row by row) is lost.
+/// Solves `matrix x = side` for each of the sides, in place, by elimination with row exchanges; returns `false` if it
+/// is singular. The matrix (n × n, row by row) is overwritten.
 pub fn solve_small(matrix: &mut [f64], sides: &mut [Vec<f64>], n: usize) -> bool {
     for column in 0..n {
         let size = |row: usize, matrix: &[f64]| matrix[row * n + column].abs();
@@ -46,7 +46,7 @@ mod tests {
     use super::solve_small;
 
     #[test]
-    fn solves_what_needs_an_exchange_of_rows_and_tells_what_is_singular() {
+    fn solves_with_row_exchange_and_detects_singular_matrix() {
         let mut sides = vec![vec![2.0, 5.0]];
         assert!(solve_small(&mut [0.0, 1.0, 1.0, 1.0], &mut sides, 2));
         assert_eq!(sides[0], [3.0, 2.0]);

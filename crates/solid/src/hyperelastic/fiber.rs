@@ -12,14 +12,14 @@ pub struct Fiber {
     pub direction: Vec3,
     /// Modulus in Pa: the stiffness of a fiber times the part of the volume that is fiber.
     pub modulus: f64,
-    /// Whether fibers also carry compression; thin ones buckle and do not.
+    /// Set if fibers also carry compression; thin ones buckle and do not.
     pub compression: bool,
-    /// The stretch `λ₀` at which they carry nothing: 1, unless they are longer or shorter by themselves.
+    /// The stretch `λ₀` at which they are free of stress: 1, unless they are longer or shorter by themselves.
     pub free: f64,
 }
 
 impl Fiber {
-    /// `a/λ₀`: what counts of the direction.
+    /// The direction over the free stretch, `a/λ₀`.
     fn course(&self) -> Vec3 {
         scale(1.0 / self.free, self.direction)
     }

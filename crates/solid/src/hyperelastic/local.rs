@@ -4,17 +4,17 @@ use std::collections::HashMap;
 
 use super::HyperelasticMaterial;
 
-/// The materials of voxels of parts that have wound fibers or growth that is a field: one for each direction and each share,
-/// so that voxels which differ only in their place along an axis have theirs in common.
+/// The materials of voxels of parts that have wound fibers or a growth field: one for each direction and each share, so
+/// that voxels which differ only in their place along an axis share one.
 pub(crate) struct LocalMaterials {
     pub(crate) materials: Vec<HyperelasticMaterial>,
-    /// By the part, and the bits of what differs.
+    /// Material numbers by part and by the bits of directions and shares.
     numbers: HashMap<(u32, Vec<u64>), u32>,
     first: u32,
 }
 
 impl LocalMaterials {
-    /// None yet, numbered from `first` on.
+    /// An empty list, numbered from `first` on.
     pub(crate) fn beside(first: usize) -> Self {
         Self {
             materials: Vec::new(),
@@ -23,7 +23,7 @@ impl LocalMaterials {
         }
     }
 
-    /// The number of a material of a part as it is at a voxel.
+    /// The number of the material of a part as it is at a voxel, added if it is new.
     pub(crate) fn number(&mut self, part: u32, material: HyperelasticMaterial) -> u32 {
         let directions = material.fibers().iter().flat_map(|fiber| fiber.direction);
         let growths = material.growths();

@@ -30,7 +30,7 @@ pub enum Model {
         terms: [(f64, f64); 3],
     },
     /// `−μ Jₘ/2 ln(1 − (Ī₁ − 3)/Jₘ)`; the initial shear modulus is `μ`. Past
-    /// [`Model::GENT_REACH`] of the limit the logarithm goes on as its Taylor polynomial.
+    /// [`Model::GENT_REACH`] of the limit the logarithm is continued as its Taylor polynomial.
     Gent {
         /// `μ`.
         shear: f64,
@@ -72,7 +72,7 @@ pub struct HyperelasticMaterial {
 }
 
 impl HyperelasticMaterial {
-    /// From the isochoric model, the bulk modulus `K` (Pa) and the density (kg/m³).
+    /// A material from the isochoric model, the bulk modulus `K` (Pa) and the density (kg/m³).
     pub fn new(model: Model, bulk: f64, density: f64) -> Result<Self, ProblemError> {
         for (what, value) in [
             ("initial shear modulus (Pa)", model.shear()),
@@ -109,7 +109,7 @@ impl HyperelasticMaterial {
         })
     }
 
-    /// The same material with families of fibers.
+    /// This material with families of fibers.
     pub fn with_fibers(self, fibers: Vec<Fiber>) -> Result<Self, ProblemError> {
         for fiber in &fibers {
             check_family(
@@ -121,7 +121,7 @@ impl HyperelasticMaterial {
         Ok(Self { fibers, ..self })
     }
 
-    /// The same material with families of fibers wound about axes.
+    /// This material with families of fibers wound about axes.
     pub fn with_windings(self, windings: Vec<Winding>) -> Result<Self, ProblemError> {
         for winding in &windings {
             check_family(
@@ -142,13 +142,13 @@ impl HyperelasticMaterial {
         &self.windings
     }
 
-    /// Whether it differs from voxel to voxel.
+    /// Tests whether it differs from voxel to voxel.
     pub(crate) fn is_local(&self) -> bool {
         !self.windings.is_empty() || self.growths().iter().any(|growth| growth.is_field())
     }
 
-    /// The material as it is at a place (m) in a voxel of a side (m) with edges along `axes` (unit vectors row by row), the
-    /// `block`th: wound fibers have one direction there, and growth that is a field is that of the voxel.
+    /// The material as it is at a place (m) in a voxel of a side (m) with edges along `axes` (unit vectors row by row),
+    /// the `block`th: wound fibers have one direction there, and growth that is a field is that of the voxel.
     pub(crate) fn at(
         &self,
         block: usize,
@@ -169,7 +169,7 @@ impl HyperelasticMaterial {
         })
     }
 
-    /// The same material swollen (or shrunk): free of stress it is so many times as long along every axis as the body at
+    /// This material swollen (or shrunk): free of stress it is so many times as long along every axis as the body at
     /// rest, `F = Fₑ λ`. Its mass stays.
     pub fn with_swelling(self, stretch: f64) -> Result<Self, ProblemError> {
         if !(stretch > 0.0 && stretch.is_finite()) {
@@ -185,7 +185,7 @@ impl HyperelasticMaterial {
         })
     }
 
-    /// The same material swollen over time, on top of [`HyperelasticMaterial::with_swelling`], and with fibers whose free
+    /// This material swollen over time, on top of [`HyperelasticMaterial::with_swelling`], and with fibers whose free
     /// stretch changes, on top of their own.
     #[must_use]
     pub fn with_growth(self, of_material: Growth, of_fibers: Growth) -> Self {
@@ -196,48 +196,48 @@ impl HyperelasticMaterial {
         }
     }
 
-    /// By how much it is longer now, free of stress, than in the body at rest; 1 where it is not swollen.
+    /// The present free stretch: stress-free length over that in the body at rest; 1 if it is not swollen.
     #[inline(always)]
     pub fn swelling(&self) -> f64 {
         self.swelling * self.growth.now()
     }
 
-    /// Whether two are one material with shares of its growth that differ from voxel to voxel.
+    /// Tests whether two are one material with shares of its growth that differ from voxel to voxel.
     pub(crate) fn differs_in_growth_alone(&self, other: &Self) -> bool {
         let local = |of: &Self| of.growths().iter().any(|growth| growth.is_local());
         let stuff = |of: &Self| (of.model, of.bulk, of.mullins);
         local(self) && local(other) && stuff(self) == stuff(other) && self.fibers == other.fibers
     }
 
-    /// How it bends by itself now: half the difference of its free stretches at the two sides of a voxel along each axis, over
-    /// their mean.
+    /// Present stress-free bending: half the difference of its free stretches at the two sides of a voxel along each
+    /// axis, over their mean.
     #[inline(always)]
     pub(crate) fn bent(&self) -> Vec3 {
         self.growth.bent()
     }
 
-    /// Whether its free stretch varies within a voxel.
+    /// Tests whether its free stretch varies within a voxel.
     pub(crate) fn varies(&self) -> bool {
         self.growth.varies()
     }
 
-    /// How it and its fibers grow.
+    /// The growth of the material and that of its fibers.
     pub fn growths(&self) -> [&Growth; 2] {
         [&self.growth, &self.fiber_growth]
     }
 
-    /// Makes the free stretches of it and its fibers those of a time in s.
+    /// Sets the free stretches of the material and its fibers to those at a time in s.
     pub(crate) fn begin(&mut self, time: f64) {
         self.growth.begin(time);
         self.fiber_growth.begin(time);
     }
 
-    /// The largest isochoric energy (J/m³) that a voxel counts as having had before it is strained.
+    /// The initial peak: the largest isochoric energy (J/m³) of a voxel before it is strained.
     pub(crate) fn first_peak(&self) -> f64 {
         self.mullins.as_ref().map_or(0.0, Mullins::first)
     }
 
-    /// Its fibers with the free stretch that they have now.
+    /// Its fibers with their present free stretch.
     pub(crate) fn fibers_now(&self) -> impl Iterator<Item = Fiber> + '_ {
         let growth = self.fiber_growth.now();
         self.fibers.iter().map(move |fiber| Fiber {
@@ -246,8 +246,8 @@ impl HyperelasticMaterial {
         })
     }
 
-    /// The same material with branches that relax: pairs of the share `g` of the instantaneous modulus
-    /// and the time `τ` in s. The model's own constants stay those at rest.
+    /// This material with Prony branches: pairs of the share `g` of the instantaneous modulus and the relaxation time
+    /// `τ` in s. The model's own constants are the long-term ones.
     pub fn with_prony(self, prony: Vec<(f64, f64)>) -> Result<Self, ProblemError> {
         for &(share, time) in &prony {
             for (what, value) in [
@@ -267,7 +267,7 @@ impl HyperelasticMaterial {
         Ok(Self { prony, ..self })
     }
 
-    /// The same material, softer where it was stretched more before; fibers are not.
+    /// This material with softening after larger stretch (Mullins effect), except of its fibers.
     #[must_use]
     pub fn with_mullins(self, mullins: Mullins) -> Self {
         Self {
@@ -276,17 +276,17 @@ impl HyperelasticMaterial {
         }
     }
 
-    /// How it softens, if it does.
+    /// The constants of its softening, if it softens.
     pub fn mullins(&self) -> Option<&Mullins> {
         self.mullins.as_ref()
     }
 
-    /// The branches that relax as they were given: share of the instantaneous modulus and time in s.
+    /// The Prony branches as given: share of the instantaneous modulus and relaxation time in s.
     pub fn prony(&self) -> &[(f64, f64)] {
         &self.prony
     }
 
-    /// The branches that relax: stiffness over that at rest, `g/(1 − Σ g)`, and time in s.
+    /// The Prony branches: stiffness over the long-term one, `g/(1 − Σ g)`, and relaxation time in s.
     pub fn branches(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let left = 1.0 - self.prony.iter().map(|(share, _)| share).sum::<f64>();
         self.prony
@@ -294,7 +294,7 @@ impl HyperelasticMaterial {
             .map(move |&(share, time)| (share / left, time))
     }
 
-    /// A compressible neo-Hookean material of a Young's modulus (Pa) and Poisson's ratio.
+    /// A compressible neo-Hookean material from Young's modulus (Pa) and Poisson's ratio.
     pub fn neo_hookean(young: f64, poisson: f64, density: f64) -> Result<Self, ProblemError> {
         let c10 = young / (4.0 * (1.0 + poisson));
         let bulk = young / (3.0 * (1.0 - 2.0 * poisson));
@@ -311,7 +311,7 @@ impl HyperelasticMaterial {
         &self.fibers
     }
 
-    /// `ν/(1 − ν)`: how much a thin plate thins for the sum of its strains in the plane.
+    /// `ν/(1 − ν)`: thickness strain of a thin plate over minus the sum of its strains in the plane.
     pub(crate) fn thinning(&self) -> f64 {
         let (k, g) = (self.bulk, self.model.shear());
         (3.0 * k - 2.0 * g) / (3.0 * k + 4.0 * g)
@@ -340,7 +340,7 @@ impl HyperelasticMaterial {
     }
 }
 
-/// Checks the modulus (Pa) and the free stretch of a family of fibers, and a vector of it that must be a unit one.
+/// Checks the modulus (Pa) and the free stretch of a family of fibers, and its vector that must be a unit one.
 fn check_family(numbers: [f64; 2], what: &'static str, unit: Vec3) -> Result<(), ProblemError> {
     for (what, value) in [
         ("modulus of fibers (Pa)", numbers[0]),

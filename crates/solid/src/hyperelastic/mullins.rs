@@ -1,16 +1,16 @@
-//! Rubber that was stretched before is softer: the Mullins effect.
+//! Softening of rubber that was stretched before: the Mullins effect.
 //!
-//! Ogden and Roxburgh (doi 10.1098/rspa.1999.0431) let the isochoric stress of a material fall to a part `η` of what it was
-//! where the isochoric energy `W` is below the largest `P` that it has had, with Abaqus's constants
+//! Ogden and Roxburgh (doi 10.1098/rspa.1999.0431) reduce the isochoric stress of a material by a factor `η` where the
+//! isochoric energy `W` is below the largest `P` that it has had, with Abaqus's constants
 //!
 //! `η = 1 − 1/r erf((P − W)/(m + β P))` ,   `η = 1` where `W ≥ P` .
 //!
-//! At a peak `P` that stays, stress comes from a potential, `ψ' = η`: with `s = m + β P`, `x = (P − W)/s` and
+//! At a constant peak `P`, stress comes from a potential, `ψ' = η`: with `s = m + β P`, `x = (P − W)/s` and
 //! `G(x) = x erf x + exp(−x²)/√π`, whose derivative is `erf`,
 //!
 //! `ψ(W) = W − s/r (G(P/s) − G(x))` ,   `ψ'' = 2/(r s √π) exp(−x²)` .
 //!
-//! It is what the material gives back; `W − ψ` at `W = P` is what the way there has taken for good.
+//! It is the recoverable energy; `W − ψ` at `W = P` is the energy dissipated on the way there.
 
 use std::f64::consts::FRAC_2_SQRT_PI;
 
@@ -27,8 +27,8 @@ pub struct Mullins {
 }
 
 impl Mullins {
-    /// From `r` (above 1), `m` in J/m³ and `β` (not negative, and not both zero), and the energy (J/m³) that all of the
-    /// material has had before.
+    /// Softening with `r` (above 1), `m` in J/m³ and `β` (not negative, and not both zero), and the initial peak
+    /// (J/m³), the energy that all of the material has had before.
     pub fn new(r: f64, m: f64, beta: f64, first: f64) -> Result<Self, ProblemError> {
         for (what, value) in [
             ("r of softening, less 1", r - 1.0),
@@ -50,12 +50,12 @@ impl Mullins {
         Ok(Self { r, m, beta, first })
     }
 
-    /// The energy (J/m³) that all of the material has had before.
+    /// The initial peak (J/m³): the energy that all of the material has had before.
     pub fn first(&self) -> f64 {
         self.first
     }
 
-    /// `ψ`, `η` and `ψ''` at an energy, where the largest was `peak` (J/m³).
+    /// `ψ`, `η` and `ψ''` at an energy, with the largest so far `peak` (J/m³).
     pub(crate) fn soften(&self, energy: f64, peak: f64) -> Jet {
         let scale = self.m + self.beta * peak;
         let lost = |x: f64| x * libm::erf(x) + 0.5 * FRAC_2_SQRT_PI * libm::exp(-x * x);
@@ -93,13 +93,13 @@ mod tests {
         }
         let [below, above] = [99.999_999_9, 100.0].map(|energy| soft.soften(energy, 100.0));
         assert!((below[0] - above[0]).abs() < 1e-6 && (below[1] - above[1]).abs() < 1e-8);
-        // At rest nothing is left of the energy.
+        // At rest the recoverable energy vanishes.
         assert!(soft.soften(0.0, 100.0)[0].abs() < 1e-12);
         assert_eq!(soft.soften(5.0, 0.0), [5.0, 1.0, 0.0]);
     }
 
     #[test]
-    fn constants_that_mean_nothing_are_refused() {
+    fn invalid_constants_are_refused() {
         assert!(Mullins::new(1.0, 1.0, 0.1, 0.0).is_err());
         assert!(Mullins::new(2.0, 0.0, 0.0, 0.0).is_err());
         assert!(Mullins::new(2.0, -1.0, 2.0, 0.0).is_err());

@@ -3,11 +3,11 @@
 use super::Model;
 use crate::vector::Vec3;
 
-/// The volume ratio below which `J^(−1/3)` goes on as a polynomial. Rubber in equilibrium stays
-/// within percents of one; a tenth is met on the way only.
+/// The volume ratio below which `J^(−1/3)` is continued as a polynomial. Rubber in equilibrium stays within percents of
+/// one; a tenth occurs during iterations only.
 pub const LEAST_VOLUME: f64 = 0.1;
 
-/// The isochoric stretch below which powers go on as polynomials.
+/// The isochoric stretch below which powers are continued as polynomials.
 pub const LEAST_STRETCH: f64 = 0.05;
 
 /// A function of the three principal stretches with its derivatives.

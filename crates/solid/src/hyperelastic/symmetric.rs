@@ -57,7 +57,7 @@ pub fn isochoric(model: &Model, s: &Sym) -> Response {
     of_principal(&principal::isochoric(model, stretches), stretches, &vectors)
 }
 
-/// Only value and stress of [`isochoric`].
+/// Value and stress of [`isochoric`] alone.
 pub fn isochoric_stress(model: &Model, s: &Sym) -> (f64, Sym) {
     if let Some(response) = of_first_invariant(model, s, false) {
         return (response.value, response.stress);
@@ -84,8 +84,8 @@ fn shrink_squared(volume: f64) -> (f64, f64, f64) {
     (g * g, 2.0 * g * dg, 2.0 * (dg * dg + g * ddg))
 }
 
-/// A model that depends on `Ī₁ = g² S:S` alone, without eigenvalues: the most used ones are also the quickest.
-/// The tangent only where `second` asks; `None` for other models.
+/// The response of a model that depends on `Ī₁ = g² S:S` alone, without eigenvalues: the most used models are also the
+/// quickest. The tangent is computed only if `second`; `None` for other models.
 #[inline(always)]
 fn of_first_invariant(model: &Model, s: &Sym, second: bool) -> Option<Response> {
     let (a, volume, cofactor) = invariants(s);
@@ -112,7 +112,7 @@ fn of_first_invariant(model: &Model, s: &Sym, second: bool) -> Option<Response> 
     Some(response)
 }
 
-/// `det S` with its gradient, and its Hessian where `second` asks.
+/// `det S` with its gradient, and its Hessian if `second`.
 pub fn determinant_response(s: &Sym, second: bool) -> Response {
     let (_, value, stress) = invariants(s);
     let mut response = Response {
@@ -253,7 +253,7 @@ mod tests {
         }
 
         #[test]
-        fn the_short_ways_give_the_same(s in stretch()) {
+        fn shortcuts_match_general_formulas(s in stretch()) {
             let close = |a: &Sym, b: &Sym| a.iter().zip(b).all(|(x, y)| (x - y).abs() < 1e-11 * (1.0 + x.abs()));
             for model in models() {
                 let (value, stress) = isochoric_stress(&model, &s);
@@ -272,7 +272,7 @@ mod tests {
         }
 
         #[test]
-        fn inside_out_stays_finite(s in prop::array::uniform6(-1.5..1.5f64)) {
+        fn inverted_stretch_has_finite_response(s in prop::array::uniform6(-1.5..1.5f64)) {
             for model in models() {
                 let response = isochoric(&model, &s);
                 prop_assert!(response.value.is_finite());

@@ -19,18 +19,18 @@ pub struct Winding {
     pub angle: f64,
     /// Modulus in Pa: the stiffness of a fiber times the part of the volume that is fiber.
     pub modulus: f64,
-    /// Whether fibers also carry compression.
+    /// Set if fibers also carry compression.
     pub compression: bool,
-    /// The stretch at which they carry nothing, as for [`Fiber`].
+    /// The stretch at which they are free of stress, as for [`Fiber`].
     pub free: f64,
 }
 
 impl Winding {
-    /// The fibers at a place (m) in a voxel of a side (m) whose edges are along `axes` (unit vectors row by row), to which
-    /// their direction refers.
+    /// The fibers at a place (m) in a voxel of a side (m) whose edges are along `axes` (unit vectors row by row), to
+    /// which their direction refers.
     ///
     /// Within a side of the axis the direction around it turns by more than a radian from one end of a voxel to the
-    /// other: there is none that would stand for the voxel.
+    /// other: no single direction would stand for the voxel.
     pub(crate) fn at(&self, place: Vec3, side: f64, axes: &Mat3) -> Result<Fiber, ProblemError> {
         let from = sub(place, self.center);
         let away = sub(from, scale(dot(from, self.axis), self.axis));
@@ -82,14 +82,14 @@ mod tests {
     }
 
     #[test]
-    fn the_direction_is_that_in_the_frame_of_the_voxel() {
+    fn direction_refers_to_the_frame_of_the_voxel() {
         let quarter = [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
         let fiber = WOUND.at([3.0, 0.0, 7.0], 0.5, &quarter).unwrap();
         assert!(close(fiber.direction, [0.5, 0.0, 0.75f64.sqrt()]));
     }
 
     #[test]
-    fn there_is_no_way_around_on_the_axis() {
+    fn voxel_on_axis_is_refused() {
         let near = WOUND.at([1.0, 0.4, 0.0], 0.5, &IDENTITY);
         let place = [1.0, 0.4, 0.0];
         let distance = 0.4;

@@ -6,22 +6,24 @@ use crate::assembly::{Visitor, check_indices};
 use crate::matrix::{Mat3, cross_matrix};
 use crate::vector::{Vec3, axpy, cross, dot, scale};
 
-/// Below this ratio of volumes its inverse goes on as its Taylor polynomial of second order: what a search meets on its way
-/// has a finite potential, also inside out.
+/// Volume ratio below which its inverse is continued as its Taylor polynomial of second order, so that the potential
+/// stays finite during iterations, also inside out.
 const LEAST_VOLUME: f64 = 0.1;
 
-/// The squeeze of a dielectric between compliant electrodes whose voltage is held. With the field `E` as drawn along the unit
-/// vector `n` across the undeformed sheet, and the permittivity `ε`, the potential of sheet and battery on a volume at rest is
+/// The squeeze of a dielectric between compliant electrodes whose voltage is held. With the field `E` as drawn along
+/// the unit vector `n` across the undeformed sheet, and the permittivity `ε`, the potential of sheet and battery on a
+/// volume at rest is
 ///
 /// ```text
 /// Π = −½ ε E² J n·C⁻¹·n = −½ ε E² |F t₁ × F t₂|²/J,   J = (F t₁ × F t₂)·F n,
 /// ```
 ///
 /// where `t₁, t₂, n` are orthonormal: a capacitor whose area has grown by `|F t₁ × F t₂|` and whose thickness is
-/// `J/|F t₁ × F t₂|` of the drawn one. `F` is the mean gradient over an element. The factor of a load multiplies the field.
+/// `J/|F t₁ × F t₂|` of the drawn one. `F` is the mean gradient over an element. The factor of a load multiplies the
+/// field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Dielectric {
-    /// What the sheet is made of.
+    /// The voxels of the sheet.
     pub elements: Vec<Element>,
     /// `½ ε E²` at a factor of one, Pa.
     pub pressure: f64,
@@ -32,7 +34,7 @@ pub struct Dielectric {
 pub struct Element {
     /// Its corners.
     pub vertices: [u32; 8],
-    /// How `F t₁`, `F t₂` and `F n` depend on each corner: `Σ x gᵢ`, 1/m.
+    /// Derivatives of `F t₁`, `F t₂` and `F n` by each corner: `Σ x gᵢ`, 1/m.
     pub gradients: [Vec3; 8],
     /// Volume at rest of its material in m³.
     pub volume: f64,
@@ -42,11 +44,11 @@ pub struct Element {
 struct Squeeze {
     value: f64,
     gradient: [Vec3; 3],
-    /// By pairs of columns.
+    /// Second derivatives by pairs of columns.
     hessian: [[Mat3; 3]; 3],
 }
 
-/// The inverse of a ratio of volumes with its first and second derivative.
+/// The inverse of a volume ratio with its first and second derivative.
 fn inverse(volume: f64) -> [f64; 3] {
     let at = volume.max(LEAST_VOLUME);
     let (value, first, second) = (1.0 / at, -1.0 / (at * at), 2.0 / (at * at * at));
@@ -91,7 +93,7 @@ impl Squeeze {
         let mut hessian = [[[[0.0; 3]; 3]; 3]; 3];
         if second {
             let both = dot(a, b);
-            // Of the square |a|²|b|² − (a·b)².
+            // Derivatives of the square |a|²|b|² − (a·b)².
             add_scaled(&mut hessian[0][0], 2.0 * value * dot(b, b), &identity(1.0));
             add_scaled(&mut hessian[0][0], -2.0 * value, &outer(b, b));
             add_scaled(&mut hessian[1][1], 2.0 * value * dot(a, a), &identity(1.0));
@@ -99,7 +101,7 @@ impl Squeeze {
             let mut mixed = identity(-2.0 * value * both);
             add_scaled(&mut mixed, 4.0 * value, &outer(a, b));
             add_scaled(&mut mixed, -2.0 * value, &outer(b, a));
-            // Of the volume a·(b × c).
+            // Derivatives of the volume a·(b × c).
             let turn = square * first;
             add_scaled(&mut mixed, -turn, &cross_matrix(c));
             add_scaled(&mut hessian[0][1], 1.0, &mixed);
@@ -184,7 +186,7 @@ impl ExternalForce for Dielectric {
         self.add(on.positions, 2.0 * factor * weight, forces);
     }
 
-    /// They grow with the square of the field.
+    /// The forces grow with the square of the field.
     fn is_proportional(&self) -> bool {
         false
     }
@@ -199,7 +201,7 @@ impl ExternalForce for Dielectric {
             let hessian = element.squeeze(positions, true).hessian;
             let weight = -factor * factor * self.pressure * element.volume;
             for (row, left) in element.gradients.iter().enumerate() {
-                // Σ over the columns of F of what the corner of the row has of them.
+                // Σ over the columns of F, weighed by their derivatives by the corner of the row.
                 let mut across = [[[0.0; 3]; 3]; 3];
                 for (column, sum) in across.iter_mut().enumerate() {
                     for (part, blocks) in left.iter().zip(&hessian) {
@@ -271,7 +273,7 @@ mod tests {
         (load, rest, positions)
     }
 
-    /// At a usual shape, and where the volume is so small that its inverse goes on as a polynomial.
+    /// Checked at a usual shape, and at volumes so small that their inverse is continued as a polynomial.
     #[test]
     fn keeps_the_laws_of_a_load() {
         for flat in [0.8, 0.08, -0.5] {

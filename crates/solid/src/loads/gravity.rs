@@ -7,7 +7,7 @@ use crate::vector::{Vec3, axpy, dot, sub};
 /// An acceleration of all mass.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Gravity {
-    /// In m/s².
+    /// The acceleration in m/s².
     pub acceleration: Vec3,
 }
 

@@ -21,21 +21,22 @@ pub struct Hydrostatic {
     pub triangles: Vec<[u32; 3]>,
     /// Tetrahedra of cut voxels with the part of each that belongs to the cavity.
     pub voids: Vec<([u32; 4], f64)>,
-    /// `γ`, how the pressure grows in space, Pa/m: density times acceleration.
+    /// `γ`, the gradient of the pressure, Pa/m: density times acceleration.
     pub slope: Vec3,
-    /// `o`, where it is zero, m.
+    /// `o`, a point of zero pressure, m.
     pub origin: Vec3,
 }
 
 impl Hydrostatic {
-    /// The corners of an element from the origin, and the mean of the pressure over it and the origin where that is one.
+    /// Corners of an element relative to the origin, and the mean pressure over its tetrahedron (of a triangle, that
+    /// with the origin).
     fn seen<const N: usize>(&self, corners: [u32; N], positions: &[Vec3]) -> ([Vec3; N], f64) {
         let from = corners.map(|v| sub(positions[v as usize], self.origin));
         let mean = from.iter().map(|x| dot(self.slope, *x)).sum::<f64>() / 4.0;
         (from, mean)
     }
 
-    /// Turns the stiffness of a pressure, `−S ∂²D`, to that of the product, less what `S` changes.
+    /// Completes the stiffness at a constant mean pressure, `−S ∂²D`, by the terms from the change of `S`.
     fn finished(&self, mut matrix: Vec<f64>, gradients: &[Vec3], part: f64) -> Vec<f64> {
         let size = 3 * gradients.len();
         let by_mean = |entry: usize| self.slope[entry % 3] / 4.0;
@@ -106,7 +107,7 @@ impl ExternalForce for Hydrostatic {
         true
     }
 
-    /// Forces are those of a potential in any case; on a surface that is open they push on the cone over its rim too.
+    /// The forces have a potential in any case; on an open surface they include those on the cone over its rim.
     fn is_conservative(&self) -> bool {
         true
     }

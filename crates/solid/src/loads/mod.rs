@@ -22,7 +22,7 @@ pub use point_forces::PointForces;
 pub use pressure::{Pressure, enclosed_volume};
 pub use tendon::{Drive, Place, Tendon, TendonMemory, TendonState};
 
-/// The vertices that a load acts on: where they were at rest, where they are now, and what they weigh.
+/// The vertices that a load acts on: positions at rest, present positions, and masses.
 #[derive(Debug, Clone, Copy)]
 pub struct Vertices<'a> {
     /// Positions at rest in m.
@@ -33,9 +33,9 @@ pub struct Vertices<'a> {
     pub masses: &'a [f64],
 }
 
-/// What a kind of load does to the vertices, at a factor of one if none is given.
+/// Forces of a kind of load on the vertices, at a factor of one if none is given.
 ///
-/// [`crate::conformance::check_load`] holds every kind to what is promised here.
+/// [`crate::conformance::check_load`] checks these contracts for every kind.
 pub trait ExternalForce: Debug + Send + Sync {
     /// Checks numbers and indices against the number of vertices.
     fn check(&self, vertices: usize) -> Result<(), ProblemError>;
@@ -43,8 +43,8 @@ pub trait ExternalForce: Debug + Send + Sync {
     /// Adds `factor` times the forces in N.
     fn add_forces(&self, on: Vertices<'_>, factor: f64, forces: &mut [Vec3]);
 
-    /// Minus the potential in J: its derivative by positions is the force, if the load is conservative.
-    /// Dead loads have done no work on a body at rest.
+    /// Minus the potential in J: its derivative by positions is the force, if the load is conservative. It is zero for
+    /// dead loads on a body at rest.
     fn work(&self, on: Vertices<'_>) -> f64;
 
     /// The potential in J under a factor, up to a constant.
@@ -57,54 +57,54 @@ pub trait ExternalForce: Debug + Send + Sync {
         self.add_forces(on, weight, forces);
     }
 
-    /// Whether the forces are the factor times those at a factor of one.
+    /// Tests whether the forces are the factor times those at a factor of one.
     fn is_proportional(&self) -> bool {
         true
     }
 
-    /// Whether it holds a length, stiffer than any body.
+    /// Tests whether it controls a length, with a stiffness above that of any body.
     fn holds_length(&self) -> bool {
         false
     }
 
-    /// Whether its stiffness joins vertices that are near each other, so that multigrid on the voxels converges with it.
+    /// Tests whether its stiffness couples nearby vertices only, so that multigrid on the voxels converges with it.
     fn is_local(&self) -> bool {
         true
     }
 
-    /// Whether the forces depend on the way to where the body is. What it remembers is that of all copies of a problem.
+    /// Tests whether the forces depend on the load path.
     fn depends_on_way(&self) -> bool {
         false
     }
 
-    /// Whether the forces depend on where the body is. Those of a dead load do not.
+    /// Tests whether the forces depend on the present positions. Those of a dead load do not.
     fn follows(&self) -> bool {
         false
     }
 
-    /// Whether the forces have a potential, so that their derivative is symmetric.
+    /// Tests whether the forces have a potential, so that their derivative is symmetric.
     fn is_conservative(&self) -> bool {
         true
     }
 
-    /// Whether it is proportional to the masses.
+    /// Tests whether it is proportional to the masses.
     fn is_weight(&self) -> bool {
         false
     }
 
-    /// Whether its work is a pressure times a volume, which volume control prescribes instead.
+    /// Tests whether its work is a pressure times a volume, which volume control prescribes instead.
     fn is_pressure(&self) -> bool {
         false
     }
 
-    /// Hands `factor` times minus the derivative of the forces by positions (N/m) to `visit`, piece by
-    /// piece as [`crate::Term::visit_stiffness`] does.
+    /// Visits the element matrices of `factor` times minus the derivative of the forces by positions (N/m), as
+    /// [`crate::Term::visit_stiffness`] does.
     fn visit_stiffness(&self, _positions: &[Vec3], _factor: f64, _visit: Visitor<'_>) {}
 
-    /// Hands over the vertices of every piece of that derivative.
+    /// Visits the vertices of every element of that derivative.
     fn visit_pattern(&self, _visit: &mut dyn FnMut(&[u32])) {}
 
-    /// The same load on vertices with other numbers.
+    /// This load on renumbered vertices.
     fn renumbered(&self, number: &dyn Fn(u32) -> u32) -> Box<dyn ExternalForce>;
 }
 
@@ -128,7 +128,7 @@ pub enum LoadKind {
 }
 
 impl LoadKind {
-    /// The same where what has no potential, but would if something of it stayed as it is, stays during a step.
+    /// This load with its friction bounds held constant during a step, which gives a tendon with friction a potential.
     pub(crate) fn held(&self) -> Self {
         match self {
             Self::Tendon(tendon) => Self::Tendon(tendon.held()),
@@ -198,7 +198,7 @@ impl From<PointForces> for LoadKind {
 /// A load with its history.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
-    /// What it does.
+    /// The kind of load, with its data.
     pub kind: LoadKind,
     /// The factor over time.
     pub history: History,

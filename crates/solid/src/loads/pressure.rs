@@ -15,11 +15,11 @@ pub struct Pressure {
     /// Tetrahedra of cut voxels with the part of each that belongs to the cavity: the pressure
     /// works on the volume that the triangles enclose plus these parts.
     pub voids: Vec<([u32; 4], f64)>,
-    /// In Pa; positive pushes against the solid.
+    /// The pressure in Pa; positive pushes against the solid.
     pub pressure: f64,
-    /// Whether the triangles are known to enclose a volume, where need be with planes of symmetry through the origin: a rim
-    /// stays in these, so that the cone from the origin over it has no volume and pushes along their normals alone, where
-    /// the rim is held. Left out of scenes, it is found from the triangles.
+    /// Set if the triangles are known to enclose a volume, if need be with planes of symmetry through the origin: a rim
+    /// stays in these, so that the cone from the origin over it has no volume and pushes along their normals alone,
+    /// where the rim is held. Scenes omit it; then it is found from the triangles.
     #[serde(skip)]
     pub closed: bool,
 }
@@ -35,8 +35,8 @@ impl ExternalForce for Pressure {
         check_indices("vertex of a pressure triangle", corners, vertices)
     }
 
-    /// Each triangle hands a third of `−p A n` to each corner (`A n` the current area vector), which on a
-    /// closed surface is `p` times the gradient of the enclosed volume and sums to zero.
+    /// Each triangle contributes a third of `−p A n` to each corner (`A n` the current area vector), which on a closed
+    /// surface is `p` times the gradient of the enclosed volume and sums to zero.
     fn add_forces(&self, on: Vertices<'_>, factor: f64, forces: &mut [Vec3]) {
         let pressure = factor * self.pressure;
         for triangle in &self.triangles {
@@ -129,7 +129,7 @@ pub fn enclosed_volume(
     within + cavity_volume(triangles, positions)
 }
 
-/// Whether triangles close a volume: every edge is met once from each side.
+/// Tests whether triangles enclose a volume: every edge is met once from each side.
 fn is_closed(triangles: &[[u32; 3]]) -> bool {
     let mut edges: Vec<(u32, u32, i8)> = triangles
         .iter()

@@ -1,4 +1,4 @@
-//! From a body to strips: slots for the vertices, then rows of constraints.
+//! Construction of strips from a body: slots for the vertices, then rows of constraints.
 
 use std::ops::Range;
 
@@ -6,21 +6,21 @@ use super::{Kind, MAX_LANES, Strip, Strips};
 use crate::Body;
 use crate::vector::{Vec3, sub};
 
-/// How far a vertex may be from its node and a rest value from its cube's, relative to the cube:
+/// Largest distance of a vertex from its node, and difference of a rest value from its cube's, relative to the cube:
 /// positions are products of integers and the voxel size, exact to rounding.
 const SLACK: f64 = 1e-9;
-/// Constraints of a strip, so that all that share vertices find them in the nearest cache.
+/// Most constraints of a strip, so that all that share vertices find them in the nearest cache.
 const MAX_COUNT: u32 = 64;
-/// Constraints that make a slab worth a thread's time.
+/// Number of constraints that make a slab worth a thread's time.
 const SLAB_CONSTRAINTS: usize = 20_000;
-/// Slots for each node that a small body may take to have its nodes in a box.
+/// Most slots for each node that a small body may take to have its nodes in a box.
 const BOX_SLOTS: usize = 2;
-/// The lattice may have this many nodes along an axis, because keys keep 20 bits for each.
+/// Most nodes of the grid along an axis, because keys keep 20 bits for each.
 const MAX_NODES: f64 = (1 << 20) as f64;
 
 impl Strips {
-    /// The strips of a body whose vertices are nodes of one cubic lattice along the axes and which holds
-    /// nothing but edge and volume constraints; `None` for any other.
+    /// The strips of a body whose vertices are nodes of one cubic grid along the axes and which has no terms but edge
+    /// and volume constraints; `None` for any other.
     pub fn of(body: &Body) -> Option<Self> {
         let other = !body.bricks().is_empty() || !body.membranes().is_empty();
         if other || body.attached().next().is_some() || body.edges().is_empty() {
@@ -95,7 +95,7 @@ impl Strips {
         Some(strips)
     }
 
-    /// Every slot that a kernel touches exists: what makes their unchecked loads and stores sound.
+    /// Checks that every slot that a kernel touches exists, which makes their unchecked loads and stores sound.
     fn check(&self) {
         for strip in &self.strips {
             let lanes = padded(strip.count);
@@ -116,7 +116,7 @@ fn padded(count: u32) -> usize {
     (count as usize).next_multiple_of(MAX_LANES)
 }
 
-/// A body on a lattice.
+/// A body whose vertices are nodes of a cubic grid.
 struct Lattice<'a> {
     body: &'a Body,
     /// The node `(i, j, k)` of each vertex. The longest axis of the body is `k`, which fills lanes; the
@@ -128,11 +128,11 @@ struct Lattice<'a> {
     side: f64,
     slot_of: Vec<u32>,
     slots: usize,
-    /// Whether the slots are those of a box, so that rows of several layers line up.
+    /// Set if the slots are those of a box, so that rows of several layers line up.
     boxed: bool,
 }
 
-/// Constraints of a kind, each next to the one before or behind a gap.
+/// Constraints of one kind, each next to the one before or behind a gap.
 struct Row {
     members: Range<usize>,
     count: u32,
@@ -203,15 +203,14 @@ impl<'a> Lattice<'a> {
         self.nodes[self.vertices(index)[0] as usize]
     }
 
-    /// From the first vertex to the others, in nodes.
+    /// Steps from the first vertex to the others, in nodes.
     fn steps(&self, index: usize) -> [[i32; 3]; 3] {
         let [start, others @ ..] = self.vertices(index).map(|v| self.nodes[v as usize]);
         others.map(|node| std::array::from_fn(|axis| node[axis] - start[axis]))
     }
 
-    /// What constraints of one strip have in common: where their vertices are relative to each other, and
-    /// in which part of a layer. `None` for one that is not within a cube, or not unstressed there: it
-    /// could reach past the neighboring layer.
+    /// Key shared by the constraints of one strip: the relative positions of their vertices, and the part of a layer.
+    /// `None` for one that is not within a cube, or not unstressed there: it could reach past the neighboring layer.
     fn kind(&self, index: usize) -> Option<u32> {
         let start = self.start(index);
         let is_tet = index >= self.body.edges().len();
@@ -249,7 +248,7 @@ impl<'a> Lattice<'a> {
             v[2] * w[0] - v[0] * w[2],
             v[0] * w[1] - v[1] * w[0],
         ];
-        // The axes may have changed hands, so the sign says nothing.
+        // The order of the axes may be left-handed, so the sign carries no information.
         let six_volumes = (0..3).map(|axis| u[axis] * across[axis]).sum::<i32>().abs();
         Kind::Tet(self.side.powi(3) / 6.0 * f64::from(six_volumes))
     }
@@ -277,8 +276,8 @@ impl<'a> Lattice<'a> {
             if let Some(row) = rows.last_mut() {
                 let offset = corners[0].wrapping_sub(start[0]);
                 let aligned = (0..4).all(|c| corners[c] == start[c].wrapping_add(offset));
-                // What fits in the lanes that are open anyway costs nothing; behind a gap that reaches past
-                // them a strip of its own wastes none.
+                // A gap within the lanes that are open anyway costs nothing; behind a gap that reaches past them a
+                // strip of its own wastes none.
                 let worth =
                     offset == row.count || offset < row.count.next_multiple_of(MAX_LANES as u32);
                 if key >> 32 == kind && aligned && worth && offset < MAX_COUNT {
@@ -297,7 +296,7 @@ impl<'a> Lattice<'a> {
     }
 }
 
-/// The places of nodes that are even along all axes in a box of so many nodes, and the slots of the box.
+/// The number of places for nodes that are even along all axes in a box of so many nodes, and of the slots of the box.
 fn box_sizes(counts: [usize; 3]) -> [usize; 2] {
     let part = counts.map(|n| n.div_ceil(2)).iter().product::<usize>();
     [part, 8 * (part + MAX_LANES - 1)]
@@ -322,9 +321,9 @@ fn number_in_box(nodes: &[[i32; 3]], counts: [usize; 3]) -> (Vec<u32>, usize) {
 
 /// The slot of each node, and the number of slots.
 ///
-/// A row of nodes keeps its places for even `k` and for odd `k` in step: node `(i, j, 2m)` and node
-/// `(i, j, 2m + 1)` have the same place within their parts of the layer, used or not. A part ends with
-/// slots for lanes past its end, so that these never hold what another corner of their batch moves.
+/// A row of nodes keeps its places for even `k` and for odd `k` in step: node `(i, j, 2m)` and node `(i, j, 2m + 1)`
+/// have the same place within their parts of the layer, used or not. A part ends with slots for lanes past its end, so
+/// that these never hold vertices that another corner of their batch moves.
 fn number(nodes: &[[i32; 3]]) -> (Vec<u32>, usize) {
     let key = |&[i, j, k]: &[i32; 3]| {
         let [i, j, m] = [i, j, k >> 1].map(|n| n as u64);

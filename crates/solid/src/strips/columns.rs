@@ -34,7 +34,7 @@ impl Columns {
         self.axes.iter_mut().for_each(|axis| axis.fill(0.0));
     }
 
-    /// Takes over the vectors of another.
+    /// Copies the vectors of another.
     pub fn copy_from(&mut self, other: &Self) {
         for (axis, from) in self.axes.iter_mut().zip(&other.axes) {
             axis.copy_from_slice(from);
@@ -63,12 +63,12 @@ impl Columns {
         }
     }
 
-    /// Where the arrays begin, for kernels.
+    /// Pointers to the arrays, for kernels.
     pub(super) fn pointers(&self) -> [*const f64; 3] {
         self.axes.each_ref().map(|axis| axis.as_ptr())
     }
 
-    /// Where the arrays begin, for kernels.
+    /// Mutable pointers to the arrays, for kernels.
     pub(super) fn pointers_mut(&mut self) -> [*mut f64; 3] {
         self.axes.each_mut().map(|axis| axis.as_mut_ptr())
     }

@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 use super::{Columns, Kind, Strip, Strips, slabs};
 use crate::lanes::{Lanes, Spans, Volumes};
 
-/// Pointers that threads share: the slabs that run at the same time touch different slots and places.
+/// Pointers shared by threads: the slabs that run at the same time touch different slots and places.
 #[derive(Clone, Copy)]
 pub(super) struct Shared<T>(pub T);
 
@@ -15,7 +15,7 @@ pub(super) struct Shared<T>(pub T);
 unsafe impl<T> Send for Shared<T> {}
 unsafe impl<T> Sync for Shared<T> {}
 
-/// What a kernel does with a constraint in each lane, its first one being number `n` of the strip.
+/// Operation on a constraint in each lane, the first one being number `n` of the strip.
 pub(super) trait Kernel: Copy {
     /// # Safety
     ///
@@ -25,7 +25,7 @@ pub(super) trait Kernel: Copy {
 
     /// # Safety
     ///
-    /// As [`Kernel::edges`].
+    /// The conditions of [`Kernel::edges`] hold.
     unsafe fn tets<S: Simd>(self, lanes: Lanes<S>, strip: &Strip, volume: f64, n: usize);
 }
 
@@ -78,8 +78,8 @@ impl Strips {
     ///
     /// # Safety
     ///
-    /// The pointers of the kernel lead to arrays of [`Strips::slots`] and [`Strips::places`] numbers, and
-    /// what it writes is its own.
+    /// The pointers of the kernel lead to arrays of [`Strips::slots`] and [`Strips::places`] numbers, and nothing else
+    /// accesses the arrays that it writes.
     pub(super) unsafe fn run<K: Kernel>(&self, kernel: K) {
         let kernel = Shared(kernel);
         let task = |range: Range<usize>| {
@@ -103,7 +103,7 @@ impl Strips {
         );
     }
 
-    /// Adds the elastic forces in N, as [`crate::elastic::add_constraint_forces`] does.
+    /// Adds the elastic forces in N, as [`crate::elastic::add_forces`] does.
     pub fn add_forces(&self, positions: &Columns, forces: &mut Columns) {
         self.check_slots(&[positions, forces]);
         let kernel = Forces::<false> {
@@ -131,12 +131,12 @@ impl Strips {
             stiffness: self.stiffness.as_ptr(),
             multipliers: multipliers.as_mut_ptr(),
         };
-        // SAFETY: lengths were checked, and what is written is borrowed alone.
+        // SAFETY: lengths were checked, and the outputs are borrowed exclusively.
         unsafe { self.run(kernel) }
     }
 
-    /// Adds to `sums`, slot by slot, the bounds on row sums of the stiffness matrix (N/m) that
-    /// [`crate::elastic::row_sums`] gives.
+    /// Adds to `sums`, slot by slot, the bounds on row sums of the stiffness matrix (N/m) of
+    /// [`crate::elastic::row_sums`].
     pub fn add_row_sums(&self, positions: &Columns, sums: &mut [f64]) {
         self.check_slots(&[positions]);
         assert_eq!(sums.len(), self.slots, "sums of another body");
@@ -170,11 +170,11 @@ impl Strips {
 }
 
 impl<S: Simd> Volumes<S> {
-    /// Of the tetrahedra of a strip from number `n` on.
+    /// The tetrahedra of a strip from number `n` on.
     ///
     /// # Safety
     ///
-    /// As [`Kernel::edges`].
+    /// The conditions of [`Kernel::edges`] hold.
     #[inline(always)]
     pub(super) unsafe fn new(
         lanes: Lanes<S>,
@@ -196,11 +196,11 @@ impl<S: Simd> Volumes<S> {
 }
 
 impl<S: Simd> Spans<S> {
-    /// Of the edges of a strip from number `n` on.
+    /// The edges of a strip from number `n` on.
     ///
     /// # Safety
     ///
-    /// As [`Kernel::edges`].
+    /// The conditions of [`Kernel::edges`] hold.
     #[inline(always)]
     pub(super) unsafe fn new(
         lanes: Lanes<S>,

@@ -1,4 +1,4 @@
-//! Constraints of voxels, laid out for processors that do several at once.
+//! Constraints of voxels, laid out for SIMD processors, which evaluate several at once.
 //!
 //! All voxels are equal cubes, so constraints repeat along the grid. A [`Strip`] is a row of like
 //! constraints (the same edge of every second voxel, the same tetrahedron of every second voxel) whose
@@ -7,18 +7,17 @@
 //!
 //! # Slots
 //!
-//! Nodes of the lattice are sorted by `(i, j mod 2, k mod 2, j, k)`, with `k` along the body's longest
-//! axis. The split into five tetrahedra repeats every second voxel, and so do the corners of a kind: all
-//! even nodes of a row come first, then all odd ones. Neighboring rows with the same ends follow each
-//! other without a break, so that short rows of a block still fill the lanes. Constraints of one strip share
-//! no vertex: corners of a constraint differ in `(i, j mod 2, k mod 2)`, or two constraints would hold
-//! the same slot.
+//! Nodes of the grid are sorted by `(i, j mod 2, k mod 2, j, k)`, with `k` along the body's longest axis. The split
+//! into five tetrahedra repeats every second voxel, and so do the corners of a kind: all even nodes of a row come
+//! first, then all odd ones. Neighboring rows with the same ends follow each other without a break, so that short rows
+//! of a block still fill the lanes. Constraints of one strip share no vertex: corners of a constraint differ in
+//! `(i, j mod 2, k mod 2)`, or two constraints would hold the same slot.
 //!
 //! A small body has all nodes of one parity along each axis in a box instead, as many as it would have
 //! if it filled its bounds, so that strips run on over rows and layers of any length.
 //!
-//! Where a strip has a gap within its lanes (the end of a row, a missing voxel), or does not fill the last,
-//! its place holds a constraint without stiffness, which moves nothing.
+//! A gap of a strip within its lanes (the end of a row, a missing voxel), or at its end where it does not fill the last
+//! lanes, is filled by a constraint without stiffness, which moves nothing.
 //!
 //! # Slabs
 //!
@@ -54,7 +53,7 @@ struct Strip {
     kind: Kind,
 }
 
-/// What the constraints of a strip are, with their common rest value.
+/// Kind of the constraints of a strip, with their common rest value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     /// `|x_a − x_b| − ℓ`, with the rest length `ℓ` in m.
@@ -72,7 +71,7 @@ pub struct Strips {
     strips: Vec<Strip>,
     /// The strips of each slab.
     slabs: Vec<Range<usize>>,
-    /// N/m for edges, Pa/m³ for volumes; zero where a gap is filled.
+    /// Stiffness of each place, N/m for edges, Pa/m³ for volumes; zero where a gap is filled.
     stiffness: Vec<f64>,
     /// The constraint of the body in each place: an index into the edges, or the number of edges plus
     /// one into the tetrahedra; `u32::MAX` where a gap is filled.
@@ -81,13 +80,13 @@ pub struct Strips {
 }
 
 impl Strips {
-    /// The number of slots: vertices, and what pads them.
+    /// The number of slots: vertices and padding.
     pub fn slots(&self) -> usize {
         self.slots
     }
 
-    /// The same constraints taken one at a time with plain multiplications and additions: the same bits on
-    /// every processor, WebAssembly included, a few times slower where there are lanes.
+    /// These constraints evaluated one at a time with plain multiplications and additions: the same bits on every
+    /// processor, WebAssembly included, a few times slower where there are lanes.
     #[must_use]
     pub fn deterministic(mut self) -> Self {
         self.arch = pulp::Arch::Scalar;
@@ -117,8 +116,8 @@ impl Strips {
         .map(|&index| index as usize)
     }
 
-    /// Puts the vectors of vertices into their slots, and zero into the others: what a run that blew up
-    /// left there would spoil the constraints without stiffness.
+    /// Puts the vectors of vertices into their slots, and zero into the others: values left there by a run that blew up
+    /// would spoil the constraints without stiffness.
     pub fn load(&self, rows: &[Vec3], columns: &mut Columns) {
         columns.clear();
         for (&slot, row) in self.slot_of.iter().zip(rows) {

@@ -1,4 +1,4 @@
-//! Which slabs run when, and on which threads.
+//! Order of the slabs, and their distribution to threads.
 
 use std::ops::Range;
 

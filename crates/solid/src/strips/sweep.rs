@@ -6,7 +6,7 @@ use super::kernels::Kernel;
 use super::{Columns, Strip, Strips};
 use crate::lanes::{Lanes, Spans, Volumes, Wide};
 
-/// What a sweep works on.
+/// Data of a sweep.
 ///
 /// Each constraint in turn takes
 /// `Δλ = −(k (C + τ/h ∇C·Δx) + λ) / (k (1 + τ/h) h² ∇C·M⁻¹∇C + 1)` and `Δx = h² M⁻¹ ∇C Δλ`, with the
@@ -19,11 +19,11 @@ pub struct Sweep<'a> {
     pub start: &'a Columns,
     /// One over the mass (1/kg) for each axis, zero where it is held.
     pub inverse_masses: &'a Columns,
-    /// Whether the inverse masses are the same for all axes: the first is then taken for all.
+    /// Set if the inverse masses are the same for all axes: the first is then taken for all.
     pub isotropic: bool,
     /// Multipliers in N and Pa.
     pub multipliers: &'a mut [f64],
-    /// Whether multipliers are written back, for a sweep to come.
+    /// Set if multipliers are written back, for a later sweep.
     pub keep: bool,
     /// Length of the substep `h` in s.
     pub substep: f64,
@@ -56,7 +56,7 @@ impl Strips {
             square: sweep.substep * sweep.substep,
             lag,
         };
-        // SAFETY: `sweep` has checked the lengths, and what is written is borrowed alone.
+        // SAFETY: `sweep` has checked the lengths, and the outputs are borrowed exclusively.
         unsafe { self.run(kernel) }
     }
 }
@@ -83,7 +83,7 @@ impl<const ISOTROPIC: bool, const LAG: bool> Projection<ISOTROPIC, LAG> {
 
     /// # Safety
     ///
-    /// As [`Kernel::edges`].
+    /// The conditions of [`Kernel::edges`] hold.
     #[inline(always)]
     unsafe fn weights<S: Simd>(self, lanes: Lanes<S>, slot: usize) -> Wide<S> {
         unsafe {
@@ -122,7 +122,7 @@ impl<const ISOTROPIC: bool, const LAG: bool> Projection<ISOTROPIC, LAG> {
     ///
     /// # Safety
     ///
-    /// As [`Kernel::edges`].
+    /// The conditions of [`Kernel::edges`] hold.
     #[inline(always)]
     unsafe fn push<S: Simd>(
         self,

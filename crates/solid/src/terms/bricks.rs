@@ -7,7 +7,7 @@ use crate::hyperelastic::HyperelasticMaterial;
 use crate::ties::Ties;
 use crate::vector::Vec3;
 
-/// Voxels whose forces, or stiffness matrices of 4.6 kB, are kept until they are added.
+/// Batch sizes: voxels whose forces, or stiffness matrices of 4.6 kB, are kept until they are added.
 pub(crate) const FORCE_BATCH: usize = 8192;
 const STIFFNESS_BATCH: usize = 512;
 
@@ -16,16 +16,16 @@ const STIFFNESS_BATCH: usize = 512;
 pub struct Bricks {
     /// Voxels of one color after the other.
     pub bricks: Vec<Brick>,
-    /// What the numbers of their materials stand for.
+    /// The materials to which [`Brick::material`] refers.
     pub materials: Vec<HyperelasticMaterial>,
-    /// Which of their vertices follow others.
+    /// Ties of their vertices that follow others (hanging nodes).
     pub(crate) ties: Ties,
-    /// Whether the material of any of them softens.
+    /// Set if the material of any of them softens.
     softens: bool,
 }
 
 impl Bricks {
-    /// Voxels as they begin.
+    /// Voxels in their initial state.
     pub(crate) fn new(
         bricks: Vec<Brick>,
         materials: Vec<HyperelasticMaterial>,
@@ -43,12 +43,12 @@ impl Bricks {
         }
     }
 
-    /// Whether any voxel softens.
+    /// Tests whether any voxel softens.
     pub fn soften(&self) -> bool {
         self.softens
     }
 
-    /// The largest isochoric energy (J/m³) that each voxel has had, if any softens.
+    /// The peaks: the largest isochoric energy (J/m³) so far of each voxel, if any softens.
     pub fn peaks(&self) -> Option<Vec<f64>> {
         let peaks = self.bricks.iter().map(|brick| brick.peak);
         self.softens.then(|| peaks.collect())
@@ -61,7 +61,7 @@ impl Bricks {
         }
     }
 
-    /// The peaks (J/m³) after a state at `positions`.
+    /// The peaks (J/m³) after accepting a state at `positions`.
     pub(crate) fn peaks_after(&self, positions: &[Vec3]) -> Vec<f64> {
         let positions = &*self.ties.seen(positions);
         let mut peaks = Vec::with_capacity(self.bricks.len());
@@ -84,8 +84,8 @@ impl Bricks {
         &self.materials[brick.material as usize]
     }
 
-    /// The response within a step: the elastic energy and the potential of the forces in J; adds the forces
-    /// in N and sets the `pressures` in Pa.
+    /// The response within a time step: the elastic energy and the potential of the forces in J; adds the forces in N
+    /// and sets the `pressures` in Pa.
     pub fn respond(
         &self,
         positions: &[Vec3],
@@ -109,7 +109,7 @@ impl Bricks {
         (elastic, potential)
     }
 
-    /// The tangent of that response.
+    /// Visits the element matrices of the tangent of that response.
     pub fn visit_tangent_within(
         &self,
         positions: &[Vec3],
@@ -142,7 +142,7 @@ impl Bricks {
         self.bricks.iter().map(pressure).collect()
     }
 
-    /// The strains at `positions` with other pressures in Pa, one for each voxel.
+    /// The strains at `positions` with prescribed pressures in Pa, one for each voxel.
     pub(crate) fn with_pressures(&self, positions: &[Vec3], pressures: &[f64]) -> Strain {
         let positions = &*self.ties.seen(positions);
         let pairs = self.bricks.iter().zip(pressures);
@@ -152,7 +152,7 @@ impl Bricks {
         Strain::Voxels(pairs.map(state).collect())
     }
 
-    /// The voxels from `first` on, with what is carried of them.
+    /// The voxels from `first` on, with their carried strains.
     fn together<'a>(
         &'a self,
         first: usize,
@@ -189,7 +189,7 @@ impl Bricks {
         self.ties.hand_over(forces);
     }
 
-    /// In the order of the vertices, so that neighbors meet in the cache.
+    /// Visits element matrices in the order of the vertices, so that neighbors meet in the cache.
     fn visit_elements_of(
         &self,
         positions: &[Vec3],
@@ -235,7 +235,7 @@ impl Bricks {
         );
     }
 
-    /// Strains after a step `moves`, see [`Brick::carry`].
+    /// Predicts strains after a step `moves`, see [`Brick::carry`].
     fn carried(
         &self,
         positions: &[Vec3],
@@ -258,7 +258,7 @@ impl Bricks {
         states
     }
 
-    /// Works on voxels on all threads and takes the results in their order.
+    /// Runs work on voxels on all threads and takes the results in their order.
     fn each<U: Send>(
         &self,
         batch: usize,

@@ -15,8 +15,8 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// `C = |x_a − x_b| − ℓ` (m) and its gradient with respect to `x_a`; the gradient with respect
-    /// to `x_b` is its negative. Two vertices on one spot have no direction and the gradient zero.
+    /// `C = |x_a − x_b| − ℓ` (m) and its gradient with respect to `x_a`; the gradient with respect to `x_b` is its
+    /// negative. Two coincident vertices have no direction and the gradient zero.
     #[inline(always)]
     pub fn evaluate(&self, positions: &[Vec3]) -> (f64, Vec3) {
         let [a, b] = self.vertices.map(|v| positions[v as usize]);
@@ -26,8 +26,8 @@ impl Edge {
         (length - self.length, scale(inverse, along))
     }
 
-    /// The Hessian of `k C²/2`: `k (n nᵀ + (C/L)(1 − n nᵀ))` between a vertex and itself. A `change` of
-    /// the caller's takes the place of `C`.
+    /// The Hessian of `k C²/2`: `k (n nᵀ + (C/L)(1 − n nᵀ))` between a vertex and itself. A given `change` replaces
+    /// `C`.
     fn hessian(&self, positions: &[Vec3], change: Option<f64>) -> [[f64; 6]; 6] {
         let (stretch, n) = self.evaluate(positions);
         let length = stretch + self.length;
@@ -115,7 +115,7 @@ impl Term for Edges {
         Some(Strain::Numbers(changes.collect()))
     }
 
-    /// A constraint is linear in its strain, so that its forces are the true ones.
+    /// Forces need no prediction: a constraint is linear in its strain, so that they are those at `positions`.
     fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
         for (edge, change) in self.0.iter().zip(strain.numbers()) {
             let matrix = edge.hessian(positions, Some(*change));

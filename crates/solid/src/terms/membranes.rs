@@ -10,7 +10,7 @@ use crate::vector::Vec3;
 pub struct Membranes(pub Vec<Membrane>);
 
 impl Membranes {
-    /// Says how stiff what is around each vertex is, in N/m.
+    /// Sets the stiffness of the material around each vertex, in N/m.
     pub(crate) fn set_behind(&mut self, behind: &[f64]) {
         for membrane in &mut self.0 {
             let around = membrane.vertices().map(|v| behind[v as usize]);
@@ -18,7 +18,7 @@ impl Membranes {
         }
     }
 
-    /// Hands over the stiffness of every membrane where it is taut and hardly strained.
+    /// Visits the stiffness of every membrane, taut and hardly strained.
     fn visit_taut_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
         for membrane in &self.0 {
             let matrix = membrane.taut_stiffness(positions);
@@ -60,7 +60,7 @@ impl Term for Membranes {
         });
     }
 
-    /// That of taut membranes.
+    /// Adds the product with the stiffness of taut membranes.
     fn add_product(&self, positions: &[Vec3], direction: &[Vec3], product: &mut [Vec3]) {
         self.visit_taut_stiffness(positions, &mut |vertices, matrix| {
             add_product(vertices, matrix, direction, product);

@@ -1,11 +1,10 @@
 //! Blocks of like elements, each with an energy.
 //!
-//! A [`crate::Body`] is a list of such terms: those that its mesh brings (edges, tetrahedra, voxels,
-//! membranes), and any that are attached to it. Solvers know a term by this trait, so a new kind of element is
-//! one file that implements it and a variant of [`Attachment`], by which bindings and scenes know it; terms of
-//! other crates go through [`crate::Body::attach`]. Dispatch is per block, never per element.
-//! What a solver has a quicker form of, it asks the body for by name: strips of edges and tetrahedra,
-//! multigrid on voxels, the inertia of membranes.
+//! A [`crate::Body`] is a list of such terms: those built from its mesh (edges, tetrahedra, voxels, membranes), and any
+//! that are attached to it. Solvers know a term by this trait, so a new kind of element is one file that implements it
+//! and a variant of [`Attachment`], by which bindings and scenes know it; terms of other crates go through
+//! [`crate::Body::attach`]. Dispatch is per block, never per element. A solver with a quicker form of some terms asks
+//! the body for them by name: strips of edges and tetrahedra, multigrid on voxels, the inertia of membranes.
 
 mod bricks;
 mod edges;
@@ -35,9 +34,9 @@ pub use tets::{Tet, Tets};
 
 /// A block of like elements.
 ///
-/// [`crate::conformance::check_term`] holds every term to what is promised here.
+/// [`crate::conformance::check_term`] checks these contracts for every term.
 pub trait Term: Debug + Send + Sync {
-    /// What its elements are called.
+    /// The name of its elements.
     fn name(&self) -> &'static str;
 
     /// Checks numbers and indices against the number of vertices.
@@ -51,18 +50,18 @@ pub trait Term: Debug + Send + Sync {
         outcome
     }
 
-    /// Whether it ties the body to fixed points, so that moving the whole body costs energy.
+    /// Tests whether it ties the body to fixed points, so that moving the whole body costs energy.
     fn is_anchored(&self) -> bool {
         false
     }
 
-    /// Whether it acts on single vertices or between surfaces that are near each other, so that multigrid on the voxels
+    /// Tests whether it acts on single vertices or between nearby surfaces only, so that multigrid on the voxels
     /// converges with it.
     fn is_local(&self) -> bool {
         false
     }
 
-    /// Hands over the vertices of every element: its stiffness joins no others.
+    /// Visits the vertices of every element: its stiffness couples no others.
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32]));
 
     /// The energy in J.
@@ -71,10 +70,10 @@ pub trait Term: Debug + Send + Sync {
     /// Adds the forces in N, minus the gradient of the energy.
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]);
 
-    /// Hands the stiffness in N/m, the Hessian of the energy, to `visit`, an element at a time.
+    /// Visits the element matrices of the stiffness in N/m, the Hessian of the energy, one at a time.
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>);
 
-    /// The same, as many elements at a time as suits.
+    /// Visits the element matrices of the stiffness in batches of a size that the term chooses.
     fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
         self.visit_stiffness(positions, &mut |vertices, matrix| {
             visit(Elements {
@@ -85,28 +84,29 @@ pub trait Term: Debug + Send + Sync {
         });
     }
 
-    /// The same with or without the stress that is there, which may make it indefinite.
+    /// Visits the element matrices of the tangent stiffness, with or without its geometric part, which may make it
+    /// indefinite.
     fn visit_tangent(&self, positions: &[Vec3], _tangent: Tangent, visit: Visitor<'_>) {
         self.visit_stiffness(positions, visit);
     }
 
-    /// Adds for every vertex a bound in N/m on the row sum of the stiffness where the term is as stiff as it
-    /// gets near `positions`.
+    /// Adds for every vertex a bound in N/m on the row sum of the stiffness, where the term is as stiff as it gets near
+    /// `positions`.
     fn add_row_sums(&self, positions: &[Vec3], sums: &mut [f64]) {
         self.visit_stiffness(positions, &mut |vertices, matrix| {
             add_row_sums(vertices, matrix, sums);
         });
     }
 
-    /// Adds the product with `direction` of the stiffness that the material has at `positions`.
+    /// Adds the product of the stiffness at `positions` with `direction`; terms may omit its geometric part.
     fn add_product(&self, positions: &[Vec3], direction: &[Vec3], product: &mut [Vec3]) {
         self.visit_stiffness(positions, &mut |vertices, matrix| {
             add_product(vertices, matrix, direction, product);
         });
     }
 
-    /// The strains that a step `moves` from `positions` leads to, to first order, as [`crate::mixed`] carries
-    /// them along; `None` for a term that is taken as it is where the step ends.
+    /// Predicts the strains after a step `moves` from `positions`, to first order, as carried by [`crate::mixed`];
+    /// `None` for a term that is evaluated at the end of the step.
     fn predict(&self, _positions: &[Vec3], _moves: &[Vec3]) -> Option<Strain> {
         None
     }
@@ -116,12 +116,12 @@ pub trait Term: Debug + Send + Sync {
         self.add_forces(positions, forces);
     }
 
-    /// Hands over the tangent in N/m at `positions` with the stress of predicted strains.
+    /// Visits the element matrices of the tangent in N/m at `positions` with the stress of predicted strains.
     fn visit_predicted_stiffness(&self, _strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
         self.visit_stiffness(positions, visit);
     }
 
-    /// The same, as many elements at a time as suits.
+    /// Visits the element matrices of that tangent in batches of a size that the term chooses.
     fn visit_predicted_elements(
         &self,
         strain: &Strain,
@@ -137,8 +137,8 @@ pub trait Term: Debug + Send + Sync {
         });
     }
 
-    /// Carries strains on by a step `moves` from `positions`; `false` where [`Term::predict`] there says all that there is
-    /// to know.
+    /// Updates carried strains by a step `moves` from `positions`; returns `false` if [`Term::predict`] there gives all
+    /// that is needed.
     fn carry(&self, _strain: &mut Strain, _positions: &[Vec3], _moves: &[Vec3]) -> bool {
         false
     }
@@ -163,7 +163,7 @@ impl Attachment {
         }
     }
 
-    /// Says how stiff what is around each vertex is, in N/m.
+    /// Sets the stiffness of the material around each vertex, in N/m.
     pub(crate) fn set_behind(&mut self, behind: &[f64]) {
         match self {
             Self::Springs(_) => {}
@@ -183,8 +183,8 @@ impl std::ops::Deref for Attachment {
     }
 }
 
-/// Predicted strains of all elements of a term, unknowns of their own ([`crate::mixed`]): plain data that only the term knows
-/// how to read.
+/// Predicted strains of all elements of a term, unknowns of their own ([`crate::mixed`]): plain data that only the term
+/// can read.
 #[derive(Debug, Clone)]
 pub enum Strain {
     /// A number for each element: a change of length or of volume, a pressure.
@@ -196,7 +196,7 @@ pub enum Strain {
 }
 
 impl Strain {
-    /// The numbers of a term that predicts one for each element; none of another term's.
+    /// The numbers of a term that predicts one for each element; empty for other terms.
     pub fn numbers(&self) -> &[f64] {
         match self {
             Self::Numbers(numbers) => numbers,

@@ -16,7 +16,7 @@ use crate::vector::{Vec3, axpy, norm, scale};
 pub struct Spring {
     /// The vertices that it pulls at, each once.
     pub vertices: Vec<u32>,
-    /// A weight for each.
+    /// The weight of each vertex.
     pub weights: Vec<f64>,
     /// The fixed end in m.
     pub anchor: Vec3,
@@ -47,7 +47,7 @@ impl Spring {
         Ok(())
     }
 
-    /// Its stretch in m and the unit vector along it, which is 0 where both ends are on one spot.
+    /// Its stretch in m and the unit vector along it, which is 0 where both ends coincide.
     fn stretch(&self, positions: &[Vec3]) -> (f64, Vec3) {
         let mut along = scale(-1.0, self.anchor);
         for (vertex, weight) in self.vertices.iter().zip(&self.weights) {
@@ -58,8 +58,8 @@ impl Spring {
         (length - self.length, scale(inverse, along))
     }
 
-    /// `k (n nᵀ + c (1 − n nᵀ))`, the derivative of its force by `d`, with `c = 1 − L/|d|` for the exact one and
-    /// 0 without the stress that is there. At `|d| = 0` a spring of no length is alike in all directions.
+    /// `k (n nᵀ + c (1 − n nᵀ))`, the derivative of its force by `d`, with `c = 1 − L/|d|` for the exact one and 0
+    /// without the geometric part. At `|d| = 0` a spring of no length is isotropic.
     fn derivative(&self, positions: &[Vec3], tangent: Tangent) -> [Vec3; 3] {
         let (stretch, n) = self.stretch(positions);
         let length = stretch + self.length;
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spring_without_length_pulls_alike_in_all_directions() {
+    fn spring_without_length_is_isotropic() {
         let mut spring = spring([1.0, -1.0, 0.0, 0.0], [0.0; 3]);
         spring.length = 0.0;
         let together = [[0.01; 3]; 4];
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_none_are_refused() {
+    fn invalid_numbers_are_refused() {
         let good = spring([0.5, 0.5, -0.5, -0.5], [0.0; 3]);
         assert_eq!(good.check(4), Ok(()));
         assert!(good.check(3).is_err(), "a vertex that is not there");

@@ -16,7 +16,7 @@ pub struct Tet {
 }
 
 impl Tet {
-    /// A tetrahedron of which only the volume is asked.
+    /// A tetrahedron used for its volume alone.
     pub(crate) fn volume_of(vertices: [u32; 4]) -> Self {
         Self {
             vertices,
@@ -44,7 +44,7 @@ impl Tet {
         (dot(u, gb) - self.volume, [ga, gb, gc, gd])
     }
 
-    /// The Hessian of `k C²/2`: `k (∇C ∇Cᵀ + C ∇²V)`. A `change` of the caller's takes the place of `C`.
+    /// The Hessian of `k C²/2`: `k (∇C ∇Cᵀ + C ∇²V)`. A given `change` replaces `C`.
     fn hessian(&self, positions: &[Vec3], change: Option<f64>) -> [[f64; 12]; 12] {
         let (own, gradients) = self.evaluate(positions);
         let change = change.unwrap_or(own);
@@ -64,7 +64,7 @@ impl Tet {
 /// The gradient by `b` is `(c − a) × (d − a)/6`, linear in the others: blocks are `±[difference]×/6`.
 pub(crate) fn volume_hessian(corners: [Vec3; 4]) -> [[f64; 12]; 12] {
     let mut matrix = [[0.0; 12]; 12];
-    // For each pair of corners the edge between the other two, turned so that the sign is right.
+    // For each pair of corners the edge between the other two, directed so that the sign is right.
     for (p, q, from, to) in [
         (0, 1, 3, 2),
         (0, 2, 1, 3),
@@ -157,7 +157,7 @@ impl Term for Tets {
         Some(Strain::Numbers(changes.collect()))
     }
 
-    /// A constraint is linear in its strain, so that its forces are the true ones.
+    /// Forces need no prediction: a constraint is linear in its strain, so that they are those at `positions`.
     fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
         for (tet, change) in self.0.iter().zip(strain.numbers()) {
             let matrix = tet.hessian(positions, Some(*change));

@@ -1,37 +1,37 @@
-//! How the tension falls along a tendon: Coulomb friction at every bend, with a memory of what it was.
+//! Tension along a tendon with Coulomb friction at every bend, which depends on the last accepted tensions.
 //!
 //! At a bend of angle `θ` the tensions on both sides have a ratio between `e^{−μθ}` and `e^{μθ}` (Euler and Eytelwein).
-//! As long as the line sticks at a bend, what is beyond it is a line of its own that stretches from the state that was
-//! accepted last. The tension that this gives is the tension after the bend unless it leaves the cone; then the line
-//! slides over the bend, and the tension is on the side of the cone that is nearest: a return mapping, from the pulled
-//! end on. So a line that is pulled, or whose way becomes shorter, has `T₁ e^{−μΣθ}` along it; one that is let go
-//! afterwards first loses its tension near the pulled end; and one whose way becomes longer has `T₁ e^{μΣθ}`.
+//! As long as the line sticks at a bend, the rest beyond it is a line of its own that stretches from the state that was
+//! accepted last. The tension that this gives is the tension after the bend unless it leaves the friction cone; then
+//! the line slides over the bend, and the tension is on the side of the cone that is nearest: a return mapping, from
+//! the pulled end on. So a line that is pulled, or whose path becomes shorter, has `T₁ e^{−μΣθ}` along it; one that is
+//! eased afterwards first loses its tension near the pulled end; and one whose path becomes longer has `T₁ e^{μΣθ}`.
 
-/// What the tension after a bend follows.
+/// Law for the tension after a bend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Hold {
-    /// The line slides: it is so many times the one before.
+    /// Sliding: this multiple of the tension before the bend.
     Slides(f64),
-    /// The line sticks: it follows what is beyond.
+    /// Sticking: the tension of the line beyond.
     Sticks,
-    /// It differs from the one before by what changes with the length beyond by so many N/m.
+    /// Held friction: the difference from the tension before changes with the length beyond at this rate, N/m.
     Differs(f64),
 }
 
-/// Tensions along a tendon, and what keeps each.
+/// Tensions along a tendon, with the law of each.
 #[derive(Debug)]
 pub(super) struct Tensions {
-    /// Of each segment, from the pulled end on, in N.
+    /// Tension in each segment, from the pulled end on, N.
     pub values: Vec<f64>,
-    /// What happens at each bend.
+    /// The law at each bend.
     pub holds: Vec<Hold>,
     /// The derivative of each value by the first one.
     pub by_first: Vec<f64>,
 }
 
 impl Tensions {
-    /// From the tension at the pulled end, the tension that each segment would have if its bend stuck, and `e^{−μθ}` for
-    /// each bend.
+    /// Tensions from that at the pulled end, the tension that each segment would have if its bend stuck, and `e^{−μθ}`
+    /// for each bend.
     pub fn from_first(first: f64, sticking: &[f64], decays: &[f64]) -> Self {
         let mut found = Self {
             values: vec![first],
@@ -61,11 +61,11 @@ impl Tensions {
         found
     }
 
-    /// From how much longer than without tension all segments together are, in m, where each stretches by its
-    /// `compliance` (m/N): none if that is nothing.
+    /// Tensions from the total stretch of all segments over their lengths without tension, in m, where each stretches
+    /// by its `compliance` (m/N); zero tensions if the stretch is not positive.
     ///
-    /// All tensions grow with the first one, at the least as much as the first does, so that the stretch is a function
-    /// that grows and is linear between kinks: Newton's method, kept between bounds, ends between two of them.
+    /// No tension falls as the first one grows, so that the stretch is a growing function of it, linear between kinks:
+    /// Newton's method, kept between bounds, ends between two of them.
     pub fn from_stretch(
         stretch: f64,
         compliances: &[f64],
@@ -87,7 +87,7 @@ impl Tensions {
                 high = first;
             }
             let next = first + missing / all(&found.by_first);
-            // As near as numbers are to each other.
+            // Equal to rounding.
             let near = 4.0 * f64::EPSILON * high;
             if (next - first).abs() <= near || high - low <= near {
                 return found;
@@ -102,9 +102,9 @@ impl Tensions {
 }
 
 impl Tensions {
-    /// The same as if the line could push: the tensions go on as they are where it becomes slack.
+    /// The tensions of a line that can also push: continued linearly where it becomes slack.
     pub fn taut(self, stretch: f64, compliances: &[f64], sticking: &[f64], decays: &[f64]) -> Self {
-        // Which way it slides there is seen at a tension of nearly nothing.
+        // The directions of sliding at zero are those at a tiny tension.
         let first = self.values[0].max(f64::MIN_POSITIVE / f64::EPSILON);
         let mut found = Self::from_first(first, sticking, decays);
         let pairs = found.by_first.iter().zip(compliances);
@@ -119,13 +119,13 @@ impl Tensions {
 mod tests {
     use super::*;
 
-    /// Of four bends of 30 degrees with a friction of 0.3.
+    /// Decays of four bends of 30 degrees with a friction of 0.3.
     fn decays() -> Vec<f64> {
         vec![libm::exp(-0.3 * std::f64::consts::FRAC_PI_6); 4]
     }
 
     #[test]
-    fn a_line_that_is_pulled_has_the_tension_of_the_capstan() {
+    fn pulled_line_has_the_capstan_tension() {
         let found = Tensions::from_first(8.0, &[0.0; 5], &decays());
         let expected = 8.0 * libm::exp(-0.3 * 4.0 * std::f64::consts::FRAC_PI_6);
         assert!((found.values[4] / expected - 1.0).abs() < 1e-14);
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_let_go_a_little_keeps_its_tension_far_from_the_pulled_end() {
+    fn eased_line_keeps_its_tension_far_from_the_pulled_end() {
         let pulled = Tensions::from_first(8.0, &[0.0; 5], &decays()).values;
         let eased = Tensions::from_first(6.0, &pulled, &decays());
         let ratio = decays()[0];
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn the_stretch_is_that_which_was_asked_for() {
+    fn tensions_match_a_prescribed_stretch() {
         let compliances = [1e-4, 2e-4, 1e-4, 3e-4, 1e-4];
         let mut before = vec![0.0; 5];
         for stretch in [2e-3, 3e-3, 2.9e-3, 2.2e-3, 0.5e-3, 2.5e-3, 0.0, -1.0, 1e-3] {

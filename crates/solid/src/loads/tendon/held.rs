@@ -1,8 +1,9 @@
-//! Friction during a step over time: with bounds from the state before, it has a potential.
+//! Friction during a time step: with bounds from the state before, it has a potential.
 //!
-//! At bend `i` friction takes `q_i = T_i − T_{i+1}`, and the line slides toward the motor by `s_i = −Σ_{j>i} (l_j − l_jⁿ)`,
-//! by what is beyond has become shorter. Coulomb's law with the bounds of the state before is the derivative of
-//! `φ(s)`, `φ' = min(max(qⁿ + k s, low), high)`, which is convex: the return mapping of a step and its energy.
+//! At bend `i` the friction force is `q_i = T_i − T_{i+1}`, and the line slides toward the motor by
+//! `s_i = −Σ_{j>i} (l_j − l_jⁿ)`, the shortening of the path beyond. Coulomb's law with the bounds of the state before
+//! is the derivative of `φ(s)`, `φ' = min(max(qⁿ + k s, low), high)`, which is convex: the return mapping of a step and
+//! its energy.
 
 use super::capstan::{Hold, Tensions};
 use super::polyline::Polyline;
@@ -11,29 +12,29 @@ use super::{Drive, Tendon, dot_of};
 /// A bend during a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HeldBend {
-    /// What friction takes without slip, and what it can take, in N.
+    /// Friction force at zero slip, its lower and its upper bound, N.
     before: f64,
     low: f64,
     high: f64,
     /// The derivatives of these three by the tension at the pulled end.
     by_first: [f64; 3],
-    /// By which it takes more where the line sticks, in N/m.
+    /// Sticking stiffness: slope of the friction force by the slip, N/m.
     stiffness: f64,
 }
 
-/// What friction takes at a bend, in N, and its derivatives.
+/// Friction force at a bend, in N, and its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Taken {
     pub force: f64,
-    /// By the slip, in N/m.
+    /// Derivative by the slip, N/m.
     pub by_slip: f64,
-    /// By the tension at the pulled end.
+    /// Derivative by the tension at the pulled end.
     pub by_first: f64,
 }
 
 impl HeldBend {
-    /// From the tensions ahead of it and beyond before the step, their derivatives by the first one, `e^{−μθ}`, and the stiffness
-    /// of what sticks.
+    /// A bend from the tensions ahead of it and beyond before the step, their derivatives by the first one, `e^{−μθ}`,
+    /// and the sticking stiffness.
     pub fn new(
         [ahead, beyond]: [f64; 2],
         [by_ahead, by_beyond]: [f64; 2],
@@ -50,7 +51,7 @@ impl HeldBend {
         }
     }
 
-    /// Where the line has slid by `slip` (m).
+    /// The friction force at a slip (m).
     pub fn taken(&self, slip: f64) -> Taken {
         let sticking = self.before + self.stiffness * slip;
         let [before, low, high] = self.by_first;
@@ -68,21 +69,21 @@ impl HeldBend {
         }
     }
 
-    /// The integral of that from no slip on, J.
+    /// The integral of the friction force over the slip, J.
     pub fn potential(&self, slip: f64) -> f64 {
         let Taken { force, by_slip, .. } = self.taken(slip);
         if by_slip > 0.0 || self.stiffness == 0.0 {
             return 0.5 * (self.before + force) * slip;
         }
-        // It slides from where it reaches its bound.
+        // Sliding starts where the friction force reaches its bound.
         let until = (force - self.before) / self.stiffness;
         0.5 * (self.before + force) * until + force * (slip - until)
     }
 }
 
 impl Tendon {
-    /// With friction as this module has it. Of a line that is drawn in the first tension is `(L − M)/Σ c_j r_j`, as at the
-    /// ratios `r` that were there.
+    /// Tensions with held friction, and the compliance by the first one. The first tension of a line that is drawn in
+    /// is `(L − M)/Σ c_j r_j`, with the tension ratios `r` of the last accepted state.
     pub(super) fn held_tensions(&self, line: &Polyline, factor: f64) -> (Tensions, Option<f64>) {
         let kept = &self.memory;
         let first_before = kept.as_ref().map_or(0.0, |kept| kept.tensions[0]);
@@ -118,13 +119,13 @@ impl Tendon {
         (found, compliance)
     }
 
-    /// Each bend during a step, and by how much the line has slid over it; none in the first step.
+    /// Bends during a step, each with its slip; none in the first step.
     pub(super) fn held_bends(&self, line: &Polyline, first: f64) -> Vec<(HeldBend, f64)> {
         let Some(kept) = &self.memory else {
             return Vec::new();
         };
-        // Where a tension is given, it has changed already where the line was; that of a line that is drawn in is found
-        // in the step.
+        // A prescribed tension is that of this step, at the last accepted path; that of a line that is drawn in is
+        // found in the step.
         let (before, slopes) = match self.drive {
             Drive::Tension(_) => {
                 let now = Tensions::from_first(first, &kept.tensions, &kept.decays);

@@ -1,11 +1,11 @@
 //! Memory of a tendon with friction.
 
-/// Tensions, lengths and bends of the state that was accepted last.
+/// Tensions, lengths and bends of the last accepted state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TendonMemory {
-    /// Of each segment, in N.
+    /// Tension in each segment, N.
     pub tensions: Vec<f64>,
-    /// Of each segment, in m.
+    /// Length of each segment, m.
     pub lengths: Vec<f64>,
     /// `e^{−μθ}` of each bend.
     pub decays: Vec<f64>,

@@ -1,9 +1,9 @@
 //! Tendons: lines that run through points of bodies, pulled at one end and anchored at the other.
 //!
-//! A tendon of length `L(x)` that is pulled by a tension `T` has the potential `T L`. One that is drawn in is a spring of
-//! the stiffness `EA` over its length without tension `M`, which the puller makes shorter: `EA (L − M)²/2M`, and nothing
-//! where it is slack. With friction the tension falls along it ([`capstan`]), and there is no potential; the tangent is
-//! exact, and not symmetric. Dynamics holds the bounds of friction during a step, and has a potential then ([`held`]).
+//! A tendon of length `L(x)` that is pulled by a tension `T` has the potential `T L`. One that is drawn in is a spring
+//! of the stiffness `EA` over its unstretched length `M`, which the motor shortens: `EA (L − M)²/2M`, and zero where it
+//! is slack. With friction the tension falls along it ([`capstan`]), and there is no potential; the tangent is exact,
+//! and not symmetric. Dynamics holds the friction bounds during a step, and has a potential then ([`held`]).
 
 mod capstan;
 mod held;
@@ -24,17 +24,17 @@ pub use polyline::Place;
 use polyline::Polyline;
 use tangent::{add_curvature, visit_carried};
 
-/// What pulls a tendon, at a factor of one.
+/// Actuation of a tendon, at a factor of one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Drive {
     /// A tension in N.
     Tension(f64),
-    /// It is drawn in by a length, and stretches.
+    /// Shortening by a length, of an elastic line.
     Shortening {
-        /// In m; negative pays it out.
+        /// Length drawn in, m; negative pays it out.
         by: f64,
-        /// `EA` in N.
+        /// Axial stiffness `EA` in N.
         stiffness: f64,
     },
 }
@@ -42,51 +42,51 @@ pub enum Drive {
 /// A line through places, pulled at the first and anchored at the last.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Tendon {
-    /// Two or more.
+    /// The places that it runs through, two or more.
     pub places: Vec<Place>,
     /// The length of each segment without tension, before it is drawn in, in m.
     pub lengths: Vec<f64>,
-    /// What pulls it.
+    /// Its actuation.
     pub drive: Drive,
-    /// `μ` at every bend.
+    /// Friction coefficient `μ` at every bend.
     pub friction: f64,
-    /// The state that friction remembers; `None` before one was accepted.
+    /// Memory of friction; `None` before a state was accepted.
     #[serde(skip)]
     memory: Option<TendonMemory>,
-    /// Whether friction has the bounds of the state that was accepted last.
+    /// Set if the friction bounds are held at those of the last accepted state.
     #[serde(skip)]
     held: bool,
-    /// Whether it goes on as it is where it would become slack.
+    /// Set if tensions are continued below zero instead of slack.
     #[serde(skip)]
     taut: bool,
 }
 
-/// What sticks stretches by a ten-thousandth under the whole tension, or more if that is its own stiffness: what it then
-/// moves before it slides is less than a tendon's length is known to. Stiffer, and Newton's method would have to find where
-/// it slides to that much less.
+/// Sticking stiffness over tension: a line that sticks stretches by a ten-thousandth under the whole tension, or more
+/// if its own stiffness is lower. Its motion before it slides is then less than the accuracy of a tendon's length. A
+/// stiffer one would make Newton's method find the onset of sliding to that much less.
 const STICK: f64 = 1e4;
 
-/// A tendon at some positions.
+/// State of a tendon at some positions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TendonState {
     /// The tension in each segment, from the pulled end on, in N.
     pub tensions: Vec<f64>,
-    /// Where it runs, in m.
+    /// Length of its path, in m.
     pub length: f64,
-    /// How much longer it is than the way it runs, in m; zero for one that is taut.
+    /// Slack: its length over that of its path, in m; zero for one that is taut.
     pub slack: f64,
 }
 
-/// Positions, and the tensions there.
+/// Path and tensions at some positions.
 struct Pulled {
     line: Polyline,
     tensions: Tensions,
-    /// How much all segments together stretch by the first tension, in m/N; `None` where that is given, or there is none.
+    /// Compliance of all segments together by the first tension, m/N; `None` if that is prescribed, or zero.
     compliance: Option<f64>,
 }
 
 impl Tendon {
-    /// One that has not been pulled yet.
+    /// A tendon without memory of friction.
     pub fn new(places: Vec<Place>, lengths: Vec<f64>, drive: Drive, friction: f64) -> Self {
         Self {
             places,
@@ -99,7 +99,7 @@ impl Tendon {
         }
     }
 
-    /// The tensions at some positions, under a factor.
+    /// Tensions, length and slack at some positions, under a factor.
     pub fn state(&self, positions: &[Vec3], factor: f64) -> TendonState {
         let pulled = self.pulled(positions, factor);
         let length = pulled.line.length();
@@ -113,13 +113,13 @@ impl Tendon {
         }
     }
 
-    /// Its points at some positions, in m.
+    /// Its places at some positions, in m.
     pub fn points(&self, positions: &[Vec3]) -> Vec<Vec3> {
         let points = self.places.iter().map(|place| place.position(positions));
         points.collect()
     }
 
-    /// The same with the bounds of friction held as they were accepted last: it has a potential then.
+    /// This tendon with the friction bounds of the last accepted state held: it has a potential then.
     pub fn held(&self) -> Self {
         Self {
             held: true,
@@ -127,7 +127,7 @@ impl Tendon {
         }
     }
 
-    /// The state that friction remembers.
+    /// The memory of friction.
     pub(crate) fn memory(&self) -> Option<&TendonMemory> {
         self.memory.as_ref()
     }
@@ -136,7 +136,7 @@ impl Tendon {
         self.memory = memory;
     }
 
-    /// Takes positions as the state from which the way goes on.
+    /// Accepts positions as the state from which the load path continues.
     pub(crate) fn accept(&mut self, on: Vertices<'_>, factor: f64) {
         if !self.has_friction() {
             return;
@@ -144,7 +144,7 @@ impl Tendon {
         let Pulled { line, tensions, .. } = self.pulled(on.positions, factor);
         let decays = self.decays(&line);
         let tensions = if self.is_held() {
-            // The bounds are those of this state from now on.
+            // The friction bounds are those of this state from now on.
             Tensions::from_first(tensions.values[0], &tensions.values, &decays).values
         } else {
             tensions.values
@@ -156,7 +156,7 @@ impl Tendon {
         });
     }
 
-    /// The same as if it could push where it would become slack, for differences around a state in which it is taut.
+    /// This tendon with tensions continued below zero, for differences around a state in which it is taut.
     pub fn taut(&self) -> Self {
         Self {
             taut: true,
@@ -172,7 +172,7 @@ impl Tendon {
         self.friction > 0.0
     }
 
-    /// Its length in m without tension when it is drawn in.
+    /// Its unstretched length in m when it is drawn in.
     fn material(&self, by: f64, factor: f64) -> f64 {
         self.lengths.iter().sum::<f64>() - factor * by
     }
@@ -218,8 +218,8 @@ impl Tendon {
         }
     }
 
-    /// The tension of each segment if the line sticks at the bend before it: what it was, and what the way from there to
-    /// the anchor has become longer since, over the compliance of the line that lies on it.
+    /// The tension of each segment if the line sticks at the bend before it: that of the last accepted state, plus the
+    /// lengthening of the path from there to the anchor since, over the compliance of the line on that path.
     fn sticking(&self, line: &Polyline) -> Vec<f64> {
         let (mut tensions, then, first) = match self.memory.clone() {
             Some(kept) => {
@@ -237,7 +237,8 @@ impl Tendon {
         tensions
     }
 
-    /// `EA` of what sticks, in N, after a tension at the pulled end: its own, but no more than stretches by a little.
+    /// Axial stiffness `EA` of a sticking line, in N, after a tension at the pulled end: its own, but at most [`STICK`]
+    /// times that tension.
     fn stick_stiffness(&self, before: Option<f64>) -> f64 {
         match self.drive {
             Drive::Tension(tension) => STICK * tension,
@@ -255,7 +256,7 @@ impl Tendon {
             .collect()
     }
 
-    /// Whether segments pull without knowing of each other.
+    /// Tests whether the tensions of segments are independent of each other.
     fn is_in_pieces(&self) -> bool {
         !self.has_friction() && matches!(self.drive, Drive::Tension(_))
     }
@@ -347,7 +348,7 @@ impl ExternalForce for Tendon {
         -self.potential(on, 1.0)
     }
 
-    /// With friction, which has none, that of a step in which it is held.
+    /// The potential; with friction, that of a step in which the friction bounds are held.
     fn potential(&self, on: Vertices<'_>, factor: f64) -> f64 {
         let Pulled {
             line,

@@ -1,17 +1,17 @@
-//! Where a tendon runs: points that the body carries or that stay in space, straight between them.
+//! Path of a tendon: points that the body carries or that are fixed in space, straight between them.
 
 use serde::{Deserialize, Serialize};
 
 use crate::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 
-/// A point on the way of a tendon, `x = offset + Σ w_i x_i`.
+/// A point on the path of a tendon, `x = offset + Σ w_i x_i`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Place {
-    /// The vertices that carry it, each once; none for a point that stays in space.
+    /// The vertices that carry it, each once; none for a point fixed in space.
     pub vertices: Vec<u32>,
-    /// A weight for each.
+    /// The weight of each vertex.
     pub weights: Vec<f64>,
-    /// A point in space in m; zero for one that vertices carry.
+    /// A point in space in m; zero for one carried by vertices.
     pub offset: Vec3,
 }
 
@@ -34,8 +34,8 @@ pub(super) struct Polyline {
     pub along: Vec<Vec3>,
 }
 
-/// Where two segments count as one straight line, or as folded back on itself: the plane of the bend is not known there,
-/// and with it the derivative of its angle, which is the norm of a vector that is zero.
+/// Sine of a bend below which two segments count as straight, or as folded back: the plane of the bend is not known
+/// there, and with it the derivative of its angle, which is the norm of a vector that is zero.
 const STRAIGHT: f64 = 1e-9;
 
 impl Polyline {
@@ -57,7 +57,7 @@ impl Polyline {
         self.lengths.iter().sum()
     }
 
-    /// The angle in rad by which it turns between each segment and the next.
+    /// The angle in rad of the bend between each segment and the next.
     pub fn angles(&self) -> Vec<f64> {
         let turn = |ab: &[Vec3]| libm::atan2(norm(cross(ab[0], ab[1])), dot(ab[0], ab[1]));
         self.along.windows(2).map(turn).collect()
@@ -65,7 +65,8 @@ impl Polyline {
 
     /// The derivatives of the angle of bend `bend` by the three points around it.
     ///
-    /// With `cos θ = u·v`, `dθ = −(e·du + g·dv)`, where `e` is `v` across `u`, and `g` is `u` across `v`, both of length 1.
+    /// With `cos θ = u·v`, `dθ = −(e·du + g·dv)`, where `e` is `v` across `u`, and `g` is `u` across `v`, both of
+    /// length 1.
     pub fn angle_slopes(&self, bend: usize) -> [Vec3; 3] {
         let (u, v) = (self.along[bend], self.along[bend + 1]);
         let (sine, cosine) = (norm(cross(u, v)), dot(u, v));
@@ -86,7 +87,7 @@ impl Polyline {
         }
     }
 
-    /// `(1 − u uᵀ)/l` of a segment: the second derivative of its length by where one end is from the other.
+    /// `(1 − u uᵀ)/l` of a segment: the second derivative of its length by the vector between its ends.
     pub fn curvature(&self, segment: usize) -> [[f64; 3]; 3] {
         let (u, length) = (self.along[segment], self.lengths[segment]);
         let inverse = if length > 0.0 { 1.0 / length } else { 0.0 };

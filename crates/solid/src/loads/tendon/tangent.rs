@@ -1,4 +1,4 @@
-//! The stiffness of a tendon: of its segments on their points, and of these on the vertices that carry them.
+//! Stiffness of a tendon: with respect to its points, then to the vertices that carry them.
 
 use super::capstan::Hold;
 use super::polyline::{Place, Polyline};
@@ -16,7 +16,7 @@ impl Tendon {
         let width = 3 * self.places.len();
         let before = self.memory.as_ref().map(|kept| kept.tensions[0]);
         let stick = self.stick_stiffness(before);
-        // With the first tension as it is.
+        // Derivatives at a constant first tension.
         let mut rows = vec![vec![0.0; width]];
         for (bend, hold) in tensions.holds.iter().enumerate() {
             let mut row = vec![0.0; width];
@@ -47,7 +47,7 @@ impl Tendon {
         else {
             return rows;
         };
-        // The stretch Σ l_j − M stays Σ c_j T_j, of which the first tension takes what the others do not.
+        // The stretch Σ l_j − M stays Σ c_j T_j, so that the first tension takes the part that the others do not.
         let mut first = vec![0.0; width];
         for segment in 0..self.lengths.len() {
             line.add_length_slope(segment, 1.0, &mut first);
@@ -67,7 +67,7 @@ impl Tendon {
         rows
     }
 
-    /// The stiffness of all segments together, on their points.
+    /// The stiffness of all segments together, with respect to their points.
     pub(super) fn stiffness(&self, pulled: &Pulled) -> Vec<f64> {
         let width = 3 * self.places.len();
         let mut matrix = vec![0.0; width * width];
@@ -115,7 +115,7 @@ pub(super) fn add_curvature(
     }
 }
 
-/// Hands a matrix on points over as one on the vertices that carry them.
+/// Visits a matrix on points as one on the vertices that carry them.
 pub(super) fn visit_carried(places: &[Place], matrix: &[f64], visit: Visitor<'_>) {
     let vertices = Tendon::vertices_of(places);
     if vertices.is_empty() {

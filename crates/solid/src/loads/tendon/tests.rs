@@ -26,7 +26,7 @@ fn on(positions: &[Vec3]) -> Vertices<'_> {
     }
 }
 
-/// Through a fixed point, then vertices and points between them.
+/// A tendon through a fixed point, then vertices and points between them.
 fn tendon(drive: Drive, friction: f64) -> Tendon {
     let carried = |pairs: &[(u32, f64)]| Place {
         vertices: pairs.iter().map(|pair| pair.0).collect(),
@@ -65,9 +65,9 @@ fn tendons_keep_the_laws() {
 }
 
 #[test]
-fn tendons_that_stick_in_part_keep_the_laws() {
+fn partly_sticking_tendons_keep_the_laws() {
     for (drive, eased) in [(PULLED, 1.3), (DRAWN_IN, 1.1)] {
-        // Within its cone: on the edge of it, where a pull leaves it, there are two slopes.
+        // Tensions within the friction cone: on its edge, where a pull leaves it, there are two slopes.
         let before = tendon(drive, 0.25).state(&MOVED, eased).tensions;
         let mut tendon = tendon(drive, 0.4);
         let way = Polyline::new(&tendon.places, &MOVED).lengths;
@@ -80,7 +80,7 @@ fn tendons_that_stick_in_part_keep_the_laws() {
         let now = tendon.state(&MOVED, 1.0).tensions;
         assert!(now[1] < before[1], "it slides back where it is pulled");
         assert_eq!(now[4..], before[4..], "and sticks farther along");
-        // What sticks without a stiffness of its own is so stiff that the differences of the check leave the cone.
+        // A sticking line without a stiffness of its own is so stiff that the differences of the check leave the cone.
         if drive == DRAWN_IN {
             check_load(&tendon, on(&MOVED)).unwrap();
         }
@@ -104,7 +104,7 @@ fn tendons_that_stick_in_part_keep_the_laws() {
 }
 
 #[test]
-fn what_is_slack_does_not_pull() {
+fn slack_tendon_does_not_pull() {
     let slack = Drive::Shortening {
         by: -0.05,
         stiffness: 200.0,
@@ -124,7 +124,7 @@ fn what_is_slack_does_not_pull() {
 }
 
 #[test]
-fn its_ends_are_pulled_toward_each_other_by_the_tension() {
+fn tension_pulls_the_ends_together() {
     let tendon = tendon(PULLED, 0.0);
     let mut forces = [[0.0; 3]; 5];
     tendon.add_forces(on(&REST), 0.5, &mut forces);
@@ -137,7 +137,7 @@ fn its_ends_are_pulled_toward_each_other_by_the_tension() {
 }
 
 #[test]
-fn numbers_that_are_none_are_refused() {
+fn invalid_numbers_are_refused() {
     assert_eq!(tendon(PULLED, 0.1).check(5), Ok(()));
     assert!(
         tendon(PULLED, 0.1).check(4).is_err(),
