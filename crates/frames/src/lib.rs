@@ -23,8 +23,8 @@
 //!
 //! Payload of a topology: f32×3 per point (m, at rest), u32×3 per triangle, u32×2 per edge, u32×8 per voxel, then one
 //! byte per triangle, its tag, padded to a multiple of four. Points of the surface come before those of voxels alone.
-//! Payload of a frame: u16×4 per point; a coordinate is `origin + scale q / 65535`, the value `smallest + (largest −
-//! smallest) q / 65535`.
+//! Payload of a frame: u16×4 per point; a coordinate is `origin + scale q / 65535`, the value
+//! `smallest + (largest − smallest) q / 65535`.
 
 mod display;
 mod field;

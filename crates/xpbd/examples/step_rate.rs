@@ -1,7 +1,7 @@
 //! Nanoseconds for a voxel and substep: the solvers of this crate against the textbook loop.
 //!
-//! `cargo run --release -p voxsoft-xpbd --example step_rate` prints one line for each figure: `body; program; threads;
-//! ns; ratio to the textbook`. `benchmarks/step_rate.py` reads them.
+//! `cargo run --release -p voxsoft-xpbd --example step_rate` prints one line for each figure:
+//! `body; program; threads; ns; ratio to the textbook`. `benchmarks/step_rate.py` reads them.
 //!
 //! Every answer is checked before it counts: the sweep against the textbook loop in the same order,
 //! relaxation and dynamics by the residual that the plain loops find in their states at rest.

@@ -13,9 +13,9 @@
 //! doi 10.1002/nme.1293).
 //!
 //! **Stability.** An explicit substep needs `h² K ≤ 4 M̃`. The default substep is one over the highest frequency of the
-//! rest of the body, `h² K ≤ M` there, which leaves `3 M + 4/27 h⁴ L M⁻¹ L` for the membranes; and `3 + 4/27 x² ≥ 4/3
-//! x` for any `x`. So a membrane does not limit the substep, up to strains that make it by a third stiffer than it is
-//! at rest.
+//! rest of the body, `h² K ≤ M` there, which leaves `3 M + 4/27 h⁴ L M⁻¹ L` for the membranes; and
+//! `3 + 4/27 x² ≥ 4/3 x` for any `x`. So a membrane does not limit the substep, up to strains that make it by a third
+//! stiffer than it is at rest.
 //!
 //! **Accuracy.** An equilibrium has no acceleration, so it is the same for any `M̃`. `L` gives zero for a translation,
 //! so momentum is kept; it is the same along all axes, so angular momentum is. A wave with the frequency `ω` in a
