@@ -63,7 +63,7 @@ impl PyEnsemble {
                 forces,
             });
         }
-        // One Newton step of a wide body takes longer than Ctrl-C should.
+        // Owned work lets Ctrl-C return at once: one Newton step of a wide body takes longer.
         let ensemble = Arc::clone(&self.0);
         let found = gate::run_owned(py, move |cancel| {
             let stop = || cancel.load(Ordering::Relaxed);

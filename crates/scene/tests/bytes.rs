@@ -59,7 +59,8 @@ fn with_ball(mut vertices: Vec<Vec3>, body: &[[u32; 3]]) -> (Vec<Vec3>, u32, Tou
     (vertices, first, touching)
 }
 
-/// Two voxels of two materials with one of each kind of clamp, load and attachment.
+/// Scene of two voxels of two materials with clamps, loads, a membrane, an attached spring, contact, controls and
+/// probes.
 fn full() -> Scene {
     let mut grid = Grid::empty([2, 1, 1], [0.0; 3], SIDE, u64::MAX).unwrap();
     grid.fill_box([0.0; 3], [2.0 * SIDE, SIDE, SIDE], 1);

@@ -296,9 +296,9 @@ fn bar_between_membranes(fabric: MembraneMaterial, step: f64) -> (f64, f64) {
 #[test]
 fn frequency_of_bar_between_membranes_matches_closed_form() {
     // Ten voxels with lumped masses are 0.1 % slow and the lateral inertia of ν = 0.45 adds less (see
-    // `hyperelastic.rs`); a strain of 10⁻³ stiffens a membrane by 0.3 %. The third has 2,000 times the stiffness of
-    // the bar, and its substep, 4 over the highest frequency, makes it 1.1 % slow. (Wrinkled across with a hundredth of its
-    // stiffness left, as it once was, it was faster by ν²/(1 − ν²)/200 = 0.13 %.)
+    // `hyperelastic.rs`); a strain of 10⁻³ stiffens a membrane by 0.3 %. The third has 2,000 times the stiffness of the
+    // bar, and its substep, 4 over the highest frequency, makes it 1.1 % slow. (With a hundredth of its stiffness left
+    // across the wrinkles it would be faster by ν²/(1 − ν²)/200 = 0.13 %.)
     for (young, step, slack) in [(3e6, 2e-3, 5e-3), (18e6, 1e-3, 5e-3), (2e9, 1e-3, 1.2e-2)] {
         let fabric = MembraneMaterial {
             young,
