@@ -4,16 +4,16 @@ use voxsoft_solid::{Body, ProblemError, State};
 use crate::outline::Outline;
 use crate::pack::FrameHead;
 
-/// What of a body is shown, and what it takes to color it by a field.
+/// Displayed part of a body, and the elements for coloring it by a field.
 #[derive(Debug, Clone)]
 pub struct Display {
     outline: Outline,
-    /// The elements around the vertices that are shown.
+    /// Elements around the displayed vertices.
     fields: Fields,
 }
 
 impl Display {
-    /// The surface given by triangles of body vertices; see [`Outline::surface`].
+    /// Surface given by triangles of body vertices; see [`Outline::surface`].
     pub fn surface(
         body: &Body,
         triangles: &[[u32; 3]],
@@ -24,7 +24,7 @@ impl Display {
         Ok(Self::of(body, outline))
     }
 
-    /// A surface with the voxels behind it; see [`Outline::solid`].
+    /// Surface with the voxels behind it; see [`Outline::solid`].
     pub fn solid(
         body: &Body,
         triangles: &[[u32; 3]],
@@ -52,31 +52,31 @@ impl Display {
         Self { outline, fields }
     }
 
-    /// The body vertices that are shown, as [`Outline::vertices`].
+    /// Displayed vertices of the body, see [`Outline::vertices`].
     pub fn vertices(&self) -> &[u32] {
         self.outline.vertices()
     }
 
-    /// The number of points.
+    /// Number of points.
     pub fn points(&self) -> usize {
         self.outline.points()
     }
 
-    /// The message that says what is shown.
+    /// Packs the topology message.
     pub fn topology(&self, body: &Body, number: u32) -> Vec<u8> {
         self.outline.topology(body.rest(), number)
     }
 
-    /// A field at each of [`Display::vertices`].
+    /// Values of a field at [`Display::vertices`].
     pub fn values(&self, body: &Body, state: &State, field: Field) -> Vec<f64> {
         self.fields.evaluate(body, state, field)
     }
 
-    /// The message of one picture.
+    /// Packs the message of a frame.
     ///
     /// # Panics
     ///
-    /// If the state is one of another body.
+    /// If the state belongs to another body.
     pub fn frame(&self, body: &Body, state: &State, field: Field, head: FrameHead) -> Vec<u8> {
         let values = self.values(body, state, field);
         let State {

@@ -1,19 +1,19 @@
 use voxsoft_solid::fields::Field;
 
-/// How a field is called, in SI units.
+/// Name, title and unit (SI) of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FieldName {
-    /// For programs.
+    /// Name for programs.
     pub name: &'static str,
-    /// For people.
+    /// Title for people.
     pub title: &'static str,
     /// The unit; empty for plain numbers.
     pub unit: &'static str,
-    /// Whether zero belongs in the middle of its colors.
+    /// True if its color scale is centered on zero.
     pub signed: bool,
 }
 
-/// How a field is called.
+/// Name, title and unit of a field.
 pub fn name_of(field: Field) -> FieldName {
     let (name, title, unit, signed) = match field {
         Field::Displacement => ("displacement", "Displacement", "m", false),

@@ -1,9 +1,9 @@
-//! What the studio shows of a body, packed into the bytes that its client hands to the graphics processor.
+//! Messages that display a body in the studio, packed for the graphics processor of its client.
 //!
-//! A [`Display`] is chosen once: the surface of a body or its tetrahedra, shrunk; an [`Outline`] is one without
-//! fields, of any mesh. Its *topology* (points at rest, triangles, edges) is sent once, then a *frame* for every
-//! picture: positions and one field, quantized to 16 bits. A *smooth* surface of shapes (kind 3) is laid out as a
-//! topology is, without edges. All numbers are little-endian, after a header of [`HEADER`] bytes:
+//! A [`Display`] is the surface of a body or its tetrahedra, shrunk; an [`Outline`] is a display of any mesh, without
+//! fields. Its *topology* (points at rest, triangles, edges) is sent once, then a *frame* for every picture: positions
+//! and one field, quantized to 16 bits. A *smooth* surface of shapes (kind 3) is laid out like a topology, without
+//! edges. All numbers are little-endian, after a header of [`HEADER`] bytes:
 //!
 //! | at | type | topology | frame |
 //! |---|---|---|---|
@@ -21,10 +21,10 @@
 //! | 44 | f32×3 | 0 | scale in m |
 //! | 56 | f32×2 | 0 | smallest and largest value of the field |
 //!
-//! Payload of a topology: f32×3 per point (m, at rest), u32×3 per triangle, u32×2 per edge, u32×8 per
-//! voxel, then one byte per triangle, its tag, padded to a multiple of four. Points of the surface come before those that voxels
-//! alone have. Payload of a frame: u16×4 per point; a coordinate is
-//! `origin + scale q / 65535`, the value `smallest + (largest − smallest) q / 65535`.
+//! Payload of a topology: f32×3 per point (m, at rest), u32×3 per triangle, u32×2 per edge, u32×8 per voxel, then one
+//! byte per triangle, its tag, padded to a multiple of four. Points of the surface come before those of voxels alone.
+//! Payload of a frame: u16×4 per point; a coordinate is `origin + scale q / 65535`, the value
+//! `smallest + (largest − smallest) q / 65535`.
 
 mod display;
 mod field;

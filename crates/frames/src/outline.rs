@@ -3,33 +3,35 @@ use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 
 use crate::pack::{FrameHead, Shape, TopologyFlag, pack_frame, pack_topology};
 
-/// Tetrahedra are drawn this much smaller, so that one sees between them.
+/// Scale of drawn tetrahedra, which leaves gaps to see between them.
 const SHRINK: f64 = 0.85;
 
-/// An edge moves along an axis where it moves by more than this part of a voxel.
+/// Least extent of an edge along an axis, in voxels, that counts as a direction of it.
 const ALONG: f64 = 1e-3;
 
-/// The edges of a voxel are shorter than this part of the diagonal of a face, 0.71 of it.
+/// Largest length of an edge of a voxel over the longest side of its triangle, the face diagonal (0.71 of it for a
+/// square).
 const SHORTER: f64 = 0.8;
 
-/// What of a mesh is drawn, whatever it is made of.
+/// Displayed part of any mesh.
 #[derive(Debug, Clone)]
 pub struct Outline {
-    /// The vertices of the mesh that are needed: those of what is drawn in ascending order, then those within.
+    /// Displayed vertices of the mesh: those of the drawn surface or tetrahedra in ascending order, then those of
+    /// voxels within.
     vertices: Vec<u32>,
-    /// For shrunk tetrahedra, the places of their corners; each corner is a point.
+    /// Corners of shrunk tetrahedra, as indices into `vertices`; each corner is a point.
     tets: Option<Vec<[u32; 4]>>,
     triangles: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
     tags: Vec<u8>,
-    /// Voxels by their corners `x, y, z` in bits 2, 1, 0, for sections; none unless they are asked for.
+    /// Voxels by their corners `x, y, z` in bits 2, 1, 0, for sections; empty unless made by [`Outline::solid`].
     voxels: Vec<[u32; 8]>,
     voxel_size: f64,
 }
 
 impl Outline {
-    /// The surface given by triangles of a mesh, each with a tag for the client. With a voxel size (m)
-    /// above zero, edges that are diagonals are left out.
+    /// Surface given by triangles of a mesh, each with a tag for the client. A voxel size (m) above zero leaves face
+    /// diagonals out of the edges.
     pub fn surface(
         rest: &[Vec3],
         triangles: &[[u32; 3]],
@@ -52,7 +54,7 @@ impl Outline {
             let sides = [[a, b], [b, c], [c, a]];
             let lengths = sides.map(|[a, b]| norm(sub(at(a), at(b))));
             let longest = lengths.into_iter().fold(0.0, f64::max);
-            // Of a voxel that is turned only the lengths tell: half a square has its diagonal as the longest side.
+            // In a rotated voxel only lengths identify the diagonal: it is the longest side of half a square.
             let is_edge = |(side, length): ([u32; 2], f64)| {
                 voxel_size <= 0.0 || is_along_axis(side) || length < SHORTER * longest
             };
@@ -77,7 +79,7 @@ impl Outline {
         })
     }
 
-    /// The same with the voxels behind it, given by their corners: what a section shows of the inside.
+    /// Surface with the voxels behind it, given by their corners, for sections through the inside.
     pub fn solid(
         rest: &[Vec3],
         triangles: &[[u32; 3]],
@@ -121,29 +123,29 @@ impl Outline {
         })
     }
 
-    /// The vertices of the mesh that are shown: those of the points of a surface in ascending order, then those within.
+    /// Displayed vertices of the mesh: those of a surface in ascending order, then those within.
     pub fn vertices(&self) -> &[u32] {
         &self.vertices
     }
 
-    /// The number of points.
+    /// Number of points.
     pub fn points(&self) -> usize {
         self.tets
             .as_ref()
             .map_or(self.vertices.len(), |tets| 4 * tets.len())
     }
 
-    /// The triangles, of points.
+    /// Triangles of points.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// The edges of voxels, of points.
+    /// Edges of voxels, as pairs of points.
     pub fn edges(&self) -> &[[u32; 2]] {
         &self.edges
     }
 
-    /// The message that says what is shown.
+    /// Packs the topology message.
     pub fn topology(&self, rest: &[Vec3], number: u32) -> Vec<u8> {
         let flag = match self.tets {
             Some(_) => TopologyFlag::ShrunkTets,
@@ -158,8 +160,9 @@ impl Outline {
         pack_topology(flag, number, self.voxel_size, &self.place(rest), shape)
     }
 
-    /// The message of one picture: where all vertices of the mesh are (m), and a value for each of
-    /// [`Outline::vertices`]. The number of the field is that of a [`Field`](voxsoft_solid::fields::Field), or of one that its sender knows.
+    /// Packs the message of a frame: positions (m) of all vertices of the mesh, and a value for each of
+    /// [`Outline::vertices`]. `field` is the number of a [`Field`](voxsoft_solid::fields::Field), or one that its
+    /// sender defines.
     pub fn frame(
         &self,
         head: FrameHead,
@@ -194,7 +197,7 @@ impl Outline {
     }
 }
 
-/// The vertices that are used, in ascending order.
+/// Vertices that are used, in ascending order; checks indices and the number of tags.
 fn used(
     rest: &[Vec3],
     corners: &[u32],
@@ -221,7 +224,7 @@ fn used(
         .collect())
 }
 
-/// Where each vertex of a mesh stands among those that are used.
+/// Index of each vertex of a mesh among the used ones.
 fn places(rest: &[Vec3], used: &[u32]) -> Vec<u32> {
     let mut places = vec![0; rest.len()];
     for (place, &vertex) in used.iter().enumerate() {

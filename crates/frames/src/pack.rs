@@ -1,23 +1,23 @@
 use voxsoft_solid::vector::Vec3;
 
-/// Bytes before the payload.
+/// Length of the header before the payload, in bytes.
 pub const HEADER: usize = 64;
 
 /// The first four bytes of a message.
 pub const MAGIC: u32 = u32::from_le_bytes(*b"VXF1");
 
-/// What a message holds.
+/// Kind of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MessageKind {
-    /// What is drawn.
+    /// Topology: points, triangles, edges and voxels.
     Topology = 1,
-    /// Where it is, with one field.
+    /// Frame: positions and one field.
     Frame = 2,
-    /// The smooth surface of shapes.
+    /// Smooth surface of shapes.
     Smooth = 3,
 }
 
-/// What a topology describes.
+/// Kind of a topology.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TopologyFlag {
     /// A surface.
@@ -26,24 +26,24 @@ pub enum TopologyFlag {
     ShrunkTets = 2,
 }
 
-/// The bits of [`FrameHead::flags`].
+/// Bits of [`FrameHead::flags`].
 pub mod frame_flag {
     /// Time stands still.
     pub const PAUSED: u8 = 1;
-    /// The body could not be followed.
+    /// The simulation diverged.
     pub const DIVERGED: u8 = 2;
-    /// Nothing moves until something is changed.
+    /// The body is at rest until something is changed.
     pub const AT_REST: u8 = 4;
 }
 
-/// What the sender says with a frame.
+/// Header fields of a frame, set by the sender.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct FrameHead {
-    /// The number of the topology that the frame belongs to.
+    /// Number of the topology that the frame belongs to.
     pub topology: u32,
-    /// The number of the frame.
+    /// Number of the frame.
     pub frame: u32,
-    /// The number of the last input that was applied.
+    /// Number of the last input that was applied.
     pub seq: u32,
     /// Bits of [`frame_flag`].
     pub flags: u8,
@@ -72,7 +72,7 @@ impl Bytes {
         self.0.resize(length, 0);
     }
 
-    /// Points, lists of corners, and a byte for each triangle.
+    /// Writes points, lists of corners, and a byte for each triangle.
     fn mesh(&mut self, points: &[Vec3], corners: &[&[u32]], tags: &[u8]) {
         self.pad(HEADER);
         for value in points.as_flattened() {
@@ -86,12 +86,12 @@ impl Bytes {
     }
 }
 
-/// What joins the points of a topology.
+/// Connectivity of the points of a topology.
 pub(crate) struct Shape<'a> {
     pub triangles: &'a [[u32; 3]],
     pub edges: &'a [[u32; 2]],
     pub voxels: &'a [[u32; 8]],
-    /// One for each triangle.
+    /// Tag of each triangle.
     pub tags: &'a [u8],
 }
 
@@ -124,7 +124,7 @@ pub(crate) fn pack_topology(
     bytes.0
 }
 
-/// The message of the smooth surface of shapes at rest: its points (m), its triangles, and the part of each.
+/// Packs the smooth surface of shapes at rest: its points (m), its triangles, and the part of each.
 pub fn pack_smooth(
     topology: u32,
     points: &[Vec3],
@@ -178,14 +178,14 @@ pub(crate) fn pack_frame(
     bytes.0
 }
 
-/// The range of some numbers as the client reads it.
+/// Range of some numbers, in single precision as for the client.
 struct Range {
     low: f32,
     high: f32,
 }
 
 impl Range {
-    /// That of all finite numbers; 0 to 0 where there are none.
+    /// Range of all finite numbers; 0 to 0 if there are none.
     fn of(values: impl Iterator<Item = f64>) -> Self {
         let finite = values.filter(|v| v.is_finite());
         let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
@@ -207,7 +207,7 @@ impl Range {
         self.high - self.low
     }
 
-    /// What is not a number becomes 0.
+    /// Quantizes a value to 16 bits; NaN becomes 0.
     fn quantize(&self, value: f64) -> u16 {
         let width = f64::from(self.width());
         if width > 0.0 {

@@ -1,4 +1,4 @@
-//! The bytes say what was packed.
+//! Layout of packed messages.
 
 use proptest::prelude::*;
 use voxsoft_frames::{Display, Field, FrameHead, HEADER, Outline};
@@ -60,7 +60,7 @@ impl Reader<'_> {
 }
 
 #[test]
-fn the_topology_holds_points_triangles_voxel_edges_and_tags() {
+fn topology_holds_points_triangles_edges_and_tags() {
     let (body, triangles, tags, _) = hollow();
     let display = Display::surface(&body, &triangles, &tags, SIDE).unwrap();
     let bytes = display.topology(&body, 17);
@@ -91,7 +91,7 @@ fn the_topology_holds_points_triangles_voxel_edges_and_tags() {
 }
 
 #[test]
-fn a_solid_has_the_points_of_its_surface_first_and_then_those_within() {
+fn solid_lists_surface_points_first() {
     let mut grid = Grid::empty([4; 3], [0.0; 3], SIDE, u64::MAX).unwrap();
     grid.fill_box([0.0; 3], [4.0 * SIDE; 3], 1);
     let tets = tet_mesh(&grid, u64::MAX).unwrap();
@@ -165,7 +165,7 @@ fn bad_indices_and_tags_are_reported() {
 
 proptest! {
     #[test]
-    fn positions_and_values_come_back_within_a_step(
+    fn positions_and_values_round_trip_within_a_step(
         moves in prop::collection::vec(prop::array::uniform3(-0.01..0.01f64), 64),
         id in 0u16..9,
     ) {

@@ -1,9 +1,9 @@
-/// The clock of whoever plays: players have none.
+/// Wall clock supplied by the caller of a player, which has none.
 pub trait Clock: Sync {
-    /// Some time in s that grows.
+    /// Monotonic time in s.
     fn now(&self) -> f64;
 
-    /// Whether nobody waits for the answer any more.
+    /// True once the caller no longer waits for the answer.
     fn canceled(&self) -> bool {
         false
     }

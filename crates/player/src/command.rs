@@ -1,10 +1,10 @@
 use serde::Deserialize;
 use voxsoft_solid::vector::Vec3;
 
-/// Stiffness of a hand's spring unless another is asked for, in N/m.
+/// Default stiffness of the spring of a grab, in N/m.
 pub const STIFFNESS: f64 = 50.0;
 
-/// What can be asked of a player, under the names that the page's protocol has. SI units.
+/// Commands of a player, with the names of the page's protocol. SI units.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "t", rename_all = "lowercase")]
 pub enum Command {
@@ -12,70 +12,70 @@ pub enum Command {
     Play,
     /// Stop time.
     Pause,
-    /// Take so many frames and stop.
+    /// Take `n` frames and stop.
     Step {
-        /// One or more.
+        /// Number of frames, one or more.
         #[serde(default = "one")]
         n: u32,
     },
-    /// Go back to the unloaded shape at time zero, with the loads of the design and no hands.
+    /// Go back to the unloaded shape at time zero, with the loads of the design and no grabs.
     Reset,
-    /// Let time run so many times as fast as the clock.
+    /// Set the pace: simulated seconds for each second of the clock.
     Pace {
-        /// Above 0, up to 1; `None` leaves it to the motion.
+        /// Above 0, up to 1; `None` chooses it from the duration of the motion.
         #[serde(default)]
         factor: Option<f64>,
     },
-    /// Change a control at once: one of value and factor.
+    /// Change a control at once; needs exactly one of value and factor.
     Load {
-        /// Which control.
+        /// Index of the control.
         index: usize,
-        /// Its value.
+        /// New value in SI units.
         #[serde(default)]
         value: Option<f64>,
-        /// Its value over that of the design.
+        /// New value over that of the design.
         #[serde(default)]
         factor: Option<f64>,
     },
-    /// Pull a point of the surface toward a target by a spring; the same id moves the target.
+    /// Grab a point of the surface and pull it toward a target by a spring; the same id moves the target.
     Grab {
-        /// The caller's number.
+        /// Number of the grab, chosen by the caller.
         id: u32,
-        /// Which point of the surface; of no meaning for an object.
+        /// Point of the surface; ignored for an object.
         vertex: usize,
-        /// Which object is held by its middle instead, as its pose was when it was taken.
+        /// Rigid object to hold by its center instead, in the orientation that it had when grabbed.
         #[serde(default)]
         object: Option<usize>,
-        /// Toward where, in m.
+        /// Target position in m.
         target: Vec3,
-        /// In N/m.
+        /// Spring stiffness in N/m.
         #[serde(default = "stiffness")]
         stiffness: f64,
     },
-    /// Take a spring away.
+    /// Release a grab.
     Release {
-        /// The caller's number.
+        /// Number of the grab, chosen by the caller.
         id: u32,
     },
-    /// Look at a recorded frame, by its number or by its time in s; time stops.
+    /// Show a recorded frame, by its number or by its time in s; time stops.
     Seek {
-        /// The number; the nearest that is still there is taken.
+        /// Number of the frame; takes the nearest that is still recorded.
         #[serde(default)]
         frame: u64,
-        /// The time, which goes before the number.
+        /// Time of the frame in s, which takes precedence over the number.
         #[serde(default)]
         time: Option<f64>,
     },
-    /// Look at the present again.
+    /// Show the present again.
     Live,
-    /// Tell all fields at a point of the surface.
+    /// Report all fields at a point of the surface.
     Pick {
-        /// Which.
+        /// Point of the surface.
         vertex: usize,
     },
-    /// Plot how far a point of the surface moves from now on.
+    /// Plot the displacement of a point of the surface from now on.
     Probe {
-        /// Which.
+        /// Point of the surface.
         vertex: usize,
     },
 }

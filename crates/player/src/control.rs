@@ -2,17 +2,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::Refusal;
 
-/// A slider: one number that stands for some loads of the problem, such as the pressure of all cavities.
+/// A slider: one number for some loads of the problem, such as the pressure of all cavities.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Control {
-    /// What it is in the end, in SI units.
+    /// Final value in the design, in SI units.
     pub value: f64,
-    /// The loads that it changes.
+    /// Indices of the loads that it scales.
     pub loads: Vec<u32>,
 }
 
 impl Control {
-    /// How many times as large as in the end it is when asked for one of a value and a factor.
+    /// Load factor (over the final value) for a requested value or factor.
     pub(crate) fn factor(&self, value: Option<f64>, factor: Option<f64>) -> Result<f64, Refusal> {
         let refuse = |what, hint| Err(Refusal::new("load", what, hint));
         match (value, factor) {
@@ -33,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_load_takes_one_of_value_and_factor() {
+    fn control_takes_one_of_value_and_factor() {
         let of = |value| Control {
             value,
             loads: vec![0],

@@ -1,91 +1,90 @@
 use serde::Serialize;
 use voxsoft_solid::vector::Vec3;
 
-/// What a player tells, under the names that the page's protocol has. SI units; numbers that are not finite
-/// are absent.
+/// Events of a player, with the names of the page's protocol. SI units; non-finite numbers are absent.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "t", rename_all = "lowercase")]
 pub enum Event {
-    /// Where the simulation stands.
+    /// State of the simulation.
     Stat(Stat),
     /// Rows of the plots.
     Plot(Plot),
     /// All fields at a point.
     Picked(Picked),
-    /// What touches what in a frame, and where objects are.
+    /// Contacts and poses of rigid objects in a frame.
     Moment(MomentOf),
 }
 
-/// A moment of a body.
+/// Contacts and poses at an instant, for one body.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MomentOf {
     /// The number of the body.
     pub topology: u32,
-    /// What is told.
+    /// Contacts and poses.
     pub moment: Moment,
 }
 
-/// A frame beside its picture.
+/// Contacts and poses that belong to a frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Moment {
-    /// Its number.
+    /// Number of the frame.
     pub frame: u64,
-    /// In s.
+    /// Time in s.
     pub time: f64,
-    /// Of each object.
+    /// Pose of each object.
     pub poses: Vec<Pose>,
-    /// Pair by pair.
+    /// Contact of each pair of surfaces.
     pub contacts: Vec<Touch>,
-    /// Whether fields of contact are known.
+    /// True if fields of contact are known.
     pub fields: bool,
-    /// How deep surfaces are in each other in m, where that is more than contact lets them in a step.
+    /// Penetration depth of surfaces in m, if it exceeds the tolerance of contact.
     pub depth: Option<f64>,
 }
 
-/// Where an object is.
+/// Pose of a rigid object.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Pose {
-    /// The middle of its first box, in m.
+    /// Present position of the center of its first bounding box, in m.
     pub position: Vec3,
-    /// From its first pose, nine numbers by rows.
+    /// Rotation from its first pose, nine numbers by rows.
     pub rotation: Vec<f64>,
 }
 
-/// What touches what.
+/// Contact of two surfaces.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Touch {
-    /// The two, by name.
+    /// Names of the two surfaces.
     pub of: [String; 2],
-    /// On the first, in N.
+    /// Force on the first surface, in N.
     pub force: Vec3,
-    /// The sum of the sizes of all forces, in N.
+    /// Sum of the magnitudes of all pressures and frictions, in N.
     pub pressed: f64,
-    /// In m².
+    /// Contact area in m².
     pub area: f64,
-    /// The smallest, in m.
+    /// Smallest gap in m.
     pub gap: f64,
-    /// The part of the pressure under which they slip.
+    /// Fraction of the pressure under which the surfaces slip.
     pub slipping: f64,
 }
 
-/// Whether time runs, and why not.
+/// Mode of a player: time runs, or the reason why not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mode {
-    /// It stands still.
+    /// Time stands still.
     Paused,
-    /// It runs.
+    /// Time runs.
     Playing,
-    /// Nothing moves until something is changed.
+    /// The body is at rest until something is changed.
     AtRest,
-    /// The body could not be followed.
+    /// The simulation diverged.
     Diverged,
-    /// A recorded frame is looked at.
+    /// A recorded frame is shown.
     Past,
 }
 
 impl Mode {
-    /// Its name in the protocol.
+    /// Name in the protocol.
     pub fn name(self) -> &'static str {
         match self {
             Self::Paused => "paused",
@@ -97,16 +96,16 @@ impl Mode {
     }
 }
 
-/// All numbers of the moment.
+/// Present numbers of a player.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stat {
     /// The number of the body.
     pub topology: u32,
-    /// Whether time runs.
+    /// Mode of the player.
     pub state: Mode,
-    /// The same in words; may be empty.
+    /// Sentence on the mode; may be empty.
     pub sentence: String,
-    /// The time that is looked at in s.
+    /// Time of the displayed frame in s.
     pub time: f64,
     /// Clock time of a step in ms.
     pub step_ms: f64,
@@ -114,50 +113,50 @@ pub struct Stat {
     pub substeps: u64,
     /// Simulated over clock time.
     pub real_time_factor: f64,
-    /// What it shall be at most.
+    /// Pace in force: upper limit of the real-time factor.
     pub pace: f64,
-    /// What was chosen by hand.
+    /// Pace chosen by the user.
     pub pace_chosen: Option<f64>,
-    /// How often one was chosen: tells which choice this is.
+    /// Number of choices so far, which identifies the present one.
     pub pace_choices: u32,
-    /// The residual force without units.
+    /// Relative residual force, dimensionless.
     pub residual: Option<f64>,
-    /// Energy in J.
+    /// Elastic energy in J.
     pub elastic: Option<f64>,
-    /// Energy in J.
+    /// Kinetic energy in J.
     pub kinetic: Option<f64>,
-    /// The frame that is looked at.
+    /// Number of the displayed frame.
     pub frame: u64,
-    /// The oldest frame recorded.
+    /// Number of the oldest recorded frame.
     pub first_frame: u64,
-    /// The newest.
+    /// Number of the newest recorded frame.
     pub last_frame: u64,
-    /// How many.
+    /// Number of recorded frames.
     pub frames_stored: usize,
-    /// What they take.
+    /// Memory of the recorded frames in bytes.
     pub bytes_stored: usize,
     /// The value of each control.
     pub loads: Vec<f64>,
-    /// The springs that pull.
+    /// Active grabs.
     pub grabs: Vec<GrabState>,
 }
 
-/// A spring that pulls.
+/// A grab: a spring that pulls a point or an object.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GrabState {
-    /// The caller's number.
+    /// Number of the grab, chosen by the caller.
     pub id: u32,
-    /// The point of the surface.
+    /// Point of the surface.
     pub vertex: usize,
-    /// The object that is held by its middle instead.
+    /// Rigid object that is held by its center instead.
     pub object: Option<usize>,
-    /// Toward where, in m.
+    /// Target position in m.
     pub target: Vec3,
-    /// In N/m.
+    /// Spring stiffness in N/m.
     pub stiffness: f64,
-    /// On the body, in N.
+    /// Force on the body, in N.
     pub force: Vec3,
-    /// How far the point is from where the spring is held, in m.
+    /// Elongation of the spring: distance from the point to the anchor, in m.
     pub stretch: f64,
 }
 
@@ -166,65 +165,65 @@ pub struct GrabState {
 pub struct Plot {
     /// The number of the body.
     pub topology: u32,
-    /// Of the columns.
+    /// Names of the columns.
     pub names: Vec<String>,
-    /// Of the columns.
+    /// Units of the columns.
     pub units: Vec<String>,
-    /// By time.
+    /// Rows in order of time.
     pub rows: Vec<Vec<Option<f64>>>,
-    /// Whether they replace all rows before.
+    /// True if the rows replace all earlier ones.
     pub clear: bool,
 }
 
 /// All values at a point of the surface.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Picked {
-    /// Which point.
+    /// Point of the surface.
     pub vertex: usize,
-    /// Where it is at rest, in m.
+    /// Rest position in m.
     pub rest: Vec3,
-    /// Where it is, in m.
+    /// Displayed position in m.
     pub position: Vec3,
-    /// One of each field.
+    /// Value of each field.
     pub values: Vec<Value>,
 }
 
 /// The value of a field at a point.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Value {
-    /// The field's number.
+    /// Number of the field.
     pub field: u16,
-    /// Its name.
+    /// Name of the field.
     pub name: &'static str,
-    /// The value.
+    /// Value, if finite.
     pub value: Option<f64>,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: &'static str,
 }
 
-/// What is looked at, now or recorded.
+/// The displayed frame, present or recorded.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Shown {
     /// The number of the frame.
     pub frame: u64,
-    /// Its time in s.
+    /// Time of the frame in s.
     pub time: f64,
     /// The value of each control then.
     pub loads: Vec<f64>,
-    /// The springs that pulled then.
+    /// Grabs then.
     pub grabs: Vec<GrabState>,
 }
 
-/// What cannot be done, in the words of the error tree: where, what, and what to try.
+/// Refusal of a command, with the fields of the package's errors: place, message and hint.
 #[derive(Debug, Clone, PartialEq, Serialize, thiserror::Error)]
 #[error("{place}: {what}")]
 pub struct Refusal {
-    /// Of what.
+    /// Command or quantity that is refused.
     #[serde(rename = "where")]
     pub place: &'static str,
-    /// Why.
+    /// Reason of the refusal.
     pub what: String,
-    /// What to try; may be empty.
+    /// Suggestion; may be empty.
     pub hint: &'static str,
 }
 

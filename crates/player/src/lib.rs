@@ -1,9 +1,9 @@
-//! A problem that lives: commands in, events and frames out.
+//! Player of a live problem: commands in, events and frames out.
 //!
-//! A [`Player`] moves a problem while someone changes its loads and pulls at it. It does what a [`Command`] asks,
-//! moves by [`Player::advance`] as time is handed to it, records what it shows, and tells of it by [`Event`]s and
-//! by frames ([`voxsoft_frames`]). The studio's server plays with it through the Python binding, and an exported
-//! page through WebAssembly: both say and show the same.
+//! A [`Player`] moves a problem while a user changes its loads and grabs it. It executes each [`Command`], moves by
+//! [`Player::advance`] as its caller passes time on, records the frames that it shows, and reports by [`Event`]s and by
+//! frames ([`voxsoft_frames`]). The studio's server plays with it through the Python binding, and an exported page
+//! through WebAssembly: both give the same events and frames.
 //!
 //! A player does no input or output and has no [`Clock`] of its own.
 //!

@@ -1,4 +1,4 @@
-//! Time as it is handed to a player, and what becomes of it.
+//! Advance of a player over time: steps, frames, and states taken over from solvers.
 
 use voxsoft_solid::hands::still_state;
 use voxsoft_solid::matrix::Mat3;
@@ -13,42 +13,42 @@ use crate::sentences::{at_rest, diverged};
 /// Time between two frames in s, which is also the longest implicit step.
 pub const FRAME_TIME: f64 = 1.0 / 60.0;
 
-/// Time between two tellings of rows and of numbers, in s.
+/// Period of the reports of plot rows and of numbers, in s.
 const TELL_EVERY: [f64; 2] = [1.0 / 15.0, 0.1];
 
-/// How far a motion is looked ahead: seconds of it, and vertices times steps of either kind, some 0.05 s of
-/// work.
+/// Limits of the look-ahead at a motion: simulated seconds, and vertices times steps of the explicit and the implicit
+/// method, about 0.05 s of work.
 const LONGEST_LOOK: f64 = 1.0;
 const MOST_WORK: [usize; 2] = [1_000_000, 4_000];
 
-/// Steps are whole numbers of frames' times up to rounding.
+/// Rounding error allowed in the number of steps due.
 const ROUNDING: f64 = 1e-6;
 
-/// How a search for rest ended, by whoever solved.
+/// Result of a solver's search for equilibrium.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rest {
-    /// Where the vertices are, in m; those of objects may be left out.
+    /// Positions of the vertices in m; those of objects may be left out.
     pub positions: Vec<Vec3>,
-    /// Where the middle of each object is then, and its rotation from its first pose.
+    /// Position of the center of each object in m, and its rotation from its first pose.
     pub poses: Vec<(Vec3, Mat3)>,
-    /// Whether it is rest, a breakdown, or neither.
+    /// Mode to show: at rest, diverged, or paused.
     pub mode: Mode,
-    /// The same in words.
+    /// Sentence on the result.
     pub sentence: String,
-    /// The residual force without units.
+    /// Relative residual force, dimensionless.
     pub residual: f64,
-    /// The elastic energy in J.
+    /// Elastic energy in J.
     pub elastic: f64,
-    /// When that was, in s; `None` is the present.
+    /// Time of the state in s; `None` is the present.
     pub time: Option<f64>,
 }
 
 impl Player {
-    /// Lets time go on by some seconds of the clock, at the pace, or as far as a budget of the clock allows
-    /// (s); gives what there is to tell.
+    /// Advances by `seconds` of wall-clock time at the pace, or as far as a wall-clock `budget` (s) allows; returns the
+    /// events.
     ///
-    /// Parts of a step are carried over to the next call: in slow motion there may be no step to take yet,
-    /// and then there is no frame either.
+    /// Fractions of a step are carried over to the next call: in slow motion no step may be due yet, and then there is
+    /// no frame either.
     pub fn advance(&mut self, seconds: f64, budget: f64, clock: &dyn Clock) -> Vec<Event> {
         if self.mode != Mode::Playing {
             return Vec::new();
@@ -84,7 +84,7 @@ impl Player {
         }
         self.due += seconds * pace / self.stepper.step();
         if self.steps_left.is_some() {
-            self.due = self.due.max(1.0); // a frame by hand is not waited for
+            self.due = self.due.max(1.0); // a single-step frame is taken at once
         }
         let wanted = (self.due + ROUNDING).floor();
         if wanted < 1.0 {
@@ -115,7 +115,7 @@ impl Player {
         Some(look)
     }
 
-    /// Makes a frame of what was stepped to.
+    /// Records the new state as a frame, and updates the mode.
     fn take_frame(&mut self, look: Look) {
         self.record();
         match look.status {
@@ -138,7 +138,7 @@ impl Player {
         }
     }
 
-    /// Keeps the present as a frame and a row of the plots.
+    /// Records the present state as a frame and a row of the plots.
     fn record(&mut self) {
         let state = self.stepper.state().clone();
         self.record_state(&state);
@@ -159,8 +159,8 @@ impl Player {
         self.plots.record(numbers, rest, &state.positions);
     }
 
-    /// Finds out unseen how soon the body comes to rest from its unloaded shape, to show it slowly enough
-    /// to be seen.
+    /// Simulates ahead, without display, to find how soon the body comes to rest from its unloaded shape; the pace is
+    /// then slow enough for the motion to be seen.
     pub(crate) fn look_ahead(&mut self) {
         if self.numbers.steps > 0 || self.solved {
             return;
@@ -169,7 +169,7 @@ impl Player {
         if !self.held.is_empty() {
             return;
         }
-        self.stepper.reset(); // what is shown first may be another shape
+        self.stepper.reset(); // the first displayed shape may be another one
         if self.stepper.method() == Method::Implicit {
             self.stepper.prefer_step(FRAME_TIME * self.pace.factor());
         }
@@ -181,13 +181,13 @@ impl Player {
         self.pace.rest_in = (look.status == LiveStatus::AtRest).then_some(look.time);
     }
 
-    /// Shows positions (m) of all vertices at time zero first; play goes the way from the unloaded shape.
+    /// Shows positions (m) of all vertices at time zero first; play starts from the unloaded shape.
     pub fn show_first(&mut self, positions: Vec<Vec3>) -> Result<(), ProblemError> {
         let positions = self.completed(positions, &[]);
         self.stepper.seek(positions, 0.0)
     }
 
-    /// Positions with those of objects, in their first poses but for those that are given.
+    /// Completes positions with those of objects, at the given poses, else their first ones.
     fn completed(&self, positions: Vec<Vec3>, poses: &[(Vec3, Mat3)]) -> Vec<Vec3> {
         let rest = self.stepper.problem().body().rest();
         match &self.touching {
@@ -196,7 +196,7 @@ impl Player {
         }
     }
 
-    /// Takes a motion that a solver found, as frames to go back to: times (s) with positions (m) of all vertices.
+    /// Records a motion found by a solver as frames: times (s) with positions (m) of all vertices.
     pub fn take_motion(&mut self, motion: Vec<(f64, Vec<Vec3>)>) -> Result<(), ProblemError> {
         self.held.clear();
         self.shown = None;
@@ -210,7 +210,7 @@ impl Player {
         Ok(())
     }
 
-    /// Takes the state that a solver found; hands let go, as no solver knows of them.
+    /// Takes over a state found by a solver; releases all grabs, as no solver knows them.
     pub fn go_to_rest(&mut self, rest: Rest) -> Result<Vec<Event>, ProblemError> {
         let time = rest.time.unwrap_or(self.stepper.state().time);
         let positions = self.completed(rest.positions, &rest.poses);

@@ -1,4 +1,4 @@
-//! Hands on rigid objects that move freely: four springs, one to each vertex, hold place and direction alike.
+//! Grabs of free rigid objects: four springs, one to each vertex, hold both position and orientation.
 
 use voxsoft_solid::Rigid;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
@@ -6,7 +6,7 @@ use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use crate::event::{GrabState, Refusal};
 use crate::player::{Held, Player};
 
-/// Numbers of the stepper's grabs that hold objects begin here, four for each.
+/// First number of the stepper's grabs that hold objects, four for each.
 const FIRST: u32 = 1 << 30;
 
 fn number(id: u32, corner: usize) -> u32 {
@@ -58,7 +58,7 @@ impl Player {
         }
     }
 
-    /// The vertices of an object, which must move freely.
+    /// Vertices of an object, which must move freely.
     fn free_vertices(&self, object: usize) -> Result<[u32; 4], Refusal> {
         let placed = self.touching.as_ref().and_then(|t| t.objects.get(object));
         let refusal = || Refusal::new("grab", format!("there is no object {object}"), "");
@@ -80,7 +80,7 @@ impl Player {
         placed.map_or([0.0; 3], |placed| placed.pose(rest, positions).0)
     }
 
-    /// How a held object is told of.
+    /// State of the grab of an object.
     pub(crate) fn hold_of(&self, id: u32, held: &Held) -> Option<GrabState> {
         let (object, _) = held.object?;
         let positions = &self.stepper.state().positions;

@@ -1,10 +1,10 @@
-//! How fast time is shown: as fast as the clock, or so slow that a stiff body is seen to move.
+//! Pace of time: real time, or slow motion in which a stiff body is seen to move.
 
 use std::collections::VecDeque;
 
 use crate::sentences::slowed;
 
-/// Speeds of time that can be chosen: simulated seconds for each second of the clock.
+/// Selectable paces: simulated seconds for each second of the clock.
 pub const PACES: [f64; 6] = [
     1.0,
     1.0 / 2.0,
@@ -14,27 +14,27 @@ pub const PACES: [f64; 6] = [
     1.0 / 200.0,
 ];
 
-/// A motion that lasts less than this on the screen is hardly seen, s.
+/// Shortest duration on the screen of a motion that is to be seen, s.
 const SEEN: f64 = 1.0;
 
-/// The span over which the real-time factor is measured, s.
+/// Averaging window of the real-time factor, s.
 const SPAN: f64 = 1.0;
 
-/// The fastest pace at which a motion of some seconds lasts long enough to be seen.
+/// Fastest pace at which a motion of this duration (s) lasts long enough on the screen.
 pub fn pace_for(seconds: f64) -> f64 {
     let slow_enough = |pace: &f64| seconds / pace >= SEEN;
     let found = PACES.into_iter().find(slow_enough);
     found.unwrap_or(PACES[PACES.len() - 1])
 }
 
-/// The pace in force: the user's, or what the motion asks for.
+/// Pace in force: the user's, else one derived from the duration of the motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Pace {
-    /// What the user chose.
+    /// Pace chosen by the user.
     pub chosen: Option<f64>,
-    /// How often the user chose.
+    /// Number of choices by the user.
     pub choices: u32,
-    /// The time in which the body comes to rest if nobody touches it, where that is known, in s.
+    /// Time in which the body comes to rest without grabs or load changes, if known, in s.
     pub rest_in: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ impl Pace {
             .unwrap_or(1.0)
     }
 
-    /// What to say of it; nothing in real time.
+    /// Sentence on the pace; empty in real time.
     pub fn words(&self) -> String {
         let rest_in = self.rest_in.filter(|_| self.chosen.is_none());
         match self.factor() {
@@ -56,17 +56,17 @@ impl Pace {
     }
 }
 
-/// Simulated over clock time, measured over about the last second.
+/// Real-time factor: simulated over clock time, over about the last second.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RealTimeFactor(VecDeque<[f64; 2]>);
 
 impl RealTimeFactor {
-    /// Forgets what was measured, as time begins to run or runs otherwise.
+    /// Discards the measurement, when time starts to run or the pace changes.
     pub fn restart(&mut self) {
         self.0.clear();
     }
 
-    /// Notes both times in s.
+    /// Adds a pair of simulated and clock time in s.
     pub fn mark(&mut self, simulated: f64, clock: f64) {
         self.0.push_back([simulated, clock]);
         while self.0.front().is_some_and(|first| clock - first[1] > SPAN) {
@@ -74,7 +74,7 @@ impl RealTimeFactor {
         }
     }
 
-    /// The factor; 0 before anything was measured.
+    /// Real-time factor; 0 before any measurement.
     pub fn value(&self) -> f64 {
         match (self.0.front(), self.0.back()) {
             (Some([begun, start]), Some([reached, now])) if now > start => {
@@ -90,13 +90,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_lasts_is_shown_in_real_time_and_slower_what_does_not() {
+    fn long_motion_plays_in_real_time_and_short_motion_slower() {
         let paces = [3.0, 0.6, 0.05, 1e-6].map(pace_for);
         assert_eq!(paces, [1.0, 0.5, 0.02, 0.005]);
     }
 
     #[test]
-    fn the_choice_of_the_user_goes_before_that_of_the_motion() {
+    fn user_pace_takes_precedence() {
         let mut pace = Pace::default();
         assert_eq!((pace.factor(), pace.words().as_str()), (1.0, ""));
         pace.rest_in = Some(0.0497);
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn the_factor_is_measured_against_the_clock() {
+    fn real_time_factor_is_measured_against_the_clock() {
         let mut factor = RealTimeFactor::default();
         assert_eq!(factor.value(), 0.0);
         for tick in 0..200 {
@@ -116,7 +116,7 @@ mod tests {
             factor.mark(0.02 * clock, clock);
         }
         assert!((factor.value() - 0.02).abs() < 1e-12);
-        // A jump that is longer ago than the span does not count.
+        // A jump older than the window does not count.
         factor.mark(100.0, 10.0);
         factor.mark(100.1, 10.5);
         assert!((factor.value() - 0.2).abs() < 1e-9);

@@ -15,28 +15,28 @@ use crate::recording::{Recorded, Recording};
 use crate::stepper::stepper;
 use crate::touching::Touching;
 
-/// What a player is told of a problem beside its mechanics.
+/// Body number, controls and probes of a problem, beside its mechanics.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cast {
-    /// The number of the body, which frames and events name.
+    /// Number of the body, which frames and events carry.
     pub topology: u32,
-    /// What can be changed while time runs.
+    /// Controls that can be changed while time runs.
     pub controls: Vec<Control>,
-    /// What is plotted.
+    /// Probes whose displacements are plotted.
     pub probes: Vec<Probe>,
 }
 
-/// A spring as it was asked for.
+/// A grab as requested.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Held {
     pub(crate) vertex: usize,
-    /// An object that is held instead, and its vertices from its middle when it was taken.
+    /// Rigid object that is held instead, and its vertices relative to its center when grabbed.
     pub(crate) object: Option<(usize, [Vec3; 4])>,
     pub(crate) target: Vec3,
     pub(crate) stiffness: f64,
 }
 
-/// The numbers of the last step; energies in J.
+/// Numbers of the last step; energies in J.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Numbers {
     pub(crate) steps: u64,
@@ -47,7 +47,7 @@ pub(crate) struct Numbers {
     pub(crate) unsettled: bool,
 }
 
-/// A problem that lives: it does what it is asked, moves as time is handed to it, and tells of it.
+/// Player of a live problem: executes commands, advances over time and reports events.
 pub struct Player {
     pub(crate) stepper: Box<dyn Stepper>,
     pub(crate) surface: Display,
@@ -60,13 +60,13 @@ pub struct Player {
     pub(crate) mode: Mode,
     pub(crate) sentence: String,
     pub(crate) wants_play: bool,
-    /// Frames until time stops; `None` goes on.
+    /// Frames until time stops; `None` for no limit.
     pub(crate) steps_left: Option<u32>,
     pub(crate) pace: Pace,
     pub(crate) speed: RealTimeFactor,
-    /// Parts of a step that are carried over to the next frame.
+    /// Fraction of a step that is carried over to the next frame.
     pub(crate) due: f64,
-    /// Whether the body was put where a solver found its rest.
+    /// True once a solver's state was taken over.
     pub(crate) solved: bool,
     pub(crate) numbers: Numbers,
     pub(crate) tolerance: f64,
@@ -74,12 +74,12 @@ pub struct Player {
     pub(crate) recording: Recording,
     pub(crate) shown: Option<Arc<Recorded>>,
     pub(crate) plots: Plots,
-    /// When the last rows and the last numbers were told.
+    /// Clock times (s) of the last reports of rows and of numbers.
     pub(crate) reported: [f64; 2],
 }
 
 impl Player {
-    /// A problem at rest pose and time zero, of which a surface is shown.
+    /// Makes a player at the rest pose and time zero, with a surface for display.
     pub fn new(problem: Problem, settings: Dynamics, surface: Display, cast: Cast) -> Self {
         let tolerance = settings.tolerance;
         Self {
@@ -108,14 +108,14 @@ impl Player {
         }
     }
 
-    /// The same with the contact of its problem, of which it tells.
+    /// Adds the names and objects of contact, for reports of contact.
     #[must_use]
     pub fn with_touching(mut self, touching: Touching) -> Self {
         self.touching = Some(touching);
         self
     }
 
-    /// Does what is asked, and gives what there is to tell of it.
+    /// Executes a command and returns its events.
     pub fn command(&mut self, command: Command) -> Result<Vec<Event>, Refusal> {
         match command {
             Command::Play => self.on_play(),
@@ -292,20 +292,20 @@ impl Player {
         Ok(vec![Event::Plot(self.whole_plot())])
     }
 
-    /// Stops time for now, and says why: a load or a pull that wakes the body lets it run again if it was
-    /// asked to.
+    /// Pauses with a sentence for the reason: a load or a grab that wakes the body lets time run again if play was
+    /// requested.
     pub fn hold(&mut self, sentence: String) {
         self.shown = None;
         self.stand(Mode::Paused, sentence);
     }
 
-    /// Goes on from another body that was played: time runs, at once as fast as the clock.
+    /// Plays on when this body replaces another one that was playing: time runs, without a look-ahead.
     pub fn resume(&mut self) {
         self.wants_play = true;
         self.run();
     }
 
-    /// Stops time for good, and says why.
+    /// Stops until the next play command, with a sentence for the reason.
     pub fn halt(&mut self, sentence: String) {
         self.wants_play = false;
         self.hold(sentence);
@@ -322,7 +322,8 @@ impl Player {
         (self.mode, self.sentence) = (mode, sentence);
     }
 
-    /// A hand is on a load or a pull: what it does is shown at once, and what was at rest is so no more.
+    /// Wakes a body at rest after a load or a grab has changed, and runs time again if play was requested; drops the
+    /// slow pace of the look-ahead.
     pub(crate) fn wake(&mut self) {
         self.pace.rest_in = None;
         if self.mode == Mode::AtRest {
@@ -333,7 +334,7 @@ impl Player {
         }
     }
 
-    /// The vertex of the body that is a point of the surface.
+    /// Vertex of the body at a point of the surface.
     pub(crate) fn vertex(&self, point: usize) -> Result<u32, Refusal> {
         let found = self.surface.vertices().get(point).copied();
         let refusal = || Refusal::new("vertex", format!("{point} is not on the surface"), "");

@@ -1,14 +1,14 @@
-//! What is plotted over time: residual, energies and how far probes moved.
+//! Plots over time: residual, energies and displacements of probes.
 
 use serde::{Deserialize, Serialize};
 use voxsoft_solid::vector::{Vec3, axpy, norm, sub};
 
 use crate::event::Plot;
 
-/// Rows that are kept for a client that comes later; of more, every other one is.
+/// Most rows kept for later clients; above it, every other row is dropped.
 const MOST_ROWS: usize = 5_000;
 
-/// The columns before those of the probes, and their units.
+/// Columns before those of the probes, and their units.
 pub const COLUMNS: [(&str, &str); 4] = [
     ("time", "s"),
     ("residual", ""),
@@ -16,19 +16,19 @@ pub const COLUMNS: [(&str, &str); 4] = [
     ("kinetic energy", "J"),
 ];
 
-/// A place whose displacement is plotted: the weighted mean of some vertices of the body.
+/// A probe: the weighted mean of some vertices of the body, whose displacement is plotted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Probe {
-    /// What it is called.
+    /// Name of the probe.
     pub name: String,
-    /// Of the body.
+    /// Vertices of the body.
     pub vertices: Vec<u32>,
-    /// Of each vertex; they sum to 1.
+    /// Weight of each vertex; they sum to 1.
     pub weights: Vec<f64>,
 }
 
 impl Probe {
-    /// One vertex.
+    /// Probe of one vertex.
     pub fn at(name: String, vertex: u32) -> Self {
         Self {
             name,
@@ -49,7 +49,7 @@ impl Probe {
 
 type Row = Vec<Option<f64>>;
 
-/// Rows of the plots, and which of them were not told yet.
+/// Rows of the plots, and those not yet reported.
 #[derive(Debug, Default)]
 pub struct Plots {
     probes: Vec<Probe>,
@@ -58,7 +58,7 @@ pub struct Plots {
 }
 
 impl Plots {
-    /// Of some probes.
+    /// Makes empty plots of some probes.
     pub fn of(probes: Vec<Probe>) -> Self {
         Self {
             probes,
@@ -66,24 +66,24 @@ impl Plots {
         }
     }
 
-    /// Forgets all rows.
+    /// Removes all rows.
     pub fn clear(&mut self) {
         self.rows.clear();
         self.fresh.clear();
     }
 
-    /// Plots another place from now on, unless one of that name is plotted.
+    /// Adds a probe from now on, unless one of that name exists.
     pub fn add(&mut self, probe: Probe) {
         if self.probes.iter().any(|other| other.name == probe.name) {
             return;
         }
         self.probes.push(probe);
-        // A curve that begins later has no values before.
+        // A curve that begins later has no earlier values.
         self.rows.iter_mut().for_each(|row| row.push(None));
         self.fresh.clear();
     }
 
-    /// Adds a row: time, residual and energies, and how far the probes moved.
+    /// Adds a row: time, residual, energies, and displacements of the probes.
     pub fn record(&mut self, numbers: [Option<f64>; 4], rest: &[Vec3], positions: &[Vec3]) {
         let moved = self.probes.iter().map(|probe| {
             let moved = probe.moved(rest, positions);
@@ -101,12 +101,12 @@ impl Plots {
         }
     }
 
-    /// All rows, to replace those that a client has.
+    /// Returns all rows, to replace those that a client has.
     pub fn whole(&self, topology: u32) -> Plot {
         self.event(topology, self.rows.clone(), true)
     }
 
-    /// The rows that were not told yet, if there are any.
+    /// Takes the rows not yet reported, if any.
     pub fn news(&mut self, topology: u32) -> Option<Plot> {
         let fresh = std::mem::take(&mut self.fresh);
         (!fresh.is_empty()).then(|| self.event(topology, fresh, false))
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn a_probe_that_comes_later_has_no_values_before() {
+    fn later_probe_has_no_earlier_values() {
         let probe = Probe {
             name: "tip".into(),
             vertices: vec![0, 1],
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn of_too_many_rows_every_other_one_is_kept() {
+    fn excess_rows_are_thinned_to_every_other_one() {
         let mut plots = Plots::default();
         (0..=MOST_ROWS).for_each(|time| record(&mut plots, time));
         let rows = plots.whole(1).rows;

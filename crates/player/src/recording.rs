@@ -1,4 +1,4 @@
-//! What was shown, kept up to a number of bytes.
+//! Recording of the displayed frames, up to a number of bytes.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -8,25 +8,25 @@ use voxsoft_solid::vector::Vec3;
 
 use crate::event::GrabState;
 
-/// What all frames of a body may take together, in bytes.
+/// Memory limit of all frames of a body, in bytes.
 const ROOM: usize = 128 * 1024 * 1024;
 
-/// One frame.
+/// A recorded frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recorded {
-    /// Its number.
+    /// Number of the frame.
     pub number: u64,
-    /// Its time in s.
+    /// Time of the frame in s.
     pub time: f64,
     /// The value of each control then.
     pub loads: Vec<f64>,
-    /// The springs that pulled then.
+    /// Grabs then.
     pub grabs: Vec<GrabState>,
     positions: Vec<[f32; 3]>,
 }
 
 impl Recorded {
-    /// The state, to single precision and without velocities.
+    /// State in single precision, with zero velocities.
     pub fn state(&self) -> State {
         let positions: Vec<Vec3> = self.positions.iter().map(|x| x.map(f64::from)).collect();
         State {
@@ -41,7 +41,7 @@ impl Recorded {
     }
 }
 
-/// The newest frames of a body; the oldest give way.
+/// Recording of the newest frames of a body; the oldest are dropped.
 #[derive(Debug)]
 pub struct Recording {
     room: usize,
@@ -56,7 +56,7 @@ impl Default for Recording {
 }
 
 impl Recording {
-    /// One that takes no more than so many bytes, or one frame.
+    /// Makes a recording of at most `room` bytes, or one frame.
     pub fn of_room(room: usize) -> Self {
         Self {
             room,
@@ -65,7 +65,7 @@ impl Recording {
         }
     }
 
-    /// Keeps a frame; numbers must grow by one.
+    /// Adds a frame; numbers must grow by one.
     pub fn keep(&mut self, number: u64, state: &State, loads: Vec<f64>, grabs: Vec<GrabState>) {
         let frame = Recorded {
             number,
@@ -86,42 +86,42 @@ impl Recording {
         }
     }
 
-    /// Forgets all frames.
+    /// Removes all frames.
     pub fn clear(&mut self) {
         self.frames.clear();
         self.bytes = 0;
     }
 
-    /// The frame of a number, or the nearest that is still there.
+    /// Frame of a number, or the nearest that is still recorded.
     pub fn at(&self, number: u64) -> Option<Arc<Recorded>> {
         let last = self.frames.len().checked_sub(1)?;
         let place = number.saturating_sub(self.first()) as usize;
         self.frames.get(place.min(last)).cloned()
     }
 
-    /// The frame nearest to a time in s.
+    /// Frame nearest to a time in s.
     pub fn at_time(&self, time: f64) -> Option<Arc<Recorded>> {
         let apart = |frame: &Recorded| (frame.time - time).abs();
         let nearest = |a: &&Arc<Recorded>, b: &&Arc<Recorded>| apart(a).total_cmp(&apart(b));
         self.frames.iter().min_by(nearest).cloned()
     }
 
-    /// The number of the oldest frame, 0 if there is none.
+    /// Number of the oldest frame, 0 if there is none.
     pub fn first(&self) -> u64 {
         self.frames.front().map_or(0, |frame| frame.number)
     }
 
-    /// The number of the newest frame, 0 if there is none.
+    /// Number of the newest frame, 0 if there is none.
     pub fn last(&self) -> u64 {
         self.frames.back().map_or(0, |frame| frame.number)
     }
 
-    /// How many frames there are.
+    /// Number of recorded frames.
     pub fn len(&self) -> usize {
         self.frames.len()
     }
 
-    /// What they take.
+    /// Memory of the recorded frames in bytes.
     pub fn bytes(&self) -> usize {
         self.bytes
     }
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_oldest_give_way_and_the_nearest_is_found() {
+    fn oldest_frames_are_dropped_and_nearest_is_found() {
         let mut recording = Recording::of_room(100);
         assert!(recording.at(3).is_none() && recording.at_time(0.0).is_none());
         for number in 0..5 {

@@ -1,21 +1,21 @@
-//! What is said of a simulation, in plain words, with numbers as `voxsoft.units` writes them.
+//! Sentences on a simulation for the user, with numbers as `voxsoft.units` writes them.
 
 use voxsoft_solid::vector::Vec3;
 
-/// What is said of a step that ended early.
+/// Sentence on a step whose contact did not converge.
 pub(crate) const UNSETTLED: &str =
     "Contact has not settled in this step: slow it down to see it right";
 
-/// A number with so many significant digits, as people read it: never with an exponent.
+/// Formats a number with significant digits and no exponent.
 fn significant(value: f64, digits: usize) -> String {
-    // Rounded first, as 9.996 has one digit more before the point when it is.
+    // Rounds first: 9.996 gains a digit before the point.
     let rounded: f64 = format!("{value:.*e}", digits - 1)
         .parse()
         .expect("a number that was just written");
     format!("{rounded}")
 }
 
-/// A time with three digits.
+/// Formats a time with three digits.
 pub fn time_text(seconds: f64) -> String {
     if seconds == 0.0 {
         return "0 s".into();
@@ -27,13 +27,13 @@ pub fn time_text(seconds: f64) -> String {
     format!("{} s", significant(seconds, 3))
 }
 
-/// That a body came to rest.
+/// Sentence on a body that came to rest.
 pub fn at_rest(seconds: f64, tolerance: f64) -> String {
     let (time, share) = (time_text(seconds), significant(100.0 * tolerance, 2));
     format!("At rest after {time}: forces balance within {share} % of the load.")
 }
 
-/// How slowly a motion is shown and, where it slows itself down, why.
+/// Sentence on slow motion, with the reason if it was chosen automatically.
 pub fn slowed(factor: f64, rest_in: Option<f64>) -> String {
     let why = rest_in.map_or(String::new(), |seconds| {
         format!(", as it comes to rest within {}", time_text(seconds))
@@ -42,7 +42,7 @@ pub fn slowed(factor: f64, rest_in: Option<f64>) -> String {
     format!("Shown {times} times slower than real time{why}.")
 }
 
-/// That a body could not be followed, where, and what to try.
+/// Sentence on divergence, with the place and a suggestion.
 pub fn diverged(seconds: f64, place: Option<Vec3>) -> String {
     let near = place.map_or(String::new(), |at| {
         let [x, y, z] = at.map(|value| format!("{:.1}", 1e3 * value));
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_have_three_digits_and_a_unit_that_suits_them() {
+    fn times_have_three_digits_and_a_suitable_unit() {
         let times = [0.0, 0.81234, 0.0497, 12.0, 999.96, 1e-5, 0.1].map(time_text);
         let expected = [
             "0 s",
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn rest_and_breakdown_say_when_where_and_what_to_try() {
+    fn rest_and_divergence_sentences() {
         let sentence = "At rest after 0.8 s: forces balance within 0.01 % of the load.";
         assert_eq!(at_rest(0.8, 1e-4), sentence);
         let sentence = diverged(0.31, Some([0.01, 0.0, 0.02]));

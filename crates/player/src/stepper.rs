@@ -2,12 +2,12 @@ use voxsoft_solid::{Problem, Stepper};
 use voxsoft_statics::{Implicit, ImplicitSettings};
 use voxsoft_xpbd::{Dynamics, Live};
 
-/// What moves a problem live.
+/// Makes the stepper of a live problem.
 ///
-/// Bodies with hyperelastic voxels take implicit steps: their stiff change of volume would ask for explicit ones of
-/// microseconds. Bodies of springs and layers alone take the substeps that their frequency allows, and so does any
-/// body whose substeps are asked for. What touches takes implicit steps in any case, and so does what tendons pull, whose
-/// stiffness is thousands of times that of what they run through.
+/// Bodies with hyperelastic voxels take implicit steps: their stiff volumetric response would need explicit ones of
+/// microseconds. Bodies of lattice springs and membranes alone take the explicit substeps that their frequency allows,
+/// and so does any body for which substeps are given. Problems with contact or tendons always take implicit steps; a
+/// tendon is thousands of times as stiff as the body that it runs through.
 pub fn stepper(problem: Problem, settings: Dynamics) -> Box<dyn Stepper> {
     let explicit = problem.body().bricks().is_empty() || settings.substeps.is_some();
     let stiff = problem.contact().is_some() || problem.has_tendons();

@@ -1,4 +1,4 @@
-//! What touches what, and where rigid objects are.
+//! Reports of contact and of poses of rigid objects.
 
 use serde::{Deserialize, Serialize};
 use voxsoft_contact::touch::live::LiveTouch;
@@ -8,17 +8,18 @@ use voxsoft_solid::{Problem, Rigid};
 
 use crate::event::{Moment, Pose, Touch};
 
-/// A rigid object: the vertices that carry it, and the middle of its box at first in m, by which its pose is told.
+/// A rigid object: the vertices that carry it, and the center of its first bounding box, the reference point of its
+/// pose.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Placed {
-    /// Of the problem.
+    /// Vertices of the problem that carry it.
     pub vertices: [u32; 4],
-    /// In m.
+    /// Center of its bounding box in its first pose, in m.
     pub middle: Vec3,
 }
 
 impl Placed {
-    /// Where its middle is, and its rotation from its first pose.
+    /// Position of its center and rotation from its first pose.
     pub(crate) fn pose(&self, rest: &[Vec3], positions: &[Vec3]) -> (Vec3, Mat3) {
         let mean = |all: &[Vec3]| {
             let sum = self.vertices.iter().map(|v| all[*v as usize]);
@@ -30,17 +31,17 @@ impl Placed {
     }
 }
 
-/// The contact of what is played.
+/// Names and objects of the contact of a live problem.
 #[derive(Debug, Clone)]
 pub struct Touching {
-    /// What each of its surfaces is called.
+    /// Names of its surfaces.
     pub names: Vec<String>,
     /// The objects that are drawn.
     pub objects: Vec<Placed>,
 }
 
 impl Touching {
-    /// What there is to tell of the frame of a number at a time (s), its vertices being at `positions`.
+    /// Contacts and poses of a frame, given by number and time (s), with vertices at `positions` (m).
     pub(crate) fn moment(
         &self,
         (frame, time): (u64, f64),
@@ -83,7 +84,7 @@ impl Touching {
         }
     }
 
-    /// All positions, of which those of the body alone may be known; objects stand in poses that are given.
+    /// Completes positions of the body alone with those of the objects, placed at the given poses.
     pub(crate) fn completed(
         &self,
         rest: &[Vec3],

@@ -1,4 +1,4 @@
-//! What is seen of a player.
+//! Views of a player: numbers, displayed frame, contacts, plots and grabs.
 
 use std::borrow::Cow;
 
@@ -13,7 +13,7 @@ use crate::player::Player;
 use crate::sentences::UNSETTLED;
 
 impl Player {
-    /// All numbers of the moment.
+    /// Present numbers of the player.
     pub fn stat(&self) -> Stat {
         let moving = self.moving();
         Stat {
@@ -44,17 +44,17 @@ impl Player {
         }
     }
 
-    /// Whether time runs, and why not.
+    /// Mode: time runs, or the reason why not.
     pub fn mode(&self) -> Mode {
         self.mode
     }
 
-    /// Whether time runs.
+    /// True while time runs.
     pub fn moving(&self) -> bool {
         self.mode == Mode::Playing
     }
 
-    /// Whether time runs again once a load or a pull wakes the body.
+    /// True if play was requested, so that time runs again once a load or a grab wakes the body.
     pub fn wants_play(&self) -> bool {
         self.wants_play
     }
@@ -64,18 +64,18 @@ impl Player {
         self.stepper.problem()
     }
 
-    /// The number of the frame that is looked at.
+    /// Number of the displayed frame.
     pub fn frame(&self) -> u64 {
         self.shown.as_ref().map_or(self.frame, |shown| shown.number)
     }
 
-    /// The time that is looked at in s.
+    /// Time of the displayed frame in s.
     pub fn time(&self) -> f64 {
         let now = || self.stepper.state().time;
         self.shown.as_ref().map_or_else(now, |shown| shown.time)
     }
 
-    /// What is looked at, with the loads and the hands of its time.
+    /// The displayed frame, with its loads and grabs.
     pub fn shown(&self) -> Shown {
         let (loads, grabs) = match &self.shown {
             Some(shown) => (shown.loads.clone(), shown.grabs.clone()),
@@ -89,12 +89,12 @@ impl Player {
         }
     }
 
-    /// Whether the body has its unloaded shape still.
+    /// True while the body still has its unloaded shape.
     pub fn unloaded(&self) -> bool {
         self.numbers.steps == 0 && !self.solved
     }
 
-    /// The state that is looked at; a recorded one has no velocities.
+    /// State of the displayed frame; a recorded one has zero velocities.
     pub fn state(&self) -> Cow<'_, State> {
         match &self.shown {
             Some(shown) => Cow::Owned(shown.state()),
@@ -102,13 +102,13 @@ impl Player {
         }
     }
 
-    /// The message that says what is shown.
+    /// Packs the topology message of the display.
     pub fn topology(&self) -> Vec<u8> {
         let body = self.stepper.problem().body();
         self.surface.topology(body, self.topology)
     }
 
-    /// The message of what is looked at, on the surface or on another display of the same body. `seq` is the
+    /// Packs the message of the displayed frame, on the surface or on another display of the same body. `seq` is the
     /// number of the last command that the reader sent.
     pub fn pack_frame(&self, field: Field, seq: u32, display: Option<&Display>) -> Vec<u8> {
         let flags = match self.mode {
@@ -128,7 +128,7 @@ impl Player {
         display.frame(body, &self.state(), field, head)
     }
 
-    /// What touches what now, and where objects are; nothing without contact.
+    /// Present contacts and poses of objects; none without contact.
     pub fn moment(&self) -> Option<Event> {
         let touching = self.touching.as_ref()?;
         let state = self.stepper.state();
@@ -138,12 +138,12 @@ impl Player {
         Some(Event::Moment(MomentOf { topology, moment }))
     }
 
-    /// All rows of the plots, to replace those that a reader has.
+    /// Returns all rows of the plots, to replace those that a reader has.
     pub fn whole_plot(&self) -> Plot {
         self.plots.whole(self.topology)
     }
 
-    /// The springs that pull now, and how hard.
+    /// Active grabs with their forces.
     pub fn grabs(&self) -> Vec<GrabState> {
         let positions = &self.stepper.state().positions;
         let asked = |id: u32| self.held.get(&id);

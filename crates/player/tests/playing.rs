@@ -1,4 +1,4 @@
-//! A beam that sags under its weight, played as a page plays it.
+//! Tests of a player on a beam that sags under its weight, played as in a page.
 
 use std::cell::Cell;
 use std::sync::Mutex;
@@ -11,7 +11,7 @@ use voxsoft_xpbd::{Damping, Dynamics};
 
 const SIDE: f64 = 5e-3;
 
-/// A clock that goes on by a tick each time it is looked at.
+/// Clock that advances by a tick at each reading.
 #[derive(Default)]
 struct Ticking {
     now: Mutex<Cell<f64>>,
@@ -62,7 +62,7 @@ fn beam(damping: Damping) -> Player {
     Player::new(problem, settings, surface, cast)
 }
 
-/// Lets time run until it stands still; gives all that was told.
+/// Advances until time stops; returns all events.
 fn settle(player: &mut Player, clock: &Ticking) -> Vec<Event> {
     let mut reported = Vec::new();
     for _ in 0..5000 {
@@ -83,7 +83,7 @@ fn last<'a>(reported: &'a [Event]) -> &'a Stat {
 }
 
 #[test]
-fn it_sags_to_rest_slowly_enough_to_be_seen_and_all_rows_are_reported() {
+fn beam_sags_to_rest_in_slow_motion_and_reports_all_rows() {
     let (mut player, clock) = (beam(Damping::Critical), Ticking::default());
     let reported = player.command(Command::Play).unwrap();
     let stat = last(&reported);
@@ -103,7 +103,7 @@ fn it_sags_to_rest_slowly_enough_to_be_seen_and_all_rows_are_reported() {
 }
 
 #[test]
-fn what_is_at_rest_wakes_for_a_load_if_time_ran_and_only_then() {
+fn load_wakes_body_at_rest_only_if_playing() {
     let (mut player, clock) = (beam(Damping::Critical), Ticking::default());
     let change = |factor| Command::Load {
         index: 0,
@@ -131,7 +131,7 @@ fn what_is_at_rest_wakes_for_a_load_if_time_ran_and_only_then() {
 }
 
 #[test]
-fn a_hand_pulls_with_the_force_of_its_spring_and_lets_go() {
+fn grab_pulls_with_its_spring_force_and_releases() {
     let (mut player, clock) = (beam(Damping::Critical), Ticking::default());
     player.command(Command::Play).unwrap();
     let grab = |target| Command::Grab {
@@ -155,7 +155,7 @@ fn a_hand_pulls_with_the_force_of_its_spring_and_lets_go() {
 }
 
 #[test]
-fn a_recorded_frame_is_looked_at_and_the_present_is_as_it_was() {
+fn seek_shows_recorded_frame_and_keeps_present() {
     let (mut player, clock) = (beam(Damping::Critical), Ticking::default());
     let seek = |frame, time| Command::Seek { frame, time };
     assert!(player.command(seek(1, None)).is_err());
@@ -176,7 +176,7 @@ fn a_recorded_frame_is_looked_at_and_the_present_is_as_it_was() {
 }
 
 #[test]
-fn a_frame_by_hand_takes_at_least_a_step_and_slow_motion_waits_for_its_own() {
+fn single_step_takes_a_step_and_slow_motion_waits() {
     let (mut player, clock) = (beam(Damping::Critical), Ticking::default());
     let pace = |factor| Command::Pace { factor };
     assert!(player.command(pace(Some(0.0))).is_err());
@@ -190,7 +190,7 @@ fn a_frame_by_hand_takes_at_least_a_step_and_slow_motion_waits_for_its_own() {
 }
 
 #[test]
-fn the_budget_of_the_clock_cuts_a_frame_short() {
+fn clock_budget_cuts_a_frame_short() {
     let clock = Ticking {
         tick: 0.001,
         ..Ticking::default()
@@ -205,7 +205,7 @@ fn the_budget_of_the_clock_cuts_a_frame_short() {
 }
 
 #[test]
-fn commands_and_events_have_the_names_of_the_protocol() {
+fn command_and_event_names_match_protocol() {
     let read = |text| serde_json::from_str::<Command>(text);
     let n = read(r#"{"t": "step", "seq": 4}"#).unwrap();
     assert_eq!(n, Command::Step { n: 1 });

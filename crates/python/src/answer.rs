@@ -1,4 +1,4 @@
-//! What solvers found, as Python sees it: frozen classes with typed attributes, and how a solution ended.
+//! Results of the solvers for Python: frozen classes with typed attributes, and the status of a solution.
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
@@ -9,7 +9,7 @@ use crate::simulate::PyProblem;
 use crate::tendon::PyTendon;
 use crate::touch_answer::{PyContact, PyObjectPose, PyTouchHistory};
 
-/// How a solution ended.
+/// Status at the end of a solution.
 #[pyclass(
     frozen,
     eq,
@@ -49,7 +49,7 @@ impl From<Status> for PyStatus {
     }
 }
 
-/// The last good state, how it was reached and what was recorded on the way.
+/// The last good state, the steps that led to it, and the records taken on the way.
 #[pyclass(frozen, get_all, name = "Answer", module = "voxsoft._core")]
 pub struct PyAnswer {
     pub status: PyStatus,
@@ -74,32 +74,32 @@ pub struct PyAnswer {
     /// Pressure, volume, mass, flow, work and energy of each chamber with a fluid, and at each record.
     pub chambers: Py<PyArray2<f64>>,
     pub chamber_records: Py<PyArray3<f64>>,
-    /// What touches what.
+    /// Contact of each pair of surfaces that touch.
     pub contacts: Vec<Py<PyContact>>,
-    /// Where the objects are.
+    /// Poses of the rigid objects.
     pub objects: Vec<Py<PyObjectPose>>,
-    /// What touched what, and where the objects were, at the times of the records.
+    /// Contacts and poses of objects at the times of the records.
     pub history: Option<Py<PyTouchHistory>>,
-    /// In the order of the design.
+    /// Tendons in the order of the design.
     pub tendons: Vec<Py<PyTendon>>,
-    /// Contact over the vertices of the body; none where the problem has none.
+    /// Contact over the vertices of the body; none for a problem without contact.
     pub contact_field: Option<Py<PyContactField>>,
-    /// The problem with the memory there.
+    /// The problem with its history variables (softening, contact, fluid) at the end.
     pub problem: Py<PyProblem>,
 }
 
-/// How statics followed the loads.
+/// Load path of a static solution.
 #[pyclass(frozen, get_all, name = "LoadPath", module = "voxsoft._core")]
 pub struct PyPath {
     /// The load factor of the answer.
     pub factor: f64,
-    /// The part of what the control was asked to follow that was followed.
+    /// Part of the requested range of the control that was reached.
     pub reached: f64,
     /// The load factor at the first limit, if one was met.
     pub limit: Option<f64>,
-    /// Whether the answer is stable under constant loads.
+    /// True for an answer that is stable under constant loads.
     pub stable: bool,
-    /// The bytes that the tangent takes, where that is too many.
+    /// Bytes that the tangent takes, if they exceed the limit; otherwise 0.
     pub needed_bytes: u64,
     /// The load factors at which the body snapped to another equilibrium.
     pub snaps: Vec<f64>,
@@ -117,7 +117,7 @@ pub struct PySettlement {
     pub back_offs: Py<PyArray1<u32>>,
 }
 
-/// Whether a run goes on.
+/// Status of a live run.
 #[pyclass(
     frozen,
     eq,
@@ -143,22 +143,22 @@ impl From<LiveStatus> for PyLiveStatus {
     }
 }
 
-/// How far a run has come.
+/// Progress of a live run.
 #[pyclass(frozen, get_all, name = "Advance", module = "voxsoft._core")]
 pub struct PyAdvance {
     pub status: PyLiveStatus,
     pub time: f64,
     pub substep: f64,
-    /// All so far.
+    /// Substeps since the start.
     pub substeps: u64,
-    /// In this call.
+    /// Substeps taken in this call.
     pub taken: u32,
     pub back_offs: u32,
     pub residual: f64,
     pub elastic: f64,
     pub kinetic: f64,
     pub breakdown: Option<(usize, Vec3, f64)>,
-    /// Of the clock, for this call.
+    /// Wall-clock time of this call, s.
     pub seconds: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Where a body overlaps itself.
+//! Self-intersection of a body.
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -6,10 +6,10 @@ use voxsoft_contact::{Body, Covered, Overlap, penetration as find};
 
 use crate::gate;
 
-/// Depth, point now, both points of the unloaded body, both tets, whether inverted: of each overlap.
+/// An overlap: depth, present point, both points of the unloaded body, both tets, inverted or not.
 type PyOverlap = (f64, [f64; 3], [[f64; 3]; 2], [i32; 2], bool);
 
-/// Pairs of triangles, overlaps, and of covered vertices each with the tet that it is in and its overlap.
+/// Pairs of triangles, overlaps, and covered vertices, each with the tet that it is in and its overlap.
 type PyPenetration<'py> = (
     Bound<'py, PyArray2<u32>>,
     Vec<PyOverlap>,
@@ -52,7 +52,7 @@ pub fn penetration<'py>(
     ))
 }
 
-/// The rows of a matrix where they are.
+/// The rows of a matrix in place, not copied.
 fn rows<'a, const N: usize, T: numpy::Element>(
     array: &'a PyReadonlyArray2<'_, T>,
 ) -> PyResult<&'a [[T; N]]> {

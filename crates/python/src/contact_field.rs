@@ -1,4 +1,4 @@
-//! Contact over the vertices of the body, as Python is told of it.
+//! Contact field over the vertices of the body, for Python.
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use voxsoft_contact::touch::Touch;
@@ -7,16 +7,16 @@ use voxsoft_solid::vector::Vec3;
 use crate::simulate::from_rows;
 use crate::touch::Touching;
 
-/// What touches the vertices of the body.
+/// Contact pressure, friction and gap at the vertices of the body.
 #[pyclass(frozen, get_all, name = "ContactField", module = "voxsoft._core")]
 pub struct PyContactField {
-    /// Pa.
+    /// Contact pressure, Pa.
     pub pressure: Py<PyArray1<f64>>,
-    /// On the body, Pa.
+    /// Friction on the body, Pa.
     pub friction: Py<PyArray2<f64>>,
-    /// m; infinite where nothing is near.
+    /// Gap, m; infinite where nothing is near.
     pub gap: Py<PyArray1<f64>>,
-    /// Of the surface that each stands for, m².
+    /// Area of the surface that each vertex stands for, m².
     pub area: Py<PyArray1<f64>>,
 }
 

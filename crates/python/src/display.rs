@@ -1,4 +1,4 @@
-//! `_core.Outline` and `_core.Display`: what is shown of a mesh, packed into messages.
+//! `_core.Outline` and `_core.Display`: the displayed part of a mesh, packed into messages.
 use std::sync::Arc;
 
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
@@ -31,7 +31,7 @@ pub(crate) fn of_vertices(
     (got == expected).then_some(read).ok_or_else(message)
 }
 
-/// A surface or tetrahedra of a mesh, whether there is a problem or not.
+/// A surface or tetrahedra of a mesh, which needs no problem.
 #[pyclass(frozen, name = "Outline", module = "voxsoft._core")]
 pub struct PyOutline {
     rest: Vec<Vec3>,
@@ -55,7 +55,7 @@ impl PyOutline {
         Ok(Self { rest, outline })
     }
 
-    /// A surface with the voxels behind it, (k, 8), by their corners.
+    /// A surface with the voxels behind it, as corners (k, 8).
     #[staticmethod]
     fn solid(
         vertices: PyReadonlyArray2<'_, f64>,
@@ -88,7 +88,7 @@ impl PyOutline {
         Ok(Self { rest, outline })
     }
 
-    /// The vertices of the mesh that are shown: those of a surface in ascending order, then those within.
+    /// Displayed vertices of the mesh: those of a surface in ascending order, then those within.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, self.outline.vertices())
@@ -109,8 +109,8 @@ impl PyOutline {
         PyBytes::new(py, &bytes)
     }
 
-    /// A frame of positions (m) of all vertices, with values of the shown ones; without, they are zero.
-    /// Any field has values here, also one that is none of the core's.
+    /// Packs a frame of positions (m) of all vertices, with field values of the displayed ones (zero by default).
+    /// `field` may also be a number that the core does not know.
     #[pyo3(signature = (positions, *, topology, field, values=None, frame=0, seq=0, flags=0, time=0.0))]
     #[expect(
         clippy::too_many_arguments,
@@ -163,7 +163,7 @@ pub fn pack_smooth<'py>(
     Ok(PyBytes::new(py, &bytes))
 }
 
-/// A surface or tetrahedra of a body, to be packed into frames.
+/// A surface or tetrahedra of a body, for packing into frames.
 #[pyclass(frozen, name = "Display", module = "voxsoft._core")]
 pub struct PyDisplay {
     pub(crate) problem: Arc<Handle>,
@@ -189,7 +189,7 @@ impl PyDisplay {
         Ok(Self { problem, display })
     }
 
-    /// A surface with the voxels behind it, (k, 8), by their corners.
+    /// A surface with the voxels behind it, as corners (k, 8).
     #[staticmethod]
     fn solid(
         problem: PyRef<'_, PyProblem>,
@@ -223,7 +223,7 @@ impl PyDisplay {
         Ok(Self { problem, display })
     }
 
-    /// The body vertices that are shown: those of a surface in ascending order, then those within.
+    /// Displayed vertices of the body: those of a surface in ascending order, then those within.
     #[getter]
     pub(crate) fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, self.display.vertices())
@@ -240,7 +240,7 @@ impl PyDisplay {
         PyBytes::new(py, &bytes)
     }
 
-    /// The frame of positions (m) that come from elsewhere.
+    /// Packs a frame of given positions (m).
     #[pyo3(signature = (positions, *, topology, frame, field, seq=0, flags=0, time=0.0, velocities=None))]
     #[expect(
         clippy::too_many_arguments,
@@ -278,7 +278,7 @@ impl PyDisplay {
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// A field at each of the vertices that are shown, at positions (m) of all; without velocities.
+    /// Values of a field at the displayed vertices, for given positions (m) of all vertices and zero velocities.
     fn values<'py>(
         &self,
         py: Python<'py>,

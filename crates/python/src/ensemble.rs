@@ -17,25 +17,25 @@ pub struct PyEnsemble(Arc<Ensemble>);
 
 #[pymethods]
 impl PyEnsemble {
-    /// The layout of a problem, or None for one that cannot be laid out.
+    /// Lays out a problem; None for one that an ensemble does not support.
     #[staticmethod]
     fn of(problem: PyRef<'_, PyProblem>) -> Option<Self> {
         Ensemble::of(&problem.now()).map(Arc::new).map(Self)
     }
 
-    /// The products of 3×3 blocks that each factorization takes.
+    /// Number of products of 3×3 blocks in each factorization.
     #[getter]
     fn products(&self) -> u64 {
         self.0.products()
     }
 
-    /// The bytes that the tangents of one thread take.
+    /// Memory of the tangents of one thread in bytes.
     #[getter]
     fn bytes(&self) -> u64 {
         self.0.bytes()
     }
 
-    /// The candidates that are taken at a time on one thread.
+    /// Number of candidates solved at a time on one thread.
     #[getter]
     fn lanes(&self) -> usize {
         self.0.lanes()
@@ -63,7 +63,7 @@ impl PyEnsemble {
                 forces,
             });
         }
-        // One Newton step of a wide body takes longer than Ctrl-C should.
+        // Owned work lets Ctrl-C return at once: one Newton step of a wide body takes longer.
         let ensemble = Arc::clone(&self.0);
         let found = gate::run_owned(py, move |cancel| {
             let stop = || cancel.load(Ordering::Relaxed);

@@ -17,9 +17,9 @@ use crate::gate;
 use crate::simulate::{PyProblem, from_rows};
 use crate::watch::{Watch, collect_sensors};
 
-/// The adjoint states (k, n, 3) for gradients (k, n, 3) of numbers at an equilibrium, by the vertices of the body: those
-/// that carry objects have none. `memory` are the bytes
-/// that the tangent may take; a `MemoryError` carries those that it would.
+/// Adjoint states (k, n, 3) for gradients (k, n, 3) of scalar objectives at an equilibrium, over the vertices of the
+/// body without those that carry objects. `memory` is the limit in bytes for the tangent; a `MemoryError` carries the
+/// bytes needed.
 #[pyfunction]
 #[pyo3(signature = (problem, positions, gradients, *, memory=u64::MAX))]
 pub fn adjoint<'py>(
@@ -57,7 +57,7 @@ pub fn adjoint<'py>(
     PyArray1::from_vec(py, flat).reshape([states.len(), own, 3])
 }
 
-/// A `MemoryError` carries the bytes that it takes.
+/// Maps an error of an adjoint solution to Python; a `MemoryError` carries the bytes needed.
 pub(crate) fn to_python(error: AdjointError) -> PyErr {
     match error {
         AdjointError::OutOfMemory(bytes) => PyMemoryError::new_err(bytes),
@@ -67,10 +67,10 @@ pub(crate) fn to_python(error: AdjointError) -> PyErr {
     }
 }
 
-/// The equilibrium. `control` is "load", "time" (with `from_time`, `to_time`, `longest`), "arc-length" (with `steps`) or
-/// "volume" (with `steps`, `ratio`);
-/// `start` are positions, and `pressures` what the voxels there have instead of their own, see `Problem.pressures`;
-/// `linear` is "auto", "direct" or "iterative", `memory` the bytes that the tangent may take.
+/// Solves for the equilibrium. `control` is "load", "time" (with `from_time`, `to_time`, `longest`), "arc-length" (with
+/// `steps`) or "volume" (with `steps`, `ratio`); `start` are initial positions, and `pressures` replace the pressures
+/// of the voxels there, see `Problem.pressures`; `linear` is "auto", "direct" or "iterative", `memory` the limit in
+/// bytes for the tangent.
 #[pyfunction]
 #[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, from_time=None, to_time=f64::INFINITY, longest=1.0, linear="auto", memory=u64::MAX, start=None, pressures=None, sensors=vec![], frames=false, progress=None))]
 #[expect(

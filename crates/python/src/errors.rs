@@ -1,10 +1,10 @@
-//! Exceptions of `voxsoft.errors`, raised from Rust with place, problem and advice.
+//! Exceptions of `voxsoft.errors`, raised from Rust with place, problem and hint.
 use pyo3::prelude::*;
 use voxsoft_solid::ProblemError;
 
-/// An exception of the package's tree: `class(place, what, hint)`.
+/// Makes an exception of the package's hierarchy from its class, place, message and hint.
 ///
-/// If the package cannot be imported, the import error is what the caller sees.
+/// If the package cannot be imported, returns the import error.
 pub fn exception(py: Python<'_>, class: &str, place: &str, what: &str, hint: &str) -> PyErr {
     let made = py
         .import("voxsoft.errors")
@@ -13,7 +13,7 @@ pub fn exception(py: Python<'_>, class: &str, place: &str, what: &str, hint: &st
     made.map_or_else(|error| error, PyErr::from_value)
 }
 
-/// The exception for each way in which a problem is not one: all are bad input, and `ValueError`s too.
+/// Maps each error of a problem to its exception: all are invalid input, and `ValueError`s too.
 pub fn to_python(error: ProblemError) -> PyErr {
     let (class, place) = match error {
         ProblemError::RestVolume { .. }
@@ -22,7 +22,7 @@ pub fn to_python(error: ProblemError) -> PyErr {
         ProblemError::NotOneCube { .. } | ProblemError::OnTied { .. } => ("DesignError", "refine"),
         ProblemError::FlatMembrane { .. } => ("DesignError", "layers"),
         ProblemError::OnAxis { .. } => ("DesignError", "parts"),
-        // The message says which.
+        // The message names the place.
         ProblemError::Length { .. }
         | ProblemError::Index { .. }
         | ProblemError::NotPositive { .. }

@@ -11,7 +11,7 @@ use voxsoft_solid::{Body, State};
 use crate::gate;
 use crate::simulate::{PyProblem, from_rows};
 
-/// The elements of a problem's body: voxels, or tetrahedra where it is not made of voxels.
+/// Elements of a problem's body: voxels, or tetrahedra where it is not made of voxels.
 #[pyclass(frozen, name = "Fields", module = "voxsoft._core")]
 pub struct PyFields {
     problem: Py<PyProblem>,
@@ -19,7 +19,7 @@ pub struct PyFields {
     blocks: Vec<u32>,
 }
 
-/// The components of a symmetric matrix in the order of ParaView: xx, yy, zz, xy, yz, xz.
+/// Components of a symmetric matrix in the order of ParaView: xx, yy, zz, xy, yz, xz.
 const COMPONENTS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
 
 fn components(measure: &Measure) -> [f64; 6] {
@@ -44,7 +44,7 @@ impl PyFields {
         })
     }
 
-    /// The block of the mesh that each element is.
+    /// Block of the mesh of each element.
     #[getter]
     fn blocks<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, &self.blocks)
@@ -79,7 +79,8 @@ impl PyFields {
         Ok(found)
     }
 
-    /// The same averaged on the vertices of the body, as the studio colors by them: those that carry objects are left out.
+    /// Stress and strain averaged on the vertices of the body, as the studio colors by them; vertices that carry
+    /// objects are left out.
     fn at_vertices<'py>(
         &self,
         py: Python<'py>,

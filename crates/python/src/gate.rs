@@ -1,4 +1,4 @@
-//! The ways from Python into long Rust work: they free the GIL and handle Ctrl-C.
+//! Entry points from Python into long Rust work: they release the GIL and handle Ctrl-C.
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,15 +7,15 @@ use std::time::Duration;
 
 use pyo3::prelude::*;
 
-/// How often the waiting thread asks Python whether Ctrl-C was pressed.
+/// Period at which the waiting thread checks Python's signals for Ctrl-C.
 const SIGNAL_PERIOD: Duration = Duration::from_millis(50);
 
 /// Runs `work` on a thread of the pool that its parallel loops use, with the GIL released, and waits for its
 /// end even after Ctrl-C.
 ///
-/// Within the pool a loop has no thread to wait for: from outside each would cost two changes of thread,
-/// as long as meshing a small body takes. For work that borrows and looks at `cancel` often: it is set when
-/// a signal handler raises (`KeyboardInterrupt`), and the exception is passed on once `work` has returned.
+/// A parallel loop started within the pool need not hand over to another thread; from outside each would cost two
+/// context switches, as long as meshing a small body takes. For work that borrows and checks `cancel` often: it is set
+/// when a signal handler raises (`KeyboardInterrupt`), and the exception is passed on once `work` has returned.
 pub fn run<T, F>(py: Python<'_>, work: F) -> PyResult<T>
 where
     T: Send,
@@ -37,10 +37,10 @@ where
     })
 }
 
-/// As [`run`] for work that owns what it needs, which Ctrl-C leaves behind.
+/// Runs `work` like [`run`], but for work that owns its data and is abandoned on Ctrl-C.
 ///
-/// A factorization or a sort cannot be stopped half-way. The exception does not wait for it: the thread
-/// ends by itself when it next looks at `cancel`, or has finished, and its answer is dropped.
+/// A factorization or a sort cannot be stopped half-way. The exception does not wait for it: the thread ends by itself
+/// when it next checks `cancel`, or has finished, and its answer is dropped.
 pub fn run_owned<T, F>(py: Python<'_>, work: F) -> PyResult<T>
 where
     T: Send + 'static,
@@ -63,14 +63,14 @@ where
     })
 }
 
-/// Whether Python was called by work of the pool, a shape's function say, and calls the core in turn: to wait
-/// there for the pool could take for ever.
+/// True on a thread of the pool: work there has called Python (a shape's function, say), which calls the core in turn.
+/// Waiting for the pool could then deadlock.
 fn within_pool() -> bool {
     rayon::current_thread_index().is_some()
 }
 
-/// Waits for an answer. Python handles signals on its main thread only, so the calling thread asks
-/// every [`SIGNAL_PERIOD`].
+/// Waits for an answer. Python handles signals on its main thread only, so the calling thread checks them every
+/// [`SIGNAL_PERIOD`].
 fn wait<T>(receiver: &Receiver<T>, cancel: &AtomicBool) -> PyResult<T> {
     loop {
         match receiver.recv_timeout(SIGNAL_PERIOD) {

@@ -1,11 +1,11 @@
-//! A problem whose voxels may be softened from outside.
+//! Shared handle of a problem whose softening history can be replaced.
 use std::sync::{Arc, PoisonError, RwLock};
 
 use voxsoft_solid::Problem;
 
-/// The problem of a `_core.Problem`, as its displays and fields see it.
+/// Problem of a `_core.Problem`, shared with its displays and fields.
 ///
-/// Each solution works on a value of its own; peaks of softening, which a stored result brings along, replace the value whole.
+/// Each solution works on a copy of its own; peaks of softening from a stored result replace the whole value.
 pub(crate) struct Handle(RwLock<Arc<Problem>>);
 
 impl Handle {
@@ -13,13 +13,13 @@ impl Handle {
         Self(RwLock::new(Arc::new(problem)))
     }
 
-    /// The problem with its memory now.
+    /// Present problem with its history variables.
     pub fn now(&self) -> Arc<Problem> {
-        // A value is replaced whole, so that a thread that died leaves none half written.
+        // A value is replaced whole, so that a thread that panicked leaves none half written.
         Arc::clone(&self.0.read().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Lets the problem go on from other memory.
+    /// Changes the problem, such as its history variables.
     pub fn change(&self, act: impl FnOnce(&mut Problem)) {
         let mut kept = self.0.write().unwrap_or_else(PoisonError::into_inner);
         act(Arc::make_mut(&mut kept));

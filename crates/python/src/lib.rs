@@ -1,4 +1,4 @@
-//! Python binding: conversions, error mapping and the gate that frees the GIL. No numerics.
+//! Python binding: conversions, error mapping and release of the GIL. No numerics.
 use pyo3::prelude::*;
 
 mod answer;

@@ -1,4 +1,4 @@
-//! `_core.Live`: a run that goes on between calls.
+//! `_core.Live`: an interactive run that continues between calls.
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
@@ -21,7 +21,7 @@ use crate::gate;
 use crate::player::dynamics;
 use crate::simulate::{PyProblem, from_rows, rows};
 
-/// A problem in motion. Any thread may call any method; they take turns.
+/// Interactive run of a problem. Any thread may call any method; calls are serialized.
 #[pyclass(frozen, name = "Live", module = "voxsoft._core")]
 pub struct PyLive {
     surface: PyDisplay,
@@ -29,8 +29,8 @@ pub struct PyLive {
 }
 
 impl PyLive {
-    /// Locks in the calling thread, never in one of the pool: that could take up another call of the same
-    /// run while it waits in a loop, and would wait for itself.
+    /// Locks in the calling thread, never in one of the pool: a pool thread could pick up another call of the same run
+    /// while it waits in a loop, and would deadlock.
     fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Box<dyn Stepper>>> {
         let message = "an earlier call of this run panicked; please report it";
         self.live
@@ -38,7 +38,7 @@ impl PyLive {
             .map_err(|_| PyRuntimeError::new_err(message))
     }
 
-    /// Does something that is soon done.
+    /// Runs short work, without a check for Ctrl-C.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
@@ -75,7 +75,7 @@ impl PyLive {
     }
 }
 
-/// A grab as Python sees it: number, vertex, target, force in N, stretch in m.
+/// A grab for Python: number, vertex, target in m, force in N, stretch in m.
 type PyGrab = (u32, u32, Vec3, Vec3, f64);
 
 #[pymethods]
@@ -130,7 +130,7 @@ impl PyLive {
         })
     }
 
-    /// Asks for steps of another length in s; explicit ones are as long as they can be.
+    /// Requests steps of another length in s; explicit steps ignore it, as stability sets them.
     fn prefer_step(&self, py: Python<'_>, seconds: f64) -> PyResult<()> {
         if !(seconds > 0.0 && seconds.is_finite()) {
             let message = format!("seconds must be above zero, got {seconds}");
@@ -139,12 +139,12 @@ impl PyLive {
         self.with(py, |live| live.prefer_step(seconds))
     }
 
-    /// Takes as many substeps, fewer at rest or after a breakdown.
+    /// Takes `substeps` substeps, fewer at rest or after a breakdown.
     fn advance(&self, py: Python<'_>, substeps: u32) -> PyResult<PyAdvance> {
         self.report(py, || true, substeps)
     }
 
-    /// Takes substeps for so many seconds of the clock, at least one and no more than asked.
+    /// Takes substeps for `seconds` of wall-clock time, at least one and at most `max_substeps`.
     #[pyo3(signature = (seconds, max_substeps=u32::MAX))]
     fn advance_for(&self, py: Python<'_>, seconds: f64, max_substeps: u32) -> PyResult<PyAdvance> {
         let budget = Duration::try_from_secs_f64(seconds).map_err(|_| {
@@ -154,7 +154,7 @@ impl PyLive {
         self.report(py, || started.elapsed() < budget, max_substeps)
     }
 
-    /// Makes a load `factor` times its final value; `None` gives it its history back.
+    /// Sets a load to `factor` times its final value; `None` restores its load history.
     #[pyo3(signature = (load, factor))]
     fn set_load(&self, py: Python<'_>, load: usize, factor: Option<f64>) -> PyResult<()> {
         self.with(py, |live| live.set_load(load, factor))?
@@ -216,7 +216,7 @@ impl PyLive {
         Ok(from_rows(py, &velocities))
     }
 
-    /// The body vertices that are shown, in ascending order.
+    /// Displayed vertices of the body, in ascending order.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         self.surface.vertices(py)
@@ -226,7 +226,7 @@ impl PyLive {
         self.surface.pack_topology(py, topology)
     }
 
-    /// The frame of the present state on the surface, or on another display of the same problem.
+    /// Packs a frame of the present state on the surface, or on another display of the same problem.
     #[pyo3(signature = (topology, frame, field, seq=0, flags=0, display=None))]
     #[expect(clippy::too_many_arguments, reason = "a frame's head")]
     fn pack_frame<'py>(
@@ -251,7 +251,7 @@ impl PyLive {
             seq,
             flags,
         };
-        // A copy, so that the run can go on meanwhile.
+        // Copies the state, so that the run can go on meanwhile.
         let state = self.with(py, |live| live.state().clone())?;
         let problem = shown.problem.now();
         let body = problem.body();

@@ -1,4 +1,4 @@
-//! `_core.Material`, `_core.Fiber` and `_core.Winding`: what parts are made of, as frozen values.
+//! `_core.Material`, `_core.Fiber` and `_core.Winding`: materials of parts, as frozen values.
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
@@ -10,11 +10,11 @@ use voxsoft_solid::{
 use crate::errors::{exception, to_python};
 use crate::simulate::rows;
 
-/// Times, stretches, the power of them that counts, and the share of each block where it is a field.
+/// A growth factor: times (s), stretches, their exponent, and the share of each block if it is a field.
 type Factor<'py> = (Vec<f64>, Vec<f64>, f64, Option<PyReadonlyArray2<'py, f64>>);
 
-/// A family of fibers: a unit vector, a modulus in Pa, whether they carry compression, and the stretch at which they
-/// carry nothing.
+/// A family of fibers: a unit vector, a modulus in Pa, resistance to compression (or tension only), and the stretch at
+/// which they are free of stress.
 #[pyclass(frozen, from_py_object, name = "Fiber", module = "voxsoft._core")]
 #[derive(Clone)]
 pub struct PyFiber(Fiber);
@@ -74,14 +74,14 @@ pub struct PyMaterial(pub(crate) Material);
 
 #[pymethods]
 impl PyMaterial {
-    /// The paper's springs, from moduli.
+    /// Lattice material (the paper's springs), from moduli.
     #[staticmethod]
     #[pyo3(signature = (*, edge, bulk, density))]
     fn lattice(edge: f64, bulk: f64, density: f64) -> PyResult<Self> {
         made(LatticeMaterial::from_moduli(edge, bulk, density))
     }
 
-    /// The paper's springs, from raw compliances.
+    /// Lattice material (the paper's springs), from raw compliances.
     #[staticmethod]
     #[pyo3(signature = (*, edge, volume, density))]
     fn lattice_compliance(edge: f64, volume: f64, density: f64) -> PyResult<Self> {
@@ -106,7 +106,7 @@ impl PyMaterial {
         hyperelastic(Model::Yeoh { c }, bulk, density)
     }
 
-    /// Up to three pairs of a shear modulus and an exponent.
+    /// Ogden material of up to three terms, each a shear modulus and an exponent.
     #[staticmethod]
     #[pyo3(signature = (*, terms, bulk, density))]
     fn ogden(terms: Vec<(f64, f64)>, bulk: f64, density: f64) -> PyResult<Self> {
@@ -128,25 +128,26 @@ impl PyMaterial {
         hyperelastic(Model::Gent { shear, limit }, bulk, density)
     }
 
-    /// The same material with these families of fibers in place of any others.
+    /// Copy of the material with these families of fibers in place of any others.
     fn with_fibers(&self, py: Python<'_>, fibers: Vec<PyFiber>) -> PyResult<Self> {
         let fibers = fibers.into_iter().map(|fiber| fiber.0).collect();
         made(self.rubber(py, "fibers")?.with_fibers(fibers))
     }
 
-    /// The same material with these families of wound fibers in place of any others.
+    /// Copy of the material with these families of wound fibers in place of any others.
     fn with_windings(&self, py: Python<'_>, windings: Vec<PyWinding>) -> PyResult<Self> {
         let windings = windings.into_iter().map(|winding| winding.0).collect();
         made(self.rubber(py, "fibers")?.with_windings(windings))
     }
 
-    /// The same material with these branches that relax: share of the instantaneous modulus, time in s.
+    /// Copy of the material with a Prony series: share of the instantaneous modulus and relaxation time in s of each
+    /// branch.
     fn with_prony(&self, py: Python<'_>, branches: Vec<(f64, f64)>) -> PyResult<Self> {
         made(self.rubber(py, "prony")?.with_prony(branches))
     }
 
-    /// The same material, softer where it was stretched more before: Ogden and Roxburgh's constants, `m` in J/m³, and the
-    /// energy (J/m³) that all of it has had.
+    /// Copy of the material with the Mullins effect: Ogden and Roxburgh's constants `r`, `m` (J/m³) and `beta`, and the
+    /// energy (J/m³) that all of it has already had.
     #[pyo3(signature = (r, m, beta, first=0.0))]
     fn with_mullins(
         &self,
@@ -162,13 +163,13 @@ impl PyMaterial {
         ))
     }
 
-    /// The same material, free of stress when it is so many times as long along every axis.
+    /// Copy of the material with isotropic swelling: free of stress at this stretch along every axis.
     fn with_swelling(&self, py: Python<'_>, stretch: f64) -> PyResult<Self> {
         made(self.rubber(py, "activations")?.with_swelling(stretch))
     }
 
-    /// The same material that grows over time, and its fibers: times in s, stretches, a power and, where it is a field, the
-    /// share of each block with half its differences across it, for each factor.
+    /// Copy of the material with growth over time of itself and of its fibers. Each factor has times in s, stretches,
+    /// an exponent and, if it is a field, the share of each block with half its differences across it.
     fn with_growth(
         &self,
         py: Python<'_>,
@@ -196,7 +197,7 @@ impl PyMaterial {
         made(Ok(rubber.with_growth(of_material, of_fibers)))
     }
 
-    /// Young's modulus in Pa at small strain, of voxels with edges of so many m.
+    /// Young's modulus in Pa at small strain, for voxels with edges of `voxel_size` m.
     fn young(&self, voxel_size: f64) -> f64 {
         match &self.0 {
             Material::Lattice(material) => material.young(voxel_size),
@@ -204,7 +205,7 @@ impl PyMaterial {
         }
     }
 
-    /// Poisson's ratio under the same conditions.
+    /// Poisson's ratio at small strain, for voxels with edges of `voxel_size` m.
     fn poisson(&self, voxel_size: f64) -> f64 {
         match &self.0 {
             Material::Lattice(material) => material.poisson(voxel_size),
@@ -221,7 +222,7 @@ impl PyMaterial {
 }
 
 impl PyMaterial {
-    /// The hyperelastic material, which alone can have fibers and branches.
+    /// Returns the hyperelastic material; a lattice has no fibers, Prony branches, Mullins effect, swelling or growth.
     fn rubber(&self, py: Python<'_>, what: &str) -> PyResult<HyperelasticMaterial> {
         self.0.hyperelastic().cloned().ok_or_else(|| {
             let came = "are for hyperelastic materials, and this one is a lattice";

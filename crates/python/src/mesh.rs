@@ -1,4 +1,4 @@
-//! Meshes as tuples of arrays: from a grid, from tetrahedra, and their quality.
+//! Meshes as tuples of arrays: made from a grid or from tetrahedra, and their quality.
 use std::sync::Arc;
 
 use numpy::{
@@ -66,7 +66,7 @@ pub fn mesh_tets<'py>(
     }
 }
 
-/// The piece of each tetrahedron, from 0 in the order of their first ones.
+/// Face-connected component of each tetrahedron, numbered from 0 in the order of their first tetrahedra.
 #[pyfunction]
 pub fn mesh_pieces<'py>(
     py: Python<'py>,
@@ -123,7 +123,7 @@ fn mesh_to_python(py: Python<'_>, mesh: TetMesh) -> PyResult<PyTetMesh<'_>> {
     ))
 }
 
-/// The list as a matrix, moved and not copied.
+/// Converts a list to a matrix, without a copy.
 fn rows_to<const N: usize, T: Element>(
     py: Python<'_>,
     rows: Vec<[T; N]>,

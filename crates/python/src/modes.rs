@@ -1,4 +1,4 @@
-//! `_core.modes`: natural vibrations about an equilibrium.
+//! `_core.modes`: natural vibration modes about an equilibrium.
 use std::sync::atomic::Ordering;
 
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2};
@@ -8,11 +8,11 @@ use crate::equilibrium::to_python;
 use crate::gate;
 use crate::simulate::PyProblem;
 
-/// Squares of angular frequencies (k,) in 1/s², and shapes (k, n, 3) of unit modal mass in kg^-1/2.
+/// Squares of angular frequencies (k,) in 1/s², and mode shapes (k, n, 3) of unit modal mass in kg^-1/2.
 type Vibrations<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray3<f64>>);
 
-/// The `count` slowest vibrations about an equilibrium. `memory` are the bytes that the tangent may take; a
-/// `MemoryError` carries those that it would.
+/// The `count` lowest vibration modes about an equilibrium. `memory` is the limit in bytes for the tangent; a
+/// `MemoryError` carries the bytes needed.
 #[pyfunction]
 #[pyo3(signature = (problem, positions, count, *, memory=u64::MAX))]
 pub fn modes<'py>(

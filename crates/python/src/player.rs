@@ -1,4 +1,4 @@
-//! `_core.Scene` and `_core.Player`: a problem as it is played, in this process or in a page.
+//! `_core.Scene` and `_core.Player`: interactive play of a problem, in this process or in a page.
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Instant;
@@ -29,7 +29,7 @@ use crate::gate;
 use crate::handle::Handle;
 use crate::simulate::{PyProblem, from_rows, rows};
 
-/// How a problem moves live.
+/// Settings of live dynamics.
 pub(crate) fn dynamics(
     substeps: Option<u32>,
     damping: Option<f64>,
@@ -45,7 +45,7 @@ pub(crate) fn dynamics(
     }
 }
 
-/// The time since some moment, and whether Ctrl-C was pressed.
+/// Wall clock since `began`, canceled by Ctrl-C.
 struct Wall<'a> {
     began: Instant,
     cancel: &'a AtomicBool,
@@ -61,18 +61,19 @@ impl Clock for Wall<'_> {
     }
 }
 
-/// A problem with all it takes to play it: here, or in a page that opens its bytes.
+/// A problem with its display, controls and settings, for play here or in a page that opens its bytes.
 #[pyclass(frozen, name = "Scene", module = "voxsoft._core")]
 pub struct PyScene {
     problem: Arc<Handle>,
-    /// How many vertices its body has.
+    /// Number of vertices of its body, without those of objects.
     own: usize,
     scene: Scene,
 }
 
 #[pymethods]
 impl PyScene {
-    /// `objects` are the names of those that are drawn, with the middles of their boxes in m; of a problem with contact.
+    /// Makes a scene. For a problem with contact, `surfaces` are the names of all surfaces and `middles` the centers
+    /// (m) of the boxes of the drawn objects.
     #[new]
     #[pyo3(signature = (problem, triangles, tags, voxel_size, *, topology=1, controls=vec![], probes=vec![],
         substeps=None, damping=None, retardation=0.0, tolerance=1e-4, surfaces=vec![], middles=vec![]))]
@@ -129,7 +130,7 @@ impl PyScene {
         })
     }
 
-    /// The bytes that a page opens; it shows positions (m) first where they are given.
+    /// Packs the bytes that a page opens; the page first shows `positions` (m) if they are given.
     #[pyo3(signature = (notes="", positions=None))]
     fn pack<'py>(
         &self,
@@ -146,13 +147,13 @@ impl PyScene {
         Ok(PyBytes::new(py, &py.detach(|| scene.write())))
     }
 
-    /// A player at rest pose and time zero.
+    /// Makes a player at the rest pose and time zero.
     #[pyo3(signature = (*, deterministic=false))]
     fn play(&self, py: Python<'_>, deterministic: bool) -> PyResult<PyPlayer> {
         let (problem, scene) = (&self.problem, &self.scene);
         let player = gate::run(py, |_| {
             if scene.touching.is_some() {
-                // Contact of its own: another one may be solved for at the same time.
+                // The player needs a contact of its own: the problem's may be solved at the same time.
                 return scene.play(deterministic);
             }
             let (triangles, tags) = (&scene.triangles, &scene.tags);
@@ -173,26 +174,26 @@ impl PyScene {
     }
 }
 
-/// A problem that lives; commands and events are JSON. Any thread may call any method; they take turns.
+/// Player of a live problem; commands and events are JSON. Any thread may call any method; calls are serialized.
 #[pyclass(frozen, name = "Player", module = "voxsoft._core")]
 pub struct PyPlayer {
     problem: Arc<Handle>,
-    /// How many vertices its body has.
+    /// Number of vertices of its body, without those of objects.
     own: usize,
     player: Mutex<Player>,
     began: Instant,
 }
 
 impl PyPlayer {
-    /// Locks in the calling thread, never in one of the pool: that could take up another call of the same
-    /// player while it waits in a loop, and would wait for itself.
+    /// Locks in the calling thread, never in one of the pool: a pool thread could pick up another call of the same
+    /// player while it waits in a loop, and would deadlock.
     fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Player>> {
         let message = "an earlier call of this player panicked; please report it";
         let guard = self.player.lock_py_attached(py);
         guard.map_err(|_| PyRuntimeError::new_err(message))
     }
 
-    /// Does something that is soon done.
+    /// Runs short work, without a check for Ctrl-C.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
@@ -208,7 +209,7 @@ fn refused(refusal: Refusal) -> PyErr {
     PyValueError::new_err((refusal.place, refusal.what, refusal.hint))
 }
 
-/// `value` as JSON.
+/// Serializes `value` to JSON.
 fn json<'py>(py: Python<'py>, value: &impl Serialize) -> Bound<'py, PyBytes> {
     let json = to_vec(value).expect("events have names and numbers alone");
     PyBytes::new(py, &json)
@@ -216,7 +217,7 @@ fn json<'py>(py: Python<'py>, value: &impl Serialize) -> Bound<'py, PyBytes> {
 
 #[pymethods]
 impl PyPlayer {
-    /// Does what a command asks; gives the events. A refusal is a `ValueError` of where, what and hint.
+    /// Executes a command and returns the events. A refusal is a `ValueError` of place, message and hint.
     fn command<'py>(&self, py: Python<'py>, command: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
         let command: Command = serde_json::from_slice(command)
             .map_err(|error| PyValueError::new_err(("command", error.to_string(), "")))?;
@@ -226,7 +227,7 @@ impl PyPlayer {
         Ok(json(py, &events.map_err(refused)?))
     }
 
-    /// Lets time go on by some seconds, within a budget of the clock; gives the events.
+    /// Advances by `seconds` of wall-clock time at the pace, within a wall-clock `budget` (s); returns the events.
     fn advance<'py>(
         &self,
         py: Python<'py>,
@@ -241,8 +242,8 @@ impl PyPlayer {
         Ok(json(py, &events))
     }
 
-    /// Takes positions (m) where a solver ended, at a time (s) or now; gives the events.
-    /// `poses` has the middle (m) and the rotation of each object, row by row.
+    /// Takes the final positions (m) of a solver, at a time (s) or now; returns the events. `poses` has the center (m)
+    /// and the rotation of each object, row by row.
     #[pyo3(signature = (positions, state, sentence, residual, elastic, time=None, poses=vec![]))]
     #[expect(
         clippy::too_many_arguments,
@@ -276,7 +277,7 @@ impl PyPlayer {
         Ok(json(py, &events.map_err(to_python)?))
     }
 
-    /// Takes a motion that a solver found, (f, n, 3) positions (m) at f times (s), as frames to go back to.
+    /// Takes the motion found by a solver, (f, n, 3) positions (m) at f times (s), as recorded frames to seek.
     fn take_motion(
         &self,
         py: Python<'_>,
@@ -296,18 +297,18 @@ impl PyPlayer {
         taken.map_err(to_python)
     }
 
-    /// Stops time for now, and says why: a load or a pull lets it run again if it was asked to.
+    /// Pauses with a sentence for the reason: a load or a grab lets time run again if play was requested.
     #[pyo3(signature = (sentence=""))]
     fn hold(&self, py: Python<'_>, sentence: &str) -> PyResult<()> {
         self.with(py, |player| player.hold(sentence.to_owned()))
     }
 
-    /// Goes on from another body that was played.
+    /// Plays on at once, when this body replaces another one that was playing.
     fn resume(&self, py: Python<'_>) -> PyResult<()> {
         self.with(py, Player::resume)
     }
 
-    /// Stops time for good, and says why.
+    /// Stops until the next play command, with a sentence for the reason.
     fn halt(&self, py: Python<'_>, sentence: String) -> PyResult<()> {
         self.with(py, |player| player.halt(sentence))
     }
@@ -317,7 +318,7 @@ impl PyPlayer {
         self.with(py, |player| player.mode().name())
     }
 
-    /// The number of the frame that is looked at.
+    /// Number of the displayed frame.
     #[getter]
     fn frame(&self, py: Python<'_>) -> PyResult<u64> {
         self.with(py, |player| player.frame())
@@ -343,7 +344,7 @@ impl PyPlayer {
         Ok(json(py, &stat))
     }
 
-    /// What touches now, and where objects are: an event, or none without contact.
+    /// Present contacts and poses of objects as an event; none without contact.
     fn moment<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
         let moment = self.with(py, |player| player.moment())?;
         Ok(moment.map(|event| json(py, &event)))
@@ -355,19 +356,19 @@ impl PyPlayer {
         Ok(json(py, &plot))
     }
 
-    /// Frame, time, loads and grabs of what is looked at.
+    /// Number, time, loads and grabs of the displayed frame.
     fn shown<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let shown = self.with(py, |player| player.shown())?;
         Ok(json(py, &shown))
     }
 
-    /// Positions (m) of the body in what is looked at.
+    /// Positions (m) of the body in the displayed frame.
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let positions = self.with(py, |player| player.state().positions.clone())?;
         Ok(from_rows(py, &positions[..self.own]))
     }
 
-    /// The frame of what is looked at, on the surface or on another display of the same problem.
+    /// Packs the displayed frame, on the surface or on another display of the same problem.
     #[pyo3(signature = (field, seq=0, display=None))]
     fn pack_frame<'py>(
         &self,
@@ -388,7 +389,7 @@ impl PyPlayer {
     }
 }
 
-/// What Python and the page must know as the core does.
+/// Adds the constants that Python and the page share with the core.
 pub(crate) fn add_constants(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("MAGIC", MAGIC)?;
     module.add("HEADER", HEADER)?;

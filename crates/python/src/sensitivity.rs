@@ -15,7 +15,7 @@ use crate::simulate::{PyProblem, from_rows};
 use crate::touch::touch_of;
 use crate::touch_answer::PyContact;
 
-/// The same problem, whose load path is recorded for `sensitivities`.
+/// Copy of a problem that records its load path for `sensitivities`.
 #[pyfunction]
 pub fn recording(problem: PyRef<'_, PyProblem>) -> PyResult<PyProblem> {
     problem.look_at_touch(|_| ())?;
@@ -26,8 +26,9 @@ pub fn recording(problem: PyRef<'_, PyProblem>) -> PyResult<PyProblem> {
     }))
 }
 
-/// Of the steps that were recorded: whether contact settled as precisely as was asked for, and the largest part of the
-/// pressure with friction under which something slipped, and on what came into contact after the first of them.
+/// Contact over the recorded steps: true if it always converged to the requested precision; the largest part of the
+/// pressure with friction under which surfaces slipped; and the largest part on points that came into contact after the
+/// first step.
 #[pyfunction]
 pub fn recorded_contact(problem: PyRef<'_, PyProblem>) -> PyResult<(bool, f64, f64)> {
     problem.look_at_touch(|touch| {
@@ -39,7 +40,7 @@ pub fn recorded_contact(problem: PyRef<'_, PyProblem>) -> PyResult<(bool, f64, f
     })
 }
 
-/// Whether the contact of two problems is of the same surfaces, wherever they are.
+/// True if the contact surfaces of two problems have the same topology, at any positions.
 #[pyfunction]
 pub fn same_surfaces(problem: PyRef<'_, PyProblem>, other: PyRef<'_, PyProblem>) -> PyResult<bool> {
     let vertices = |problem: &PyProblem| problem.now().body().rest().len();
@@ -48,7 +49,7 @@ pub fn same_surfaces(problem: PyRef<'_, PyProblem>, other: PyRef<'_, PyProblem>)
     Ok(same && vertices(&problem) == vertices(&other))
 }
 
-/// What touches at some positions, with the multipliers that contact holds.
+/// Contacts at given positions, with the present multipliers of contact.
 #[pyfunction]
 pub fn contacts_at(
     problem: PyRef<'_, PyProblem>,
@@ -73,11 +74,12 @@ fn touch_mut(problem: &mut Problem) -> Option<&mut Touch> {
     problem.contact_mut()?.found_by_mut().downcast_mut()
 }
 
-/// A problem, by how much the value of its parameter is off, and its weight in the derivative.
+/// A varied problem, the offset of its parameter, and its weight in the derivative.
 type PyVaried<'py> = (PyRef<'py, PyProblem>, f64, f64);
 
-/// Where the body is (m) in varied problems at the end of the path that a problem has recorded, to the first order, each with
-/// the problem there: for each parameter, for each of its varied problems. `factors` are the load factors of the steps.
+/// First-order positions (m) of the body in varied problems at the end of the recorded load path of a problem, each
+/// with the problem there: for each parameter, for each of its varied problems. `factors` are the load factors of the
+/// steps.
 #[pyfunction]
 #[pyo3(signature = (problem, factors, varied, *, memory=u64::MAX))]
 pub fn sensitivities<'py>(

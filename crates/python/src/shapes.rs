@@ -20,7 +20,7 @@ type Corner = (f64, f64, f64);
 #[pyclass(frozen, name = "Shape", module = "voxsoft._core")]
 pub struct PyShape(pub(crate) Shape);
 
-/// A number, or a number for every place.
+/// A number, or a scalar field.
 #[derive(FromPyObject)]
 enum Graded<'py> {
     Number(f64),
@@ -244,7 +244,7 @@ impl PyShape {
         }
     }
 
-    /// A field sampled by a Python function: points (n, 3) -> values (n,).
+    /// Shape of a field sampled by a Python function: points (n, 3) -> values (n,).
     #[staticmethod]
     fn sampled(
         py: Python<'_>,

@@ -1,5 +1,5 @@
-//! `_core.Problem` and its two ways to an answer. Long because one class of Python collects all that a problem is made
-//! of, each kind of it in a method.
+//! `_core.Problem` and its XPBD solvers. Long because one Python class collects all inputs of a problem, each kind in a
+//! method.
 use std::sync::Arc;
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -43,7 +43,7 @@ pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
     Ok(view.rows().into_iter().map(row).collect())
 }
 
-/// A time history: times in s and factors.
+/// A load history: times in s and factors.
 type HistoryArgument = Option<(Vec<f64>, Vec<f64>)>;
 
 fn history(argument: HistoryArgument) -> Result<History, ProblemError> {
@@ -73,7 +73,7 @@ fn motion(
     }))
 }
 
-/// One mechanical problem: a body with clamps, loads and a floor.
+/// A mechanical problem: a body with clamps, loads and a floor.
 #[pyclass(frozen, name = "Problem", module = "voxsoft._core")]
 pub struct PyProblem {
     pub(crate) mesh: Arc<Mesh>,
@@ -138,8 +138,8 @@ impl PyProblemParts {
         self.load(Gravity { acceleration }, history)
     }
 
-    /// A pressure on triangles, and on the given parts of cut tetrahedra; those that are `closed` enclose a volume,
-    /// where need be with planes of symmetry through the origin.
+    /// Adds a pressure on triangles and on the given parts of cut tetrahedra; with `closed` they enclose a volume, if
+    /// need be together with planes of symmetry through the origin.
     #[pyo3(signature = (triangles, pressure, history=None, voids=None, closed=false))]
     fn pressure(
         &mut self,
@@ -174,8 +174,8 @@ impl PyProblemParts {
         self.load(PointForces { vertices, forces }, history)
     }
 
-    /// The weight of a liquid within triangles and the given parts of cut tetrahedra: its pressure grows by `slope` (Pa/m)
-    /// from `origin` (m).
+    /// Adds the hydrostatic pressure of a liquid within triangles and the given parts of cut tetrahedra: it grows by
+    /// `slope` (Pa/m) from `origin` (m).
     #[pyo3(signature = (triangles, slope, origin, history=None, voids=None))]
     fn hydrostatic(
         &mut self,
@@ -194,8 +194,8 @@ impl PyProblemParts {
         self.load(load, history)
     }
 
-    /// Gas or liquid in chambers: a network as JSON, and for each chamber of it walls, as triangles with their voids and
-    /// weight.
+    /// Sets the gas or liquid in chambers: a network as JSON, and for each of its chambers the walls, as triangles with
+    /// their voids and weight.
     fn fluid(&mut self, network: &str, walls: Vec<Vec<WallArgument<'_>>>) -> PyResult<()> {
         let network: Network = serde_json::from_str(network)
             .map_err(|error| PyValueError::new_err(format!("network: {error}")))?;
@@ -217,7 +217,7 @@ impl PyProblemParts {
         self.floor = Some(Floor { z });
     }
 
-    /// Elements of an attached term, by the name of its kind, as JSON.
+    /// Adds an attached energy term: the name of its kind, and its elements as JSON.
     fn attach(&mut self, kind: &str, elements: &str) -> PyResult<()> {
         let tagged = format!("{{{kind:?}:{elements}}}");
         let attachment = serde_json::from_str(&tagged)
@@ -226,9 +226,10 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// A dielectric sheet between compliant electrodes: the corners of its voxels, how the deformation along two directions in
-    /// it and across it depends on each (1/m, a row for each corner of each voxel), their volumes (m³), and half of the permittivity
-    /// times the square of the field as drawn (Pa). Sheets come after tendons.
+    /// Adds a dielectric sheet between compliant electrodes: the corners of its voxels, the gradients of the
+    /// deformation along two directions in the sheet and across it by each corner (1/m, a row for each corner of each
+    /// voxel), their volumes (m³), and half of the permittivity times the square of the field as drawn (Pa). Sheets
+    /// come after tendons.
     #[pyo3(signature = (corners, gradients, volumes, pressure, history=None))]
     fn dielectric(
         &mut self,
@@ -267,7 +268,7 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// A tendon, as JSON; tendons come after all other loads but dielectric sheets.
+    /// Adds a tendon, as JSON; tendons come after all other loads except dielectric sheets.
     #[pyo3(signature = (tendon, history=None))]
     fn tendon(&mut self, tendon: &str, history: HistoryArgument) -> PyResult<()> {
         let part = serde_json::from_str(tendon)
@@ -277,7 +278,7 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// The directions of the edges of each block, three unit vectors one after the other, (v, 9).
+    /// Sets the directions of the edges of each block, three unit vectors one after the other, (v, 9).
     fn axes(&mut self, axes: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
         let rows: Vec<[f64; 9]> = rows("axes", &axes)?;
         let matrix =
@@ -286,9 +287,9 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// A body touches itself, others and objects: its boundary, voxel size in m, and into how many parts the edge of
-    /// a voxel is divided by the points that are looked at; its smooth surface, which numbers the vertices of the body
-    /// from 0, takes the place of the voxels'. Bodies come in the order of their vertices.
+    /// Adds a body to contact with itself, others and objects: its boundary, its voxel size in m, and the number of
+    /// parts into which contact points divide the edge of a voxel. A smooth surface `skin`, which numbers the vertices
+    /// of the body from 0, replaces the voxel surface. Bodies come in the order of their vertices.
     #[pyo3(signature = (surface, voxel_size, refine, skin=None, first=0, count=None))]
     fn touch(
         &mut self,
@@ -309,7 +310,7 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// A rigid object, which stays or moves as a clamp does.
+    /// Adds a rigid object that is fixed, or moves as a clamp does.
     #[pyo3(signature = (points, triangles, displacement=None, axis=[0.0, 0.0, 1.0], angle=0.0, center=[0.0; 3], history=None))]
     #[expect(
         clippy::too_many_arguments,
@@ -331,9 +332,9 @@ impl PyProblemParts {
         self.add_object(points, &triangles, frame, Way::Held(motion))
     }
 
-    /// A rigid object that moves freely: its mass in kg, center of mass in m, principal axes (unit vectors, row by
-    /// row), and the roots of its second moments of mass along them over its mass, in m. Where planes of symmetry cut it, it
-    /// is `held` along the axes across them, and a `share` of its mass counts.
+    /// Adds a free rigid object: its mass in kg, center of mass in m, principal axes (unit vectors, row by row), and
+    /// the roots of its second moments of mass along them over its mass, in m. Where planes of symmetry cut it, it is
+    /// `held` along the axes across them, and a `share` of its mass counts.
     #[pyo3(signature = (points, triangles, mass, center, axes, radii, share=1.0, held=[false; 3]))]
     #[expect(
         clippy::too_many_arguments,
@@ -355,7 +356,7 @@ impl PyProblemParts {
         self.add_object(rows("points", &points)?, &triangles, frame, way)
     }
 
-    /// The mirror image of the free object with the number `of`; `signs` are by what its vectors are multiplied.
+    /// Adds the mirror image of the free object with the number `of`; its vectors are multiplied by `signs`.
     fn image_object(
         &mut self,
         points: PyReadonlyArray2<'_, f64>,
@@ -368,8 +369,9 @@ impl PyProblemParts {
         self.add_object(points, &triangles, frame, Way::Image(of, signs))
     }
 
-    /// What touches is a whole of which the problem has a part: its vertices as images of those of the part, the corners of
-    /// its voxels by its own vertices, and for each plane the axis across it and the images of all vertices.
+    /// Lets contact act on a whole body of which the problem has a symmetric part: its vertices as images of those of
+    /// the part, the corners of its voxels by its own vertices, and for each plane the axis across it and the images of
+    /// all vertices.
     fn whole(
         &mut self,
         images: ImagesArgument<'_>,
@@ -388,7 +390,7 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// The friction of the bodies and the objects after them with each other; NaN where they do not touch.
+    /// Sets the friction coefficients between all bodies and the objects after them; NaN where they do not touch.
     fn friction(&mut self, table: PyReadonlyArray2<'_, f64>) {
         let rows = table
             .as_array()
@@ -399,8 +401,8 @@ impl PyProblemParts {
         self.touch.get_or_insert_default().friction = rows;
     }
 
-    /// Two surfaces are bonded, the one with the smaller number first: where they are within `reach` (m) of each other,
-    /// until a traction of `strength` (Pa).
+    /// Bonds two surfaces, the one with the smaller number first, where they are within `reach` (m) of each other, up
+    /// to a traction of `strength` (Pa).
     fn bond(&mut self, a: u32, b: u32, reach: f64, strength: f64) {
         let bond = BondPart {
             of: [a, b],
@@ -410,7 +412,7 @@ impl PyProblemParts {
         self.touch.get_or_insert_default().bonds.push(bond);
     }
 
-    /// A membrane on triangles.
+    /// Adds a membrane on triangles.
     fn membrane(
         &mut self,
         triangles: PyReadonlyArray2<'_, u32>,
@@ -430,7 +432,8 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// A part of a membrane on triangles with corners that are mirror images, with where these are at rest.
+    /// Adds a part of a membrane on triangles whose corners are mirror images; `points` are the rest positions of the
+    /// images.
     #[expect(
         clippy::too_many_arguments,
         reason = "keyword arguments of one Python call"
@@ -467,7 +470,7 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// A pressure on triangles with corners that are mirror images: parts of a closed surface.
+    /// Adds a pressure on triangles whose corners are mirror images: parts of a closed surface.
     #[pyo3(signature = (images, triangles, pressure, history=None))]
     fn mirrored_pressure(
         &mut self,
@@ -485,8 +488,8 @@ impl PyProblemParts {
         self.load(Mirrored::new(self::images(&images)?, load), history)
     }
 
-    /// The filled part of each block, and where in it the material is: center and spread along the
-    /// axes, and the means of the products of two coordinates, in halves of an edge.
+    /// Sets the filled part of each block, and the moments of its material: center and spread along the axes, and the
+    /// means of the products of two coordinates, in halves of an edge.
     #[pyo3(signature = (fractions, moments=None))]
     fn fractions(
         &mut self,
@@ -504,7 +507,7 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// Groups of eight blocks that are one voxel of twice the side.
+    /// Sets groups of eight blocks that form one voxel of twice the side.
     fn coarse(&mut self, groups: PyReadonlyArray2<'_, u32>) -> PyResult<()> {
         self.coarse = rows("groups", &groups)?;
         Ok(())
@@ -517,7 +520,7 @@ type WallArgument<'py> = (PyReadonlyArray2<'py, u32>, VoidsArgument<'py>, f64);
 /// Tetrahedra and the part of each that is void.
 type VoidsArgument<'py> = Option<(PyReadonlyArray2<'py, u32>, PyReadonlyArray1<'py, f64>)>;
 
-/// The vertex of each image, and by what its vectors are multiplied.
+/// Vertex of each image, and the factors on its vectors.
 type ImagesArgument<'py> = (PyReadonlyArray1<'py, u32>, PyReadonlyArray2<'py, f64>);
 
 fn images((of, signs): &ImagesArgument<'_>) -> PyResult<Images> {
@@ -607,7 +610,7 @@ impl PyProblem {
         Self::assemble(py, mesh, materials, &parts)
     }
 
-    /// The same body and loads with other materials.
+    /// Copy of the problem with the same body and loads and other materials.
     fn with_materials(&self, py: Python<'_>, materials: Vec<PyMaterial>) -> PyResult<Self> {
         let now = self.now();
         let parts = PyProblemParts {
@@ -647,7 +650,7 @@ impl PyProblem {
         PyArray1::from_slice(py, &self.now().body().masses()[..self.own()])
     }
 
-    /// Edges as (vertices, rest length, stiffness) arrays.
+    /// Edges of the lattice as (vertices, rest length, stiffness) arrays.
     #[expect(clippy::type_complexity, reason = "three arrays")]
     fn edges<'py>(
         &self,
@@ -668,8 +671,8 @@ impl PyProblem {
         )
     }
 
-    /// The pressure (Pa, positive in tension) in each hyperelastic voxel, on the vertex at its lowest corner; not a number
-    /// on others.
+    /// Pressure (Pa, positive in tension) in each hyperelastic voxel, on the vertex at its lowest corner; NaN on other
+    /// vertices.
     fn pressures<'py>(
         &self,
         py: Python<'py>,
@@ -686,13 +689,13 @@ impl PyProblem {
         Ok(PyArray1::from_vec(py, found))
     }
 
-    /// The largest isochoric energy (J/m³) that each hyperelastic voxel has had, if any softens.
+    /// Largest isochoric energy (J/m³) so far of each hyperelastic voxel, if any has the Mullins effect.
     fn peaks<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         let peaks = self.now().body().brick_term().peaks()?;
         Some(PyArray1::from_vec(py, peaks))
     }
 
-    /// Lets voxels that soften have had these energies (J/m³).
+    /// Sets the largest isochoric energies (J/m³) so far of hyperelastic voxels.
     fn set_peaks(&self, peaks: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
         let (got, expected) = (peaks.len()?, self.now().body().bricks().len());
         if got != expected {
@@ -729,8 +732,8 @@ impl PyProblem {
         Ok((energy, from_rows(py, &forces[..self.own()])))
     }
 
-    /// Elastic plus external force (N) on every vertex under the final values of all loads. Of tendons those that are `taut`
-    /// stay so.
+    /// Elastic plus external force (N) on every vertex under the final values of all loads. Tendons marked in `taut`
+    /// stay taut.
     #[pyo3(signature = (positions, taut=vec![]))]
     fn net_forces<'py>(
         &self,
@@ -747,7 +750,7 @@ impl PyProblem {
         Ok(from_rows(py, &forces[..self.own()]))
     }
 
-    /// The tendons at the given positions under the final values of all loads, if they had been pulled there at once.
+    /// Tendons at the given positions under the final values of all loads, as if loaded in one step.
     fn tendons(
         &self,
         py: Python<'_>,
@@ -760,7 +763,7 @@ impl PyProblem {
         tendons(py, &problem, &positions, &factor_of)
     }
 
-    /// A trial is a number of steps and the residual above which the run then ends.
+    /// Relaxes to equilibrium. `trial` is a number of steps and the residual above which the run then ends.
     #[pyo3(signature = (*, tolerance, max_steps, trial=None, start=None, progress=None))]
     fn relax(
         &self,
@@ -888,12 +891,12 @@ impl PyProblem {
         .map_err(to_python)
     }
 
-    /// The problem with its memory.
+    /// Present problem with its history variables.
     pub(crate) fn now(&self) -> Arc<Problem> {
         self.problem.now()
     }
 
-    /// The same problem with other memory.
+    /// Copy of the problem, changed by `act` (its history variables, say).
     pub(crate) fn with(&self, act: impl FnOnce(&mut Problem)) -> Self {
         let mut problem = Problem::clone(&self.now());
         act(&mut problem);
@@ -905,7 +908,7 @@ impl PyProblem {
         }
     }
 
-    /// That of the material, J: what multipliers of contact have of it is none.
+    /// Elastic energy of the material, J, without the energy of contact.
     fn elastic_energy(&self, positions: &[Vec3]) -> f64 {
         let now = self.now();
         let of_contact = now
@@ -914,7 +917,7 @@ impl PyProblem {
         elastic::energy(now.body(), positions) - of_contact
     }
 
-    /// How many vertices the body has, those of objects left out.
+    /// Number of vertices of the body, without those of objects.
     pub(crate) fn own(&self) -> usize {
         let all = self.now().body().rest().len();
         self.touching
@@ -922,7 +925,7 @@ impl PyProblem {
             .map_or(all, |touching| touching.first)
     }
 
-    /// Pressures in the order of hyperelastic voxels, of those at their lowest corners.
+    /// Pressures in the order of hyperelastic voxels, read at the vertices at their lowest corners.
     pub(crate) fn brick_pressures(&self, array: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
         let array = array.as_array();
         let now = self.now();
@@ -952,7 +955,8 @@ impl PyProblem {
         Ok(positions)
     }
 
-    /// An answer as Python sees it, of a problem with the memory there, its reactions under loads with these factors.
+    /// Converts an answer for Python; `self` has the history variables of its end, and reactions are those under loads
+    /// with these factors.
     pub(crate) fn answer(
         self,
         py: Python<'_>,
@@ -1029,7 +1033,7 @@ impl PyProblem {
     }
 }
 
-/// The first `own` of every `all` points.
+/// Keeps the first `own` of every `all` points.
 fn cut(frames: Vec<f64>, all: usize, own: usize) -> Vec<f64> {
     if own == all {
         return frames;

@@ -12,13 +12,13 @@ use crate::gate;
 use crate::shapes::{PyShape, sample_error};
 use crate::simulate::{from_rows, rows};
 
-/// The smooth surface of a body of voxels, carried by them.
+/// Smooth surface of a body of voxels, interpolated from their vertices.
 #[pyclass(frozen, name = "Skin", module = "voxsoft._core")]
 pub struct PySkin(pub(crate) Arc<Skin>);
 
 #[pymethods]
 impl PySkin {
-    /// Of voxels with these corners among vertices (m), that were filled where any of the shapes is.
+    /// Makes the surface of voxels with these corners among vertices (m), filled from the union of the shapes.
     #[new]
     fn new(
         py: Python<'_>,
@@ -36,13 +36,13 @@ impl PySkin {
         Ok(Self(Arc::new(skin)))
     }
 
-    /// Where its points are, m.
+    /// Rest positions of its points, m.
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         from_rows(py, &self.0.points)
     }
 
-    /// Where its points are (m) when the vertices that carry them are at `positions` (m).
+    /// Positions (m) of its points for `positions` (m) of the vertices that carry them.
     fn at<'py>(
         &self,
         py: Python<'py>,
@@ -61,14 +61,14 @@ impl PySkin {
         Ok(from_rows(py, &points))
     }
 
-    /// Triangles of points, outward.
+    /// Triangles of points, oriented outward.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
         from_rows(py, &self.0.surface.triangles)
     }
 }
 
-/// The smallest function of several shapes; infinite where it is not a number.
+/// Minimum of the functions of several shapes; infinite where all are NaN.
 fn union(shapes: &[Shape], places: &[Vec3]) -> Result<Vec<f64>, FieldError> {
     let mut least = vec![f64::INFINITY; places.len()];
     for shape in shapes {

@@ -1,4 +1,4 @@
-//! Tendons as Python describes them and is told of them.
+//! Tendons: their description from Python and their results.
 
 use pyo3::prelude::*;
 use serde::Deserialize;
@@ -7,17 +7,17 @@ use voxsoft_solid::{Drive, History, Load, LoadKind, Place, Problem, Tendon};
 
 use crate::touch::TouchParts;
 
-/// A point on the way of a tendon.
+/// A point on the path of a tendon.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged)]
 enum PlacePart {
-    /// Of a body, or in space.
+    /// On a body, or fixed in space.
     Place(Place),
-    /// On an object, at this point (m) where the object is at first.
+    /// On an object, at this point (m) in the first pose of the object.
     OnObject { object: usize, point: Vec3 },
 }
 
-/// A tendon whose objects have no vertices yet.
+/// Description of a tendon before its objects have vertices.
 #[derive(Debug, Clone, Deserialize)]
 pub(crate) struct TendonPart {
     places: Vec<PlacePart>,
@@ -27,7 +27,7 @@ pub(crate) struct TendonPart {
 }
 
 impl TendonPart {
-    /// The load that it is, where objects have their vertices from `first` on.
+    /// Makes the load, with the vertices of objects from `first` on.
     pub(crate) fn load(
         self,
         history: History,
@@ -56,11 +56,11 @@ impl TendonPart {
 /// A tendon at the end of a run.
 #[pyclass(frozen, get_all, name = "Tendon", module = "voxsoft._core")]
 pub struct PyTendon {
-    /// Of each segment from the pulled end on, N.
+    /// Tension of each segment from the pulled end on, N.
     pub tensions: Vec<f64>,
-    /// Where it runs, m.
+    /// Length of its path, m.
     pub length: f64,
-    /// How much longer than that it is, m.
+    /// Excess of its own length over the path, m.
     pub slack: f64,
     /// Its points, m.
     pub points: Vec<Vec3>,

@@ -1,4 +1,4 @@
-//! Contact of a body with itself and with rigid objects, as Python describes it and is told of it.
+//! Contact of bodies with themselves and with rigid objects: its description from Python and its results.
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
@@ -19,40 +19,40 @@ use voxsoft_solid::{
 
 use crate::touch_answer::{PyContact, PyObjectPose, to_python};
 
-/// What moves a rigid object.
+/// Motion of a rigid object.
 #[derive(Debug, Clone)]
 pub(crate) enum Way {
-    /// It is held, or moved.
+    /// Fixed, or with a prescribed motion.
     Held(Option<Motion>),
-    /// It moves freely.
+    /// Free motion.
     Free(Freedom),
-    /// It is the mirror image of a free object, by the number of that, and by what its vectors are multiplied.
+    /// Mirror image of a free object: its number, and the factors on its vectors.
     Image(usize, Vec3),
 }
 
-/// How an object moves freely.
+/// Mass and constraints of a free object.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Freedom {
-    /// In kg.
+    /// Mass in kg.
     pub mass: f64,
-    /// The part of it that is solved for: less than 1 where planes of symmetry cut it.
+    /// Share of the mass that is solved for: less than 1 where planes of symmetry cut the object.
     pub share: f64,
-    /// The axes across these planes, along which it stays.
+    /// Axes across these planes, along which it is held.
     pub held: [bool; 3],
 }
 
 /// A whole body with planes of symmetry, of which a part is solved for.
 #[derive(Debug, Clone)]
 pub(crate) struct Whole {
-    /// Of the vertices of the part.
+    /// Images of the vertices of the part.
     pub images: Images,
-    /// The corners of its voxels, by its own vertices.
+    /// Corners of its voxels, by its own vertices.
     pub voxels: Vec<[u32; 8]>,
     /// The images of all its vertices in each plane.
     pub flips: Vec<Flip>,
 }
 
-/// A rigid object: its surface, what carries it, and how it is moved.
+/// A rigid object: its surface, the frame of vertices that carries it, and its motion.
 #[derive(Debug, Clone)]
 pub(crate) struct ObjectPart {
     pub points: Vec<Vec3>,
@@ -62,7 +62,7 @@ pub(crate) struct ObjectPart {
 }
 
 impl ObjectPart {
-    /// By what vectors are multiplied on the way from the vertices that are solved for.
+    /// Factors on vectors from the vertices that are solved for.
     fn signs(&self) -> Vec3 {
         match self.way {
             Way::Image(_, signs) => signs,
@@ -78,7 +78,7 @@ impl ObjectPart {
     }
 }
 
-/// A body that touches.
+/// A body in contact.
 #[derive(Debug, Clone)]
 pub(crate) struct BodyPart {
     /// Its boundary; used where it is not made of voxels.
@@ -92,7 +92,7 @@ pub(crate) struct BodyPart {
 }
 
 impl BodyPart {
-    /// Its surface, and what stands for each point of it.
+    /// Contact surface, and for each of its points the vertices that stand for it in fields.
     fn surface(&self, all: &[[u32; 8]]) -> (Surface, Vec<Carried>) {
         let moved = |point: &Carried| Carried {
             vertices: point
@@ -121,14 +121,14 @@ impl BodyPart {
     }
 }
 
-/// Everything that contact is made of.
+/// Description of all contact of a problem.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TouchParts {
     pub bodies: Vec<BodyPart>,
     pub objects: Vec<ObjectPart>,
     pub friction: Vec<Vec<f64>>,
     pub bonds: Vec<BondPart>,
-    /// What touches, where a part of it is solved for.
+    /// The whole body, if a symmetric part of it is solved for.
     pub whole: Option<Whole>,
 }
 
@@ -136,14 +136,14 @@ pub(crate) struct TouchParts {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BondPart {
     pub of: [u32; 2],
-    /// m
+    /// Largest distance of bonded points at rest, m.
     pub reach: f64,
-    /// Pa; infinite for a bond that does not let go.
+    /// Strength in traction, Pa; infinite for a bond that never fails.
     pub strength: f64,
 }
 
 impl TouchParts {
-    /// Adds four vertices for each object to a mesh that is no image, and the clamps that hold them, or their mass.
+    /// Adds to a mesh four vertices for each object that is no mirror image, with their clamps or masses.
     pub(crate) fn add_frames(&self, mesh: &mut Mesh, clamps: &mut Vec<Clamp>) {
         for object in &self.objects {
             let first = mesh.vertices.len() as u32;
@@ -171,8 +171,8 @@ impl TouchParts {
         }
     }
 
-    /// Where the vertices of an object are among those that are solved for, of which the first object has those from
-    /// `first` on. Those of an image are what it is an image of.
+    /// Index of the first of four vertices of an object among those that are solved for, where objects begin at
+    /// `first`. A mirror image has the vertices of its original.
     fn solved_at(&self, number: usize, first: usize) -> usize {
         let number = match self.objects[number].way {
             Way::Image(of, _) => of,
@@ -182,7 +182,7 @@ impl TouchParts {
         first + 4 * before.filter(|o| !matches!(o.way, Way::Image(..))).count()
     }
 
-    /// The images of what is solved for that make the whole, objects included.
+    /// Images of the solved vertices that make up the whole, objects included.
     fn images(&self, first: usize) -> Option<Images> {
         let mut images = self.whole.as_ref()?.images.clone();
         for (number, object) in self.objects.iter().enumerate() {
@@ -193,7 +193,7 @@ impl TouchParts {
         Some(images)
     }
 
-    /// What keeps the vertices of free objects apart, those of the first object from `first` on.
+    /// Springs that keep the vertices of free objects rigid, where objects begin at the vertex `first`.
     pub(crate) fn frame_springs(&self, body: &Body, first: usize) -> Option<Springs> {
         let young = mean_modulus(body);
         let free = self
@@ -210,13 +210,13 @@ impl TouchParts {
         (!springs.is_empty()).then_some(Springs(springs))
     }
 
-    /// The size of the smallest voxels in m: right for all, as it is a bound of what may be deep, or be near.
+    /// Size of the smallest voxels in m: valid for all bodies, as it bounds depths and distances in contact.
     fn voxel(&self) -> f64 {
         let sizes = self.bodies.iter().map(|body| body.voxel);
         sizes.fold(f64::INFINITY, f64::min)
     }
 
-    /// How many clamps hold objects.
+    /// Number of clamps that hold objects.
     pub(crate) fn held(&self) -> usize {
         let is_held = |object: &&ObjectPart| match object.way {
             Way::Held(_) => true,
@@ -226,8 +226,8 @@ impl TouchParts {
         self.objects.iter().filter(is_held).count()
     }
 
-    /// The contact of a body whose objects have their vertices from `first` on; where a part is solved for, that of the whole,
-    /// whose objects come after its own vertices.
+    /// Makes the contact of a problem whose objects have their vertices from `first` on. If a symmetric part is solved
+    /// for, it is the contact of the whole, whose objects come after its own vertices.
     fn touch(&self, problem: &Problem, first: usize) -> Result<Touch, ProblemError> {
         let body = problem.body();
         let images = self.images(first);
@@ -280,7 +280,7 @@ impl TouchParts {
         })
     }
 
-    /// The same, and where it is in a problem.
+    /// Makes the contact of a problem, with its description and mirror images.
     pub(crate) fn into_touching(
         self,
         problem: &Problem,
@@ -302,8 +302,8 @@ impl TouchParts {
         Ok((touching, contact))
     }
 
-    /// A point of an object whose vertices are those from `at` on. Those of an image are images of what carries the
-    /// image of the point.
+    /// Carries a point of an object by the four vertices from `at` on. On a mirror image, the frame of the original
+    /// carries the mirrored point.
     fn carried(&self, number: usize, point: Vec3, at: u32) -> Carried {
         match self.objects[number].way {
             Way::Image(of, signs) => self.objects[of].frame.carry(mirrored(point, signs), at),
@@ -312,7 +312,7 @@ impl TouchParts {
     }
 }
 
-/// The axes on which vertices are held and never move.
+/// Axes on which vertices are held without a prescribed motion.
 fn still(problem: &Problem) -> Vec<[bool; 3]> {
     let mut still = vec![[false; 3]; problem.body().rest().len()];
     let (moving, resting): (Vec<_>, Vec<_>) = problem
@@ -331,7 +331,7 @@ fn still(problem: &Problem) -> Vec<[bool; 3]> {
     still
 }
 
-/// The axes across planes of symmetry: along which some images have the other sign.
+/// Axes across planes of symmetry: those along which some images change sign.
 fn across(images: &Images) -> [bool; 3] {
     [0, 1, 2].map(|axis| images.signs.iter().any(|signs| signs[axis] < 0.0))
 }
@@ -341,8 +341,8 @@ fn mirrored(vector: Vec3, signs: Vec3) -> Vec3 {
 }
 
 impl TouchParts {
-    /// A surface with what is behind it, `shares` those of the points of all bodies. Bodies come before the objects, so that
-    /// of a bond with an object the first side is the soft one.
+    /// One side of a bond: a surface with the solid behind it; `shares` are those of the points of all bodies. Bodies
+    /// come before the objects, so that the first side of a bond with an object is the soft one.
     fn side<'a>(
         &'a self,
         number: u32,
@@ -376,7 +376,7 @@ impl TouchParts {
     }
 }
 
-/// The energy at a strain of one over the volume, twice: a mean of Young's moduli, Pa.
+/// Mean of Young's moduli, Pa: twice the energy at unit strain over the volume.
 fn mean_modulus(body: &Body) -> f64 {
     let volume = |brick: &Brick| brick.volume(body.material_of(brick));
     let bricks: f64 = body.bricks().iter().map(volume).sum();
@@ -388,23 +388,23 @@ fn frame_at(positions: &[Vec3], first: usize) -> [Vec3; 4] {
     std::array::from_fn(|i| positions[first + i])
 }
 
-/// The contact of a problem, with its memory; where a part is solved for, that of the whole.
+/// Contact of a problem, with its history variables; that of the whole if a symmetric part is solved for.
 pub(crate) fn touch_of(problem: &Problem) -> Option<&Touch> {
     problem.contact()?.found_by().downcast_ref()
 }
 
-/// Contact of a problem of Python, and where its objects begin among the vertices.
+/// Contact of a Python problem, and the index of the first vertex of its objects.
 pub(crate) struct Touching {
     pub parts: TouchParts,
-    /// Who touches whom: all of it, also where a part is solved for.
+    /// Surfaces and their friction: those of the whole, also if a symmetric part is solved for.
     description: Description,
-    /// What makes the whole of these.
+    /// Images of the solved vertices that make up the whole.
     images: Option<Images>,
     pub first: usize,
 }
 
 impl Touching {
-    /// The vertices of the whole, those of objects last.
+    /// Positions of the whole, with the vertices of objects last.
     pub(crate) fn seen<'a>(&self, positions: &'a [Vec3]) -> Cow<'a, [Vec3]> {
         match &self.images {
             Some(images) => images.seen(positions).into(),
@@ -412,19 +412,19 @@ impl Touching {
         }
     }
 
-    /// How many of these are those of bodies.
+    /// Number of vertices of the whole that belong to bodies.
     pub(crate) fn own(&self) -> usize {
         let whole = self.parts.whole.as_ref();
         whole.map_or(self.first, |whole| whole.images.of.len())
     }
 
-    /// The images of these in each plane of symmetry.
+    /// Images of the vertices of bodies in each plane of symmetry.
     pub(crate) fn flips(&self) -> &[Flip] {
         let whole = self.parts.whole.as_ref();
         whole.map_or(&[], |whole| &whole.flips)
     }
 
-    /// What touches; where a part is solved for, what counts of it.
+    /// Contacts at given positions of the solved vertices.
     pub(crate) fn contacts(
         &self,
         py: Python<'_>,
@@ -435,7 +435,7 @@ impl Touching {
         to_python(py, pairs.unwrap_or_default())
     }
 
-    /// Where the objects are, by the vertices of all of them.
+    /// Poses of the objects, from the vertices of all of them.
     pub(crate) fn poses(&self, py: Python<'_>, frames: &[Vec3]) -> PyResult<Vec<Py<PyObjectPose>>> {
         let each = (0..self.parts.objects.len()).map(|number| {
             let (position, rotation) = self.pose(number, frames);
@@ -454,7 +454,7 @@ impl Touching {
         (mirrored(position, signs), std::array::from_fn(turned))
     }
 
-    /// The same contact for live motion: what each surface is called, and the middle (m) of each object that is drawn.
+    /// Contact for live motion, with the name of each surface and the center (m) of each drawn object.
     pub(crate) fn to_play(&self, body: &Body, names: Vec<String>, middles: &[Vec3]) -> Played {
         let corners = |number: usize| {
             let first = (self.first + 4 * number) as u32;
@@ -476,7 +476,7 @@ impl Touching {
         }
     }
 
-    /// The positions of the body, with the objects where their motions end.
+    /// Completes positions of the body with those of the objects at the end of their motions.
     pub(crate) fn completed(&self, problem: &Problem, mut body: Vec<Vec3>) -> Vec<Vec3> {
         let rest = problem.body().rest();
         let count = body.len();

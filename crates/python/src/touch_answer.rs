@@ -1,41 +1,41 @@
-//! What contact came to, as Python is told of it.
+//! Results of contact for Python.
 
 use pyo3::prelude::*;
 use voxsoft_contact::touch::PairReport;
 use voxsoft_solid::vector::Vec3;
 
-/// What contact comes to where two surfaces touch.
+/// Contact of two surfaces that touch.
 #[pyclass(frozen, get_all, name = "Contact", module = "voxsoft._core")]
 pub struct PyContact {
-    /// Bodies come first, then objects.
+    /// Numbers `a` and `b` of the surfaces: bodies come first, then objects.
     pub a: u32,
     pub b: u32,
-    /// On the first, N.
+    /// Force on the first surface, N.
     pub force: Vec3,
-    /// The sum of the sizes of all forces, N.
+    /// Sum of the magnitudes of all pressures and frictions, N.
     pub pressed: f64,
-    /// The sum of all pressures, N.
+    /// Sum of the magnitudes of all normal forces, N.
     pub pressure: f64,
-    /// The part of the force that is friction, N.
+    /// Friction part of the force, N.
     pub friction: Vec3,
-    /// The most that friction can be, N.
+    /// Limit of friction (coefficient times normal force, summed), N.
     pub bound: f64,
-    /// In the unloaded body, m².
+    /// Contact area in the unloaded body, m².
     pub area: f64,
-    /// The part of it that is bonded, m².
+    /// Bonded part of the area, m².
     pub bonded: f64,
-    /// The smallest, m.
+    /// Smallest gap, m.
     pub gap: f64,
-    /// The part of the pressure under which the surfaces slip.
+    /// Fraction of the pressure under which the surfaces slip.
     pub slipping: f64,
 }
 
-/// Where an object is.
+/// Pose of a rigid object.
 #[pyclass(frozen, get_all, name = "ObjectPose", module = "voxsoft._core")]
 pub struct PyObjectPose {
-    /// The middle of its box, m.
+    /// Center of its box, m.
     pub position: Vec3,
-    /// From its first pose, row by row.
+    /// Rotation from its first pose, row by row.
     pub rotation: [Vec3; 3],
 }
 

@@ -16,7 +16,8 @@ use crate::touch::touch_of;
 use crate::touch_answer::PyTouchHistory;
 use crate::watch::{Watch, collect_sensors};
 
-/// Motion by implicit steps of `step` seconds, to `end_time` or to rest. Without a rate, `damping` is critical.
+/// Solves for the motion by implicit steps of `step` seconds, to `end_time` or to rest. Without a rate (1/s), `damping`
+/// is critical.
 #[pyfunction]
 #[pyo3(signature = (problem, *, step, damping, end_time, max_time, tolerance, record_interval=None, memory=u64::MAX, sensors=vec![], frames=false, progress=None))]
 #[expect(
@@ -55,7 +56,7 @@ pub fn transient(
             if let Some(touching) = touching.as_ref().filter(|_| now.record) {
                 let positions = touching.seen(now.positions);
                 let mut seen = seen.lock().expect("no holder of the lock panics");
-                // Before the first step there are no forces yet that keep what touches apart.
+                // Contact has no forces yet before the first step.
                 let started = now.steps > 0;
                 let touch = touch_of(now.problem).filter(|_| started);
                 let pairs = touch.map(|touch| touch.pairs(&positions));
@@ -89,21 +90,21 @@ pub fn transient(
     Ok(PyAnswer { history, ..found })
 }
 
-/// What was seen of contact at every record.
+/// Contact, objects and energies at every record.
 #[derive(Default)]
 struct Seen {
     pairs: Vec<Vec<PairReport>>,
-    /// The vertices of all objects.
+    /// Positions of the vertices of all objects.
     frames: Vec<Vec<Vec3>>,
     motion: Vec<Motion>,
 }
 
-/// Energies in J and the momentum in kg m/s, of all that moves.
+/// Energies in J and momentum in kg m/s of body and objects.
 struct Motion {
-    /// Without that of multipliers of contact.
+    /// Elastic energy without the energy of contact.
     elastic: f64,
     kinetic: f64,
-    /// The potential of the loads as they are at that time.
+    /// Potential of the loads as they are at that time.
     loads: f64,
     momentum: Vec3,
 }

@@ -1,4 +1,4 @@
-//! `_core.Grid`: an immutable grid of cells; every change gives a new one.
+//! `_core.Grid`: an immutable grid of cells; every change returns a new one.
 use std::sync::Arc;
 
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
@@ -29,7 +29,7 @@ impl PyGrid {
         Self(Arc::new(grid))
     }
 
-    /// A changed copy, made with the GIL released.
+    /// Makes a changed copy, with the GIL released.
     fn changed(
         &self,
         py: Python<'_>,
@@ -42,7 +42,7 @@ impl PyGrid {
         })
     }
 
-    /// What `work` finds in the cells.
+    /// Runs an analysis of the cells, with the GIL released.
     fn found<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -227,7 +227,8 @@ impl PyGrid {
         self.combined(py, |grid| grid.cropped())
     }
 
-    /// `contact`: how many dimensions two cells may differ in, 1 face, 2 edge, 3 corner.
+    /// Connected components. `contact` is the number of axes in which two neighbors may differ: 1 face, 2 edge, 3
+    /// corner.
     fn components<'py>(&self, py: Python<'py>, contact: u8) -> PyResult<Vec<PyComponent<'py>>> {
         let contact = match contact {
             1 => Contact::Face,
@@ -246,7 +247,7 @@ impl PyGrid {
             .collect()
     }
 
-    /// One row of two cells (i, j, k, i, j, k) per hinge.
+    /// Hinges, one row of two cells (i, j, k, i, j, k) each.
     fn hinges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let hinges = self.found(py, voxel::hinges)?;
         let count = hinges.len();

@@ -1,4 +1,4 @@
-//! Watching a run: records, progress reports to Python and Ctrl-C.
+//! Observer of a run: records, progress reports to Python and Ctrl-C.
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use voxsoft_solid::Progress;
 use voxsoft_solid::vector::Vec3;
 
-/// How often a Python progress callback is called at most.
+/// Shortest period between calls of a Python progress callback.
 const PROGRESS_PERIOD: Duration = Duration::from_millis(100);
 
 pub(crate) fn collect_sensors(
@@ -29,7 +29,7 @@ pub(crate) struct Sensor {
     weights: Vec<f64>,
 }
 
-/// Watches a run: records, reports progress to Python and passes on Ctrl-C.
+/// Observer of a run: records, reports progress to Python and passes on Ctrl-C.
 pub(crate) struct Watch {
     progress: Option<Py<PyAny>>,
     last_call: Instant,
@@ -39,9 +39,9 @@ pub(crate) struct Watch {
     pub(crate) times: Vec<f64>,
     pub(crate) records: Vec<f64>,
     pub(crate) frames: Vec<f64>,
-    /// The load factor of the last equilibrium, for a search that tries others.
+    /// Load factor of the last equilibrium, for a search that tries others.
     reached: Option<f64>,
-    /// What was read of each chamber at every record.
+    /// Readings of each chamber at every record.
     pub(crate) chambers: Vec<f64>,
     pub(crate) raised: Option<PyErr>,
 }
@@ -67,7 +67,7 @@ impl Watch {
         }
     }
 
-    /// The same that reports which load was reached, and not which one is tried.
+    /// Reports the load factor reached, instead of the one being tried.
     pub(crate) fn of_loads(self) -> Self {
         Self {
             reached: Some(0.0),
@@ -79,7 +79,7 @@ impl Watch {
         if now.record {
             self.record(now.positions, now.time);
             if let Some(fluid) = now.problem.fluid() {
-                // Without velocities it is a point of a path of equilibria, which the fluid has taken.
+                // Progress without velocities is a point of a path of equilibria, whose instant the fluid has kept.
                 let instant = if now.velocities.is_empty() {
                     fluid.last_instant()
                 } else {

@@ -1,5 +1,5 @@
-//! How a scene is laid out in bytes. What it describes is made by the constructors of `solid`, so that no
-//! damaged scene becomes a material or a load that could not be.
+//! Serialized layout of a scene. Its contents are rebuilt by the constructors of `solid`, so that no damaged scene
+//! becomes an invalid material or load.
 
 use serde::{Deserialize, Serialize};
 use voxsoft_player::{Cast, Control, Probe};
@@ -34,7 +34,7 @@ struct Settings {
     time_step: f64,
     substeps: Option<u32>,
     iterations: u32,
-    /// `None`: critical.
+    /// Rate in 1/s; `None` is critical damping.
     damping: Option<f64>,
     retardation: f64,
     tolerance: f64,
@@ -49,7 +49,7 @@ struct Mesh {
     block_fraction: Vec<f64>,
     /// Shift, spread and products of each block.
     block_filling: Vec<[Vec3; 3]>,
-    /// Vertices, then Young's modulus, Poisson's ratio, thickness and density.
+    /// Vertices, then Young's modulus, Poisson's ratio, thickness and density of each membrane.
     membranes: Vec<([u32; 3], [f64; 4])>,
     attachments: Vec<Attachment>,
     point_masses: Vec<(u32, f64)>,
@@ -71,12 +71,12 @@ enum Material {
         model: Hyperelastic,
         bulk: f64,
         density: f64,
-        /// Direction, modulus, whether it resists compression, and free stretch.
+        /// Direction, modulus, resistance to compression, and free stretch of each family.
         fibers: Vec<(Vec3, f64, bool, f64)>,
         windings: Vec<Winding>,
         /// Share and time of each branch.
         prony: Vec<(f64, f64)>,
-        /// How much longer it is free of stress than in the body at rest.
+        /// Stretch at which it is free of stress, relative to the body at rest.
         swelling: f64,
     },
 }

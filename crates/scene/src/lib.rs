@@ -1,8 +1,8 @@
-//! A problem with all it takes to play it, as bytes: what a page without a server opens.
+//! Serialized scene: a problem with its display and controls as bytes, which a page opens without a server.
 //!
-//! The magic `VXSC` and a version (u32, little-endian), then the scene in the format of the `postcard` crate,
-//! laid out as in `forms.rs`. [`Scene::read`] lets every material, clamp and load be checked by its own rules,
-//! and [`Scene::problem`] checks the mechanics.
+//! Layout: the magic `VXSC` and a version (u32, little-endian), then the scene in the format of the `postcard` crate,
+//! as in `forms.rs`. [`Scene::read`] rebuilds every material, clamp and load with its own checks, and
+//! [`Scene::problem`] checks the mechanics.
 
 mod forms;
 mod touching;
@@ -21,62 +21,62 @@ const MAGIC: [u8; 4] = *b"VXSC";
 /// The version that is written and read.
 pub const VERSION: u32 = 6;
 
-/// Why bytes are no scene.
+/// Error of reading a scene.
 #[derive(Debug, Error, Clone, PartialEq)]
 pub enum SceneError {
-    /// They do not begin as a scene does.
+    /// The magic is missing.
     #[error("this is no scene of VoxSoft")]
     NotAScene,
-    /// Another version wrote them.
+    /// The scene has another version.
     #[error("the scene has the version {0}, this reads {VERSION}: export it again")]
     Version(u32),
-    /// They end too early, or something between is not what it should be.
+    /// The bytes end too early, or cannot be decoded.
     #[error("the scene is cut off or damaged")]
     CutOff,
-    /// There is more after the end.
+    /// Bytes follow the end of the scene.
     #[error("the scene has {0} bytes too many")]
     TooLong(usize),
-    /// A value has no meaning.
+    /// A value is invalid.
     #[error("the scene is damaged: {0}")]
     Value(&'static str),
-    /// What is described cannot be.
+    /// The described problem is invalid.
     #[error(transparent)]
     Problem(#[from] ProblemError),
 }
 
-/// A problem with what it takes to play it.
+/// A problem with its display, controls and settings for play.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// Text of the writer's, which no one reads here.
+    /// Notes of the writer, not interpreted here.
     pub notes: String,
-    /// How it runs; end time, patience and records are not kept.
+    /// Settings of its dynamics; end time, maximum time, record interval and determinism are not stored.
     pub settings: Dynamics,
-    /// The mesh with its membranes.
+    /// Mesh with its membranes.
     pub mesh: Mesh,
     /// The material of each part.
     pub materials: Vec<Material>,
-    /// The clamps.
+    /// Clamps of the problem.
     pub clamps: Vec<Clamp>,
-    /// The loads.
+    /// Loads of the problem.
     pub loads: Vec<Load>,
-    /// The floor.
+    /// Floor of the problem.
     pub floor: Option<Floor>,
     /// Voxel size in m.
     pub voxel_size: f64,
-    /// The surface that is shown.
+    /// Triangles of the displayed surface.
     pub triangles: Vec<[u32; 3]>,
     /// A tag for each triangle.
     pub tags: Vec<u8>,
-    /// What can be changed and what is plotted.
+    /// Controls and probes.
     pub cast: Cast,
-    /// What touches.
+    /// Contact: surfaces and rigid objects.
     pub touching: Option<Touching>,
-    /// Where the vertices are shown first in m; `None`: unloaded.
+    /// First displayed positions in m; `None` is the unloaded shape.
     pub positions: Option<Vec<Vec3>>,
 }
 
 impl Scene {
-    /// The scene as bytes.
+    /// Serializes the scene.
     pub fn write(&self) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
         bytes.extend_from_slice(&VERSION.to_le_bytes());
@@ -84,7 +84,7 @@ impl Scene {
             .expect("memory takes all bytes, and all lists have lengths")
     }
 
-    /// Reads what [`Scene::write`] wrote. No list is allocated much beyond the bytes that are there.
+    /// Reads the bytes of [`Scene::write`]. No list is allocated much beyond the available bytes.
     pub fn read(bytes: &[u8]) -> Result<Self, SceneError> {
         let (magic, bytes) = bytes.split_first_chunk().ok_or(SceneError::NotAScene)?;
         if *magic != MAGIC {
@@ -103,14 +103,13 @@ impl Scene {
         }
     }
 
-    /// Builds the problem, without what touches.
+    /// Builds the problem, without contact.
     pub fn problem(&self) -> Result<Problem, ProblemError> {
         let body = Body::new(&self.mesh, &self.materials)?;
         Problem::new(body, self.clamps.clone(), self.loads.clone(), self.floor)
     }
 
-    /// Gets the problem ready to be played: with the same bits everywhere, if explicit steps move it and
-    /// `deterministic` is asked for.
+    /// Makes a player of the problem. With `deterministic`, explicit steps give the same bits on every processor.
     pub fn play(&self, deterministic: bool) -> Result<Player, ProblemError> {
         let mut problem = self.problem()?;
         let mut touching = None;

@@ -1,4 +1,4 @@
-//! What touches in a scene: surfaces, friction, rigid objects.
+//! Contact of a scene: surfaces, friction, rigid objects.
 
 use std::sync::Arc;
 
@@ -8,23 +8,23 @@ use voxsoft_contact::touch::{Carried, Description, Surface};
 use voxsoft_player::{Placed, Touching as Played};
 use voxsoft_solid::{Problem, ProblemError, Rigid, Springs};
 
-/// Contact of a problem, and what it takes to play and to tell of it.
+/// Contact of a problem for play, with names for reports.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Touching {
-    /// The surfaces and their friction.
+    /// Surfaces and their friction.
     pub description: Description,
-    /// What is rigid and moves freely.
+    /// Rigid objects that move freely.
     pub rigid: Vec<Rigid>,
-    /// The springs that keep it rigid.
+    /// Springs that keep them rigid.
     pub springs: Springs,
-    /// What each surface is called.
+    /// Names of the surfaces.
     pub names: Vec<String>,
-    /// The objects that are drawn.
+    /// Objects that are drawn.
     pub objects: Vec<Placed>,
 }
 
 impl Touching {
-    /// The problem with this contact, and what a player is told of it.
+    /// Adds this contact to a problem; returns it with the names and objects for a player.
     pub(crate) fn add_to(&self, problem: Problem) -> Result<(Problem, Played), ProblemError> {
         let description = self.description.clone();
         let contact = LiveTouch::new(description, problem.body().rest())?;
@@ -43,10 +43,10 @@ impl Touching {
 /// Vertices and weights of each point, and triangles of points.
 type SurfaceForm = (Vec<(Vec<u32>, Vec<f64>)>, Vec<[u32; 3]>);
 
-/// The same as it is laid out in bytes.
+/// Serialized layout of contact.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Form {
-    /// Of each surface the vertices and weights of its points, and its triangles.
+    /// Vertices and weights of the points of each surface, and its triangles.
     surfaces: Vec<SurfaceForm>,
     friction: Vec<Vec<f64>>,
     voxel: f64,
@@ -57,7 +57,7 @@ pub(crate) struct Form {
     objects: Vec<Placed>,
 }
 
-/// Whether triangles are of so many points, each of which is on one.
+/// True if the triangles index only `points` points and use each of them.
 fn all_are_used(points: usize, triangles: &[[u32; 3]]) -> bool {
     let mut used = vec![false; points];
     for point in triangles.as_flattened() {
@@ -76,7 +76,7 @@ impl From<&Touching> for Form {
             let points = surface.points.iter().map(point).collect();
             (points, surface.triangles.clone())
         };
-        // Designs with bonds are not played.
+        // Bonds are dropped: designs with bonds are not played.
         let Description {
             surfaces,
             friction,
@@ -98,7 +98,7 @@ impl From<&Touching> for Form {
 }
 
 impl Form {
-    /// What it describes, if all vertices of points and objects are among so many.
+    /// Makes the contact, if all vertices of points and objects are below `count`.
     pub(crate) fn of_vertices(self, count: usize) -> Option<Touching> {
         let known = |vertex: &u32| (*vertex as usize) < count;
         let sound = |(vertices, weights): &(Vec<u32>, Vec<f64>)| {

@@ -1,4 +1,4 @@
-//! What is written is read again, and no bytes make the reader fall over.
+//! Round trips of scenes, and reading of damaged bytes without panics.
 
 use proptest::prelude::*;
 use voxsoft_contact::touch::rigid::Frame;
@@ -17,7 +17,7 @@ use voxsoft_xpbd::{Damping, Dynamics};
 
 const SIDE: f64 = 5e-3;
 
-/// Vertices with those of a free object, an octahedron, that touches the body; the first of them.
+/// Vertices with those of a free object, an octahedron, its first vertex, and its contact with the body.
 fn with_ball(mut vertices: Vec<Vec3>, body: &[[u32; 3]]) -> (Vec<Vec3>, u32, Touching) {
     let first = vertices.len() as u32;
     let frame = Frame::of_mass([0.0, 0.0, 0.1], IDENTITY, [0.01; 3]).unwrap();
@@ -59,7 +59,8 @@ fn with_ball(mut vertices: Vec<Vec3>, body: &[[u32; 3]]) -> (Vec<Vec3>, u32, Tou
     (vertices, first, touching)
 }
 
-/// Two voxels of two materials with one of everything.
+/// Scene of two voxels of two materials with clamps, loads, a membrane, an attached spring, contact, controls and
+/// probes.
 fn full() -> Scene {
     let mut grid = Grid::empty([2, 1, 1], [0.0; 3], SIDE, u64::MAX).unwrap();
     grid.fill_box([0.0; 3], [2.0 * SIDE, SIDE, SIDE], 1);
@@ -189,14 +190,14 @@ fn full() -> Scene {
     }
 }
 
-/// Reads, builds and shows; only errors may come.
+/// Reads a scene and makes its player; damaged bytes may only give errors.
 fn open(bytes: &[u8]) -> Result<(), SceneError> {
     Scene::read(bytes)?.play(true)?;
     Ok(())
 }
 
 #[test]
-fn what_is_written_is_read_again() {
+fn scene_round_trips() {
     let models = [
         Model::NeoHookean { c10: 1e4 },
         Model::MooneyRivlin { c10: 1e4, c01: 2e3 },
@@ -224,7 +225,7 @@ fn what_is_written_is_read_again() {
 }
 
 #[test]
-fn what_is_cut_off_or_too_long_is_reported() {
+fn truncated_or_extended_bytes_are_reported() {
     let bytes = full().write();
     for length in 0..bytes.len() {
         assert!(Scene::read(&bytes[..length]).is_err(), "{length} bytes");
@@ -234,14 +235,14 @@ fn what_is_cut_off_or_too_long_is_reported() {
     let mut newer = bytes.clone();
     newer[4] = 7;
     assert_eq!(Scene::read(&newer), Err(SceneError::Version(7)));
-    // A list that says to be longer than all there is is refused once the bytes are used up.
+    // A list with a length beyond the available bytes is refused once they are used up.
     let endless = b"VXSC\x06\0\0\0\xff\xff\xff\xff\x0fab";
     assert_eq!(Scene::read(endless), Err(SceneError::CutOff));
     assert_eq!(Scene::read(b"PK\x03\x04"), Err(SceneError::NotAScene));
 }
 
 #[test]
-fn what_could_not_be_is_reported() {
+fn invalid_values_are_reported() {
     let spoilt = |spoil: fn(&mut Scene)| {
         let mut scene = full();
         spoil(&mut scene);
@@ -266,7 +267,7 @@ proptest! {
     #[test]
     fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         let _ = open(&bytes);
-        // The same behind a good head, so that lengths and kinds are reached.
+        // Random bytes after a header with an older version.
         let _ = open(&[b"VXSC\x04\0\0\0", &bytes[..]].concat());
     }
 

@@ -1,6 +1,6 @@
-//! Boxes of cells and what was found in them.
+//! Blocks of cells and their classified contents.
 
-/// The cells from `low` (included) to `high` (excluded).
+/// Block of cells from `low` (included) to `high` (excluded).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Block {
     pub low: [usize; 3],
@@ -51,17 +51,17 @@ impl Block {
     }
 }
 
-/// The cells of one tile.
+/// Classified cells of one tile.
 pub(crate) struct TileContent {
     pub cells: TileCells,
-    /// Cells where the function has no value
+    /// Cells where the function is NaN
     pub undefined: Vec<[usize; 3]>,
 }
 
 pub(crate) enum TileCells {
-    /// All the same
+    /// One value for all cells
     Uniform(u8),
-    /// One value each, in C order
+    /// One value for each cell, in C order
     Mixed(Vec<u8>),
 }
 

@@ -15,7 +15,7 @@ impl Bounds {
         low: [f64::NEG_INFINITY; 3],
         high: [f64::INFINITY; 3],
     };
-    /// Nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self {
         low: [f64::INFINITY; 3],
         high: [f64::NEG_INFINITY; 3],
@@ -26,7 +26,7 @@ impl Bounds {
         Self { low, high }
     }
 
-    /// The smallest box around `points`.
+    /// Smallest box around `points`.
     pub fn around(points: impl IntoIterator<Item = [f64; 3]>) -> Self {
         points
             .into_iter()
@@ -43,7 +43,7 @@ impl Bounds {
         (0..3).any(|axis| self.low[axis] > self.high[axis])
     }
 
-    /// The smallest box around both.
+    /// Smallest box around both.
     pub fn hull(&self, other: &Self) -> Self {
         if self.is_empty() {
             return *other;
@@ -57,7 +57,7 @@ impl Bounds {
         }
     }
 
-    /// The common box.
+    /// Intersection of two boxes.
     pub fn intersection(&self, other: &Self) -> Self {
         let both = Self {
             low: [0, 1, 2].map(|i| self.low[i].max(other.low[i])),
@@ -66,7 +66,7 @@ impl Bounds {
         if both.is_empty() { Self::EMPTY } else { both }
     }
 
-    /// Every side moved outward by `distance` (inward when negative).
+    /// Box with every side moved outward by `distance` (inward when negative).
     pub fn grown(&self, distance: f64) -> Self {
         if self.is_empty() {
             return Self::EMPTY;

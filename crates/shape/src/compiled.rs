@@ -8,19 +8,19 @@ use fidget::var::{Var, VarIndex};
 
 use crate::expr::{Binary, Expr, Node, Unary};
 
-/// fidget's interpreter, which runs on any processor.
+/// Interpreter of fidget, which runs on any processor.
 pub(crate) type Interpreted = fidget::vm::VmFunction;
-/// fidget's machine code.
+/// JIT compiler of fidget.
 #[cfg(all(feature = "jit", not(target_arch = "wasm32")))]
 pub(crate) type MachineCode = fidget::jit::JitFunction;
 
-/// Whether this processor runs the machine code that fidget writes, which does not ask itself.
+/// True if this processor runs fidget's machine code, which needs AVX2 and does not check for it.
 #[cfg(all(feature = "jit", target_arch = "x86_64"))]
 pub(crate) fn runs_machine_code() -> bool {
     is_x86_feature_detected!("avx2")
 }
 
-/// Whether this processor runs the machine code that fidget writes: all of this kind do.
+/// True: every processor of these architectures runs fidget's machine code.
 #[cfg(all(
     feature = "jit",
     not(any(target_arch = "x86_64", target_arch = "wasm32"))
@@ -29,17 +29,17 @@ pub(crate) fn runs_machine_code() -> bool {
     true
 }
 
-/// fidget's evaluator over blocks.
+/// Evaluator of fidget over blocks.
 pub(crate) type IntervalEval<F> = ShapeTracingEval<<F as Function>::IntervalEval>;
-/// fidget's evaluator of many points.
+/// Evaluator of fidget for many points.
 pub(crate) type FloatEval<F> = ShapeBulkEval<<F as Function>::FloatSliceEval>;
 type IntervalTape<F> = ShapeTape<<<F as Function>::IntervalEval as TracingEvaluator>::Tape>;
 type FloatTape<F> = ShapeTape<<<F as Function>::FloatSliceEval as BulkEvaluator>::Tape>;
 
-/// A simpler function is adopted when it has at most this part of the operations: compiling costs.
+/// Largest size of a simplified function, relative to the present one, that is worth its compilation.
 const WORTHWHILE: f64 = 0.75;
 
-/// A function, or the part of it that matters in a block, compiled for blocks and for points.
+/// A function, or its simplification in a block, compiled for blocks and for points.
 pub(crate) struct Part<F: Function> {
     shape: Shape<F>,
     pub intervals: IntervalTape<F>,
@@ -57,7 +57,7 @@ pub(crate) struct Table {
 }
 
 impl<F: MathFunction> Part<F> {
-    /// Compiles `expr`, or `None` when it samples a field, which fidget cannot.
+    /// Compiles `expr`; `None` if it samples a field, which fidget cannot.
     pub fn compile(expr: &Expr) -> Option<(Self, Vec<Table>)> {
         let mut context = Context::new();
         let (root, mut tables) = lower(expr, &mut context)?;
@@ -76,7 +76,7 @@ impl<F: MathFunction> Part<F> {
         }
     }
 
-    /// The part left by the choices in `trace`, if it is markedly smaller.
+    /// Simplifies the function by the choices in `trace`, if the result is markedly smaller.
     pub fn simplify(&self, trace: &F::Trace, workspace: &mut F::Workspace) -> Option<Self> {
         let simpler = self
             .shape
@@ -99,7 +99,7 @@ fn lower(expr: &Expr, context: &mut Context) -> Option<(Handle, Vec<Table>)> {
     ))
 }
 
-/// What is known of the nodes lowered so far.
+/// State of the lowering: results and dependence of the nodes lowered so far.
 #[derive(Default)]
 struct Lowering {
     trees: HashMap<*const Node, Tree>,
@@ -108,12 +108,12 @@ struct Lowering {
     tables: Vec<Table>,
 }
 
-/// What a node depends on.
+/// Dependence of a node on coordinates, and its cost.
 #[derive(Clone, Copy, Default)]
 struct Dependence {
     /// One bit per coordinate
     axes: u8,
-    /// Whether it calls a library function
+    /// True if it calls a library function
     is_costly: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What can go wrong, one enum per operation.
+//! Errors, one enum per operation.
 use thiserror::Error;
 
 /// A field (mesh, function) failed to give values.
@@ -12,39 +12,39 @@ pub enum BuildError {
     /// A size that must be positive and finite.
     #[error("{name} is {value}; it must be positive and finite")]
     NotPositive {
-        /// Which argument
+        /// Name of the argument
         name: &'static str,
-        /// What came
+        /// Given value
         value: f64,
     },
     /// A number that must be finite.
     #[error("{name} is {value}; it must be finite")]
     NotFinite {
-        /// Which argument
+        /// Name of the argument
         name: &'static str,
-        /// What came
+        /// Given value
         value: f64,
     },
     /// A direction of zero length.
     #[error("{name} has no length; give three numbers that are not all zero")]
     NoDirection {
-        /// Which argument
+        /// Name of the argument
         name: &'static str,
     },
     /// A value outside its range, in words.
     #[error("{name} is {value}; {allowed}")]
     OutOfRange {
-        /// Which argument
+        /// Name of the argument
         name: &'static str,
-        /// What came
+        /// Given value
         value: f64,
-        /// What is allowed
+        /// Description of the allowed range
         allowed: &'static str,
     },
     /// A polygon that encloses no area.
     #[error("{0}")]
     Polygon(&'static str),
-    /// A union or intersection of nothing.
+    /// A union or intersection without operands.
     #[error("nothing to combine; give at least one shape")]
     NoOperands,
 }
@@ -53,9 +53,9 @@ pub enum BuildError {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("at character {position}: {message}")]
 pub struct ParseError {
-    /// Where, counted in characters from 1
+    /// Position in characters, counted from 1
     pub position: usize,
-    /// What is wrong and what is allowed
+    /// Description of the error and of the allowed syntax
     pub message: String,
 }
 
@@ -78,19 +78,19 @@ pub enum SampleError {
     /// A voxel size or origin that is not usable.
     #[error("{name} is {value}; it must be positive and finite")]
     BadLattice {
-        /// Which number
+        /// Name of the number
         name: &'static str,
-        /// What came
+        /// Given value
         value: f64,
     },
-    /// The function has no value somewhere.
+    /// The function is NaN at some cell centers.
     #[error(
         "the shape function is not a number (NaN) at {count} of the cell centers, \
          first at x, y, z = ({}, {}, {}) m",
         at[0], at[1], at[2]
     )]
     NotANumber {
-        /// How many cells
+        /// Number of such cells
         count: usize,
         /// First such cell center in C order, m
         at: [f64; 3],

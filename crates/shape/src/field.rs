@@ -1,4 +1,4 @@
-//! Fields that no expression describes: polygons, triangle meshes, Python functions.
+//! Sampled fields without an expression: polygons, triangle meshes, Python functions.
 use std::fmt;
 
 use crate::error::FieldError;
@@ -11,14 +11,14 @@ pub trait Field: Send + Sync + fmt::Debug {
 
     /// Bounds of the values over the box of the three coordinate ranges (m).
     ///
-    /// The default knows nothing, so every cell of such a field is sampled.
+    /// The default is unbounded, so that every cell of such a field is sampled.
     fn range(&self, _at: &[Range; 3]) -> Result<Range, FieldError> {
         Ok(Range::ALL)
     }
 }
 
-/// Range over a box of a field whose value changes by at most the distance moved (a true distance):
-/// the value in the middle of the box, give or take its half diagonal.
+/// Range over a box of a field whose value changes by at most the distance moved (Lipschitz constant 1, as of a true
+/// distance): the value at the center of the box plus or minus its half diagonal.
 pub fn distance_range<E>(
     at: &[Range; 3],
     sample: impl FnOnce([f64; 3]) -> Result<f64, E>,

@@ -1,4 +1,4 @@
-//! A position and orientation in space: where the local axes u, v, w of a primitive lie.
+//! Local frame of a primitive: position and orientation of its axes u, v, w.
 use crate::bounds::Bounds;
 use crate::check;
 use crate::error::BuildError;

@@ -9,7 +9,7 @@ use crate::error::FieldError;
 use crate::sample::SampleGrid;
 use crate::tape::Tape;
 
-/// One value per layer of cells along an axis, for each table of a compiled function.
+/// Values of the tables of a compiled function, one per layer of cells along an axis.
 pub(crate) struct Layers {
     columns: Vec<Column>,
 }
@@ -40,7 +40,7 @@ impl Layers {
         })
     }
 
-    /// The range of each table over a block: exact, as only these values are ever used.
+    /// Inserts the range of each table over a block: exact, as only these values are ever used.
     pub fn ranges(&self, block: &Block, ranges: &mut ShapeVars<Interval>) {
         for column in &self.columns {
             let values = &column.values[block.low[column.axis]..block.high[column.axis]];
@@ -60,7 +60,7 @@ impl Layers {
         }
     }
 
-    /// The value of each table in every cell of a block, in C order.
+    /// Inserts the value of each table in every cell of a block, in C order.
     pub fn place(&self, block: &Block, cells: &mut ShapeVars<Vec<f32>>) {
         for column in &self.columns {
             let mut slice = cells

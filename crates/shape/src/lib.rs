@@ -2,7 +2,7 @@
 //!
 //! # Conventions
 //! Lengths are in m, angles in rad, space is right-handed with z up. A cell belongs to a shape when
-//! s < 0 at its center. Where a primitive says "true distance", s is the signed distance to the
+//! s < 0 at its center. For a "true distance", s is the signed distance to the
 //! surface in m.
 //!
 //! # A tour
@@ -23,7 +23,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # How it works
+//! # Method
 //! [`Expr`] holds the function with float64 constants. [`sample`] compiles it with fidget, decides
 //! whole blocks by interval arithmetic, and evaluates the rest in f32; [`range`] bounds the f32
 //! error, and cells within it are evaluated again in float64. Functions that are no expression

@@ -4,10 +4,10 @@ use crate::expr::Expr;
 
 /// Longest text read, in bytes.
 const LONGEST: usize = 20_000;
-/// Deepest nesting of parentheses, signs and powers: each level takes stack.
+/// Deepest nesting of parentheses, signs and powers, as each level takes stack.
 const DEEPEST: usize = 200;
 
-/// What can be called, by name and number of arguments.
+/// Names of the functions.
 const FUNCTIONS: &str =
     "abs acos asin atan atan2 ceil cos exp floor hypot log max min sin sqrt tan";
 
@@ -18,7 +18,7 @@ const FUNCTIONS: &str =
 /// one argument, atan2 hypot of two, min max of two or more. Angles are in rad.
 ///
 /// # Errors
-/// [`ParseError`] with the position of what cannot be read.
+/// [`ParseError`] with the position of the text that cannot be read.
 ///
 /// ```
 /// let circle = voxsoft_shape::parse("sqrt(x^2 + y**2) - 2")?;
@@ -241,7 +241,7 @@ impl Parser {
     }
 }
 
-/// The function of this name, or `None` for a wrong number of arguments.
+/// Applies the function of this name; `None` for a wrong number of arguments.
 fn apply(name: &str, arguments: Vec<Expr>) -> Option<Expr> {
     if matches!(name, "min" | "max") && arguments.len() >= 2 {
         let combine = |a: Expr, b: Expr| if name == "min" { a.min(b) } else { a.max(b) };
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_named_with_its_place() {
+    fn unreadable_text_is_reported_with_its_position() {
         let problem = |text: &str| parse(text).unwrap_err();
         assert_eq!(problem("x + radius").position, 5);
         assert!(

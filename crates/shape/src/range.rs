@@ -20,16 +20,16 @@ const SLACK: f64 = 1e-15;
 /// Values of an expression over a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// No value is below
+    /// Lower bound of the values
     pub low: f64,
-    /// No value is above
+    /// Upper bound of the values
     pub high: f64,
-    /// An f32 evaluation is off by at most this
+    /// Bound on the error of an f32 evaluation
     pub error: f64,
 }
 
 impl Range {
-    /// Nothing known.
+    /// The unbounded range.
     pub const ALL: Self = Self {
         low: f64::NEG_INFINITY,
         high: f64::INFINITY,
@@ -177,7 +177,7 @@ fn corners(a: Range, b: Range, f: impl Fn(f64, f64) -> f64, error: f64) -> Range
     Range::from(low, high, error)
 }
 
-/// The length of (a, b) changes by at most the length of the change.
+/// Range of the length of (a, b), which changes by at most the length of the change.
 fn hypot(a: Range, b: Range) -> Range {
     let (a, b) = (Range::unary(Unary::Abs, a), Range::unary(Unary::Abs, b));
     let (low, high) = (
@@ -193,7 +193,7 @@ fn hypot(a: Range, b: Range) -> Range {
 /// √a' − √a = (a' − a)/(√a' + √a): at most e/√low, and at most √e near zero.
 fn sqrt(a: Range) -> Range {
     if a.low < 0.0 || a.high < 0.0 {
-        // Part of the block may have no value: leave the verdict to the cells.
+        // Part of the block may be NaN: the cells are evaluated one by one.
         return Range::ALL;
     }
     let error = if a.low > a.error {
@@ -290,7 +290,7 @@ fn divide(a: Range, b: Range) -> Range {
     corners(a, b, |x, y| x / y, error)
 }
 
-/// Angle of the points (x, y) of a box.
+/// Range of the angle of the points (x, y) of a box.
 ///
 /// Away from the origin the angle turns by at most Δ/r; on the negative x axis it jumps by 2π.
 fn atan2(y: Range, x: Range) -> Range {
@@ -356,7 +356,7 @@ mod tests {
         Binary::Atan2,
     ];
 
-    /// The same function in f32, as the compiled evaluation computes it.
+    /// Applies a function in f32, as the compiled evaluation does.
     fn apply_f32(op: Unary, a: f32) -> f32 {
         match op {
             Unary::Neg => -a,
@@ -393,7 +393,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
         #[test]
-        fn one_value_functions_stay_in_range(
+        fn unary_functions_stay_in_range(
             op in 0..UNARY.len(), low in -8.0..8.0f64, width in 0.0..3.0f64, t in 0.0..1.0f64,
             shrink in prop::sample::select(vec![1.0, 1e-3, 1e-6]),
         ) {
@@ -410,7 +410,7 @@ mod tests {
         }
 
         #[test]
-        fn two_value_functions_stay_in_range(
+        fn binary_functions_stay_in_range(
             op in 0..BINARY.len(), low in prop::array::uniform2(-4.0..4.0f64),
             width in prop::array::uniform2(0.0..2.0f64), t in prop::array::uniform2(0.0..1.0f64),
         ) {

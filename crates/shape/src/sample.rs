@@ -1,13 +1,12 @@
-//! Classification of the cells of a grid: which centers lie inside a shape.
+//! Classification of the cells of a grid: inside or outside of a shape at their centers.
 //!
-//! A cell is inside when s < −t at its center and outside when s > t, in float64. Between them the
-//! center lies on the surface as far as rounding can tell, a [`TIED`] cell: who samples decides it
-//! (`python/voxsoft/shapes/ties.py`).
+//! A cell is inside when s < −t at its center and outside when s > t, in float64. Between them the center lies on the
+//! surface within rounding, a [`TIED`] cell: the caller decides it (`python/voxsoft/shapes/ties.py`).
 //!
-//! Blocks of cells are decided together where interval arithmetic proves one sign; the others are
-//! split, each with the part of the function that matters there, and the smallest are evaluated by
-//! compiled f32 code (few cells at once in float64). A cell whose f32 value lies within the error bound of [`crate::range`] is
-//! evaluated again in float64, so the answer is that of a float64 evaluation of every cell.
+//! Blocks of cells are decided together where interval arithmetic proves one sign; the others are split, each with the
+//! function simplified there, and the smallest are evaluated by compiled f32 code (grids of few cells in float64). A
+//! cell whose f32 value lies within the error bound of [`crate::range`] is evaluated again in float64, so the result
+//! equals a float64 evaluation of every cell.
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use fidget::eval::MathFunction;
@@ -31,7 +30,7 @@ pub const INSIDE: u8 = 1;
 /// A cell whose center lies on the surface.
 pub const TIED: u8 = 2;
 
-/// Operations of float64, over all cells, that take no longer than compiling the function does.
+/// Number of float64 operations, over all cells, that take no longer than compiling the function.
 const FEW_OPERATIONS: u128 = 100_000;
 
 /// Cells in space: cell (i, j, k) is the cube from `origin + size·(i, j, k)` with edge `size`.
@@ -91,8 +90,8 @@ impl SampleGrid {
     }
 }
 
-/// Tells for each cell, in C order (x slowest), where its center is: [`INSIDE`], [`OUTSIDE`], or
-/// [`TIED`] where the value is within `tie` (m) of zero.
+/// Classifies each cell, in C order (x slowest), by its center: [`INSIDE`], [`OUTSIDE`], or [`TIED`] where the value is
+/// within `tie` (m) of zero.
 ///
 /// The result does not depend on the number of threads. `cancel` stops the work early.
 ///
@@ -129,7 +128,7 @@ pub fn sample(
     sample_by::<Interpreted>(shape, grid, tie, cancel)
 }
 
-/// [`sample`] with one of fidget's evaluators.
+/// Runs [`sample`] with one of fidget's evaluators.
 fn sample_by<F: MathFunction>(
     shape: &Shape,
     grid: &SampleGrid,
@@ -157,7 +156,7 @@ fn sample_by<F: MathFunction>(
     }
 }
 
-/// As [`sample`], by the definition.
+/// Samples by evaluating every cell in float64.
 fn evaluate_all(tape: &Tape, grid: &SampleGrid, tie: f64) -> Result<Vec<u8>, SampleError> {
     let [nx, ny, nz] = grid.shape;
     let mut centers = Vec::with_capacity(nx * ny * nz);
@@ -178,7 +177,7 @@ fn evaluate_all(tape: &Tape, grid: &SampleGrid, tie: f64) -> Result<Vec<u8>, Sam
         .collect())
 }
 
-/// Where a center is whose value lies between two bounds; None where they do not tell.
+/// Class of all cells with values between two bounds; `None` if it is undecided.
 pub(crate) fn verdict(low: f64, high: f64, tie: f64) -> Option<u8> {
     if high < -tie {
         Some(INSIDE)
@@ -221,9 +220,9 @@ mod tests {
     use crate::parse;
     use crate::primitives;
 
-    /// What a processor without the instructions of the machine code gets.
+    /// Checks the fallback for processors without the instructions of the machine code.
     #[test]
-    fn the_interpreter_finds_what_machine_code_finds() {
+    fn interpreter_agrees_with_machine_code() {
         let ball = primitives::sphere([0.0; 3], 0.02).unwrap();
         let waves = "sin(x/a)*cos(y/a) + sin(y/a)*cos(z/a) + sin(z/a)*cos(x/a)";
         let gyroid = Shape::unknown(parse(&waves.replace('a', "0.0013")).unwrap());

@@ -1,17 +1,17 @@
-//! Bounds of a shape of which only the function is known, found by interval arithmetic.
+//! Search by interval arithmetic for the bounds of a shape given by its function alone.
 use crate::bounds::Bounds;
 use crate::error::FieldError;
 use crate::range::Range;
 use crate::shape::Shape;
 use crate::tape::Tape;
 
-/// Shapes are looked for within this distance of the origin, m; what reaches it counts as endless.
+/// Half edge of the search region about the origin, m; a shape that reaches its border counts as unbounded.
 pub const HORIZON: f64 = 10.0;
 
-/// Halvings per round: a box is judged in up to 2⁴ parts along each axis.
+/// Bisections per round: a box is tested in up to 2⁴ parts along each axis.
 const LEVELS: usize = 4;
 const MOST_ROUNDS: usize = 20;
-/// A round that shortens no edge to less than this part of it is the last.
+/// Shrink factor of edges at which the rounds end: in the last one no edge becomes shorter than this part of it.
 const PROGRESS: f64 = 0.98;
 
 impl Shape {
@@ -54,14 +54,14 @@ struct Search {
 }
 
 impl Search {
-    /// The hull of the parts of `region` that may hold a point with s < 0.
+    /// Hull of the parts of `region` that may contain a point with s < 0.
     fn occupied(&mut self, region: &Bounds, levels: usize) -> Result<Bounds, FieldError> {
         let at = [0, 1, 2].map(|i| Range::new(region.low[i], region.high[i]));
         let range = self.tape.range(&at, &mut self.work)?;
         if range.low >= 0.0 {
             return Ok(Bounds::EMPTY);
         }
-        // Where all is inside, splitting cannot shrink the hull.
+        // Splitting a region that is entirely inside cannot shrink the hull.
         if levels == 0 || range.high < 0.0 {
             return Ok(*region);
         }
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_is_found_tightly() {
+    fn ball_is_bounded_tightly() {
         let found = bounds("(x - 1)^2 + y^2 + z^2 - 0.02^2");
         for axis in 0..3 {
             let center = if axis == 0 { 1.0 } else { 0.0 };
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn an_endless_side_stays_endless() {
+    fn unbounded_side_stays_unbounded() {
         let found = bounds("x^2 + y^2 - 0.02^2");
         assert_eq!(found.low[2], f64::NEG_INFINITY);
         assert_eq!(found.high[2], f64::INFINITY);
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_nowhere_inside_is_empty() {
+    fn shape_without_inside_is_empty() {
         assert!(bounds("x^2 + 1").is_empty());
     }
 }

@@ -4,7 +4,7 @@ use crate::error::FieldError;
 use crate::expr::Expr;
 use crate::tape::Tape;
 
-/// A shape: its function and what is known about it.
+/// A shape: its function, its bounds and its growth outside them.
 ///
 /// `growth` states how the function behaves outside `bounds`: s(p) ≥ growth · distance(p, bounds).
 /// It is 1 for a true distance and 0 where nothing is known; operators that move the surface
@@ -20,8 +20,8 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// A shape whose function is a true distance outside, or never above it by more than the bounds
-    /// say.
+    /// Makes a shape whose function grows outside `bounds` at least as fast as the distance from them, such as a true
+    /// distance.
     pub fn distance(expr: Expr, bounds: Bounds) -> Self {
         Self {
             expr,
@@ -30,7 +30,7 @@ impl Shape {
         }
     }
 
-    /// A shape about which nothing is known.
+    /// Makes a shape with unknown bounds and growth.
     pub fn unknown(expr: Expr) -> Self {
         Self {
             expr,

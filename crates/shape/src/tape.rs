@@ -1,4 +1,4 @@
-//! The expression as a straight list of operations, evaluated in float64.
+//! Tape: an expression as a list of operations, evaluated in float64.
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -96,8 +96,7 @@ impl Tape {
 
     /// Writes the values at `points` (m) into `values` of the same length.
     pub fn evaluate_into(&self, points: &[[f64; 3]], values: &mut [f64]) -> Result<(), FieldError> {
-        // A field is asked for all points at once: a call into Python costs more than the cache
-        // saves.
+        // A field is sampled at all points at once: a call into Python costs more than the cache saves.
         let most = if self.has_fields() {
             points.len()
         } else {

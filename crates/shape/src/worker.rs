@@ -1,4 +1,4 @@
-//! One thread's work on one tile: prune by intervals, then evaluate what is left.
+//! Classification of a tile by one thread: interval pruning, then evaluation of the remaining cells.
 use fidget::eval::{Function, MathFunction};
 use fidget::shape::ShapeVars;
 use fidget::types::Interval;
@@ -15,21 +15,21 @@ use crate::tape::Tape;
 /// Block edges below the tile, largest first.
 const EDGES: [usize; 2] = [16, 8];
 
-/// The same where a field is sampled: the distance to a large mesh costs 0.1 ms alone and a fifth of it in
-/// a batch, so small blocks are sampled as a whole.
+/// Block edges for sampled fields: the distance to a large mesh costs 0.1 ms for one point and a fifth of it in a
+/// batch, so small blocks are sampled as a whole.
 const SAMPLED_EDGES: [usize; 2] = [16, 4];
 
 /// An error bound is inherited by smaller blocks while it is below this part of the range of
 /// values.
 const SHARP: f64 = 1e-4;
 
-/// The function of a shape in all its forms, shared by the threads.
+/// Tape, compiled code and tables of a shape, shared by the threads.
 pub(crate) struct Classifier<F: Function> {
     tape: Tape,
     compiled: Option<Part<F>>,
     layers: Layers,
     grid: SampleGrid,
-    /// On the surface means s within this of zero, m
+    /// Bound on |s| for a center on the surface, m
     tie: f64,
 }
 
@@ -52,7 +52,7 @@ impl<F: MathFunction> Classifier<F> {
         verdict(low, high, self.tie)
     }
 
-    /// The cell centers of a block along each axis, m.
+    /// Range of the cell centers of a block along each axis, m.
     fn extent(&self, block: &Block) -> [Range; 3] {
         [0, 1, 2].map(|axis| {
             let center = |index| self.grid.center(axis, index);
@@ -91,7 +91,7 @@ impl Canvas {
         }
     }
 
-    /// SampleGrid indices of the cell at a position in the tile.
+    /// Indices in the sample grid of the cell at a position in the tile.
     fn index(&self, position: usize) -> [usize; 3] {
         let [_, ny, nz] = self.tile.shape();
         let local = [position / (ny * nz), position / nz % ny, position % nz];
@@ -148,7 +148,7 @@ impl<F: MathFunction> Worker<F> {
         })
     }
 
-    /// Decides a block by fidget's intervals, or goes on with what matters of the function there.
+    /// Decides a block by fidget's intervals, or continues with the function simplified there.
     fn open(
         &mut self,
         of: &Classifier<F>,
@@ -175,7 +175,7 @@ impl<F: MathFunction> Worker<F> {
             canvas.fill(block, value);
             return Ok(());
         }
-        // The last level is evaluated once: compiling a simpler function for it does not pay.
+        // The last level is evaluated only once: compiling a simpler function for it does not pay off.
         let simpler = match trace {
             Some(trace) if !edges.is_empty() => part.simplify(trace, &mut self.workspace),
             _ => None,

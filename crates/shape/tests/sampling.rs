@@ -1,4 +1,4 @@
-//! The pruned, compiled classification equals a float64 evaluation of every cell.
+//! Pruned, compiled classification against a float64 evaluation of every cell.
 use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
@@ -7,10 +7,10 @@ use voxsoft_shape::{
     Expr, INSIDE, OUTSIDE, SampleError, SampleGrid, Shape, TIED, operators, primitives, sample,
 };
 
-/// Values as near to zero as this are ties, m.
+/// Bound on |s| for ties, m.
 const TIE: f64 = 1e-12;
 
-/// Every cell on its own, in float64.
+/// Classifies every cell on its own, in float64.
 fn brute_force(shape: &Shape, grid: &SampleGrid) -> Vec<u8> {
     let [nx, ny, nz] = grid.shape;
     let mut points = Vec::new();
@@ -162,7 +162,7 @@ fn atoms() -> Vec<(&'static str, Shape)> {
     ]
 }
 
-/// `atom` seen through the operator numbered `which`, with numbers from `t` in [0, 1].
+/// Applies the operator numbered `which` to `atom`, with parameters from `t` in [0, 1].
 fn operate(which: usize, atom: &Shape, other: &Shape, t: f64) -> Shape {
     let both = [atom.clone(), other.clone()];
     let (up, origin) = ([0.0, 0.0, 1.0], [0.0; 3]);
@@ -194,9 +194,9 @@ fn operate(which: usize, atom: &Shape, other: &Shape, t: f64) -> Shape {
 }
 
 #[test]
-fn every_primitive_is_classified_as_in_float64() {
+fn every_primitive_matches_float64() {
     for (name, shape) in atoms() {
-        // More than one tile of 64 cells.
+        // The larger grid has more than one tile of 64 cells.
         assert_exact(name, &shape, [20, 75]);
     }
 }
@@ -205,7 +205,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn random_compositions_are_classified_as_in_float64(
+    fn random_compositions_match_float64(
         picks in prop::array::uniform3(0..21_usize), which in prop::array::uniform2(0..18_usize),
         t in prop::array::uniform2(0.0..1.0f64),
     ) {
@@ -218,10 +218,10 @@ proptest! {
 }
 
 #[test]
-fn a_center_on_the_surface_is_outside() {
+fn center_on_surface_is_not_inside() {
     // Centers lie at x = ±0.5, ±1.5 ...: a shell of thickness 1 around the plane x = 0 touches two layers.
     let plane = primitives::half_space([0.0; 3], [1.0, 0.0, 0.0]).unwrap();
-    // Few cells, which are evaluated one by one, and many.
+    // Grids of few cells, which are evaluated one by one, and of many.
     for cells in [4, 64] {
         let grid = SampleGrid {
             origin: [-0.5 * cells as f64; 3],
@@ -240,7 +240,7 @@ fn a_center_on_the_surface_is_outside() {
 
 #[cfg(feature = "threads")]
 #[test]
-fn thread_count_does_not_change_a_cell() {
+fn result_is_independent_of_thread_count() {
     let gyroid = Surface::Gyroid
         .sheet(&0.02.into(), &0.003.into(), 0.0)
         .unwrap();
@@ -256,7 +256,7 @@ fn thread_count_does_not_change_a_cell() {
 }
 
 #[test]
-fn too_large_a_grid_is_refused_before_allocating() {
+fn too_large_grid_is_refused_before_allocation() {
     let ball = primitives::sphere([0.0; 3], 1.0).unwrap();
     let grid = SampleGrid {
         origin: [0.0; 3],
@@ -270,10 +270,10 @@ fn too_large_a_grid_is_refused_before_allocating() {
 }
 
 #[test]
-fn a_function_without_a_value_is_an_error_with_its_place() {
+fn nan_is_reported_with_its_position() {
     let [x, ..] = Expr::axes();
     let shape = Shape::unknown(x.sqrt() - 0.01);
-    // Few cells, which are evaluated one by one, and many.
+    // Grids of few cells, which are evaluated one by one, and of many.
     for (cells, undefined) in [(20, 10 * 23 * 15), (80, 40 * 83 * 75)] {
         let refused = sample(&shape, &grid(cells), TIE, u64::MAX, &AtomicBool::new(false));
         let Err(SampleError::NotANumber { count, at }) = refused else {

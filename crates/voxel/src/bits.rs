@@ -1,4 +1,4 @@
-//! One bit per cell, each row along z starting at a new word: 16 MiB for 512³ cells.
+//! Bit sets of cells, one bit per cell, each row along z starting at a new word: 16 MiB for 512³ cells.
 use crate::grid::Grid;
 
 /// A set of cells of a box; rows run along the last axis.
@@ -10,7 +10,7 @@ pub(crate) struct BitGrid {
 }
 
 impl BitGrid {
-    /// The empty set in a box of `shape` cells.
+    /// Makes the empty set in a box of `shape` cells.
     pub fn new(shape: [usize; 3]) -> Self {
         let words_per_row = shape[2].div_ceil(64);
         Self {
@@ -68,7 +68,7 @@ impl BitGrid {
         }
     }
 
-    /// As [`Self::word`], but bit k holds cell k − 1.
+    /// Word `w` of row (i, j) shifted by one cell, see [`Self::word`]: bit k holds cell k − 1.
     pub fn behind(&self, i: isize, j: isize, w: usize) -> u64 {
         let carried = if w == 0 {
             0
@@ -78,7 +78,7 @@ impl BitGrid {
         self.word(i, j, w) << 1 | carried
     }
 
-    /// As [`Self::word`], but bit k holds cell k + 1.
+    /// Word `w` of row (i, j) shifted by one cell, see [`Self::word`]: bit k holds cell k + 1.
     pub fn ahead(&self, i: isize, j: isize, w: usize) -> u64 {
         self.word(i, j, w) >> 1 | self.word(i, j, w + 1) << 63
     }
@@ -174,7 +174,7 @@ impl BitGrid {
         let row = self.row(i, j);
         let mut open = None;
         for (w, &word) in row.iter().enumerate() {
-            // A one wherever membership changes between cell k − 1 and k.
+            // Bit k is set where membership changes between cell k − 1 and k.
             let carried = u64::from(open.is_some());
             let mut changes = word ^ (word << 1 | carried);
             while changes != 0 {
@@ -190,13 +190,13 @@ impl BitGrid {
             }
         }
         if let Some(first) = open {
-            // Only a row that ends with its last word can still be open.
+            // A run is still open only if the row ends with its last word.
             visit(first, self.shape[2] - 1);
         }
     }
 }
 
-/// Bit k is set where cell k of at most 64 is filled.
+/// Packs at most 64 cells into a word: bit k is set where cell k is filled.
 fn pack(cells: &[u8]) -> u64 {
     cells
         .iter()
@@ -204,7 +204,7 @@ fn pack(cells: &[u8]) -> u64 {
         .fold(0, |word, (k, &part)| word | u64::from(part != 0) << k)
 }
 
-/// The positions of the ones of a word, ascending.
+/// Positions of the set bits of a word, ascending.
 pub(crate) fn ones(mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         (word != 0).then(|| {

@@ -1,10 +1,10 @@
-//! Enclosed empty regions: the chambers that pressure can act in.
+//! Cavities: enclosed empty regions, the chambers in which pressure can act.
 use crate::bits::BitGrid;
 use crate::components::{Component, Contact, sort_largest_first};
 use crate::grid::Grid;
 use crate::runs::LabeledRuns;
 
-/// An empty region that no path through faces connects with the outside.
+/// A cavity: an empty region that no path through faces connects with the outside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cavity {
     /// Its cells.
@@ -17,17 +17,17 @@ pub struct Cavity {
 
 /// The cavities of a grid, largest first; equal ones by their first cell in C order.
 ///
-/// Everything beyond the grid is outside: an empty region is a cavity if it touches no border
-/// of the box, which is what a flood fill of the padded grid finds.
+/// Everything beyond the grid is outside: an empty region is a cavity if it touches no border of the box. A flood fill
+/// of the padded grid gives the same regions.
 pub fn cavities(grid: &Grid) -> Vec<Cavity> {
     LabeledCavities::new(grid, &BitGrid::filled(grid)).cavities
 }
 
-/// Cavities together with the way from a cell to its cavity.
+/// Cavities with a lookup from a cell to its cavity.
 pub(crate) struct LabeledCavities {
     pub cavities: Vec<Cavity>,
     runs: LabeledRuns,
-    /// Place in `cavities` of each region of empty cells; `None` for those that are outside.
+    /// Index in `cavities` of each region of empty cells; `None` for those that are outside.
     places: Vec<Option<u32>>,
 }
 
@@ -69,7 +69,7 @@ impl LabeledCavities {
         }
     }
 
-    /// The place in the list of the cavity that holds a cell.
+    /// Index in `cavities` of the cavity that contains a cell.
     pub fn place(&self, i: usize, j: usize, k: usize) -> Option<u32> {
         let label = self.runs.label(i, j, k)?;
         self.places[label as usize]
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bore_to_the_outside_leaves_no_cavity() {
+    fn bore_to_the_outside_leaves_no_cavity() {
         let mut grid = block(5);
         grid.fill_box([0.2, 0.2, 0.1], [0.3, 0.3, 0.4], 0);
         assert_eq!(cavities(&grid).len(), 1);
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_along_an_edge_does_not_leak() {
+    fn gap_along_an_edge_does_not_leak() {
         let mut grid = block(3);
         grid.set([1, 1, 1], 0);
         for (i, j) in [(0, 0), (0, 2), (2, 0), (2, 2)] {
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn an_island_inside_a_cavity_belongs_to_its_surface() {
+    fn island_in_a_cavity_belongs_to_its_surface() {
         let mut grid = block(7);
         grid.fill_box([0.1; 3], [0.6; 3], 0);
         grid.set([3, 3, 3], 2);

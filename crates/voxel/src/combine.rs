@@ -1,9 +1,9 @@
-//! Set operations between grids, and moves of a grid on its lattice.
+//! Set operations between grids, and shifts of a grid on its cell lattice.
 use thiserror::Error;
 
 use crate::grid::{Grid, LATTICE_TOLERANCE, MAX_CELLS_PER_AXIS};
 
-/// Why two grids cannot be combined, or a grid not be changed.
+/// Error of combining two grids or of changing a grid.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CombineError {
     /// The grids have cells of different sizes.
@@ -15,14 +15,14 @@ pub enum CombineError {
     /// The result would have too many cells along an axis.
     #[error("the result would have {0:?} cells; each axis may have {MAX_CELLS_PER_AXIS}")]
     Shape([usize; 3]),
-    /// The result would not fit the memory limit; said before anything is allocated.
+    /// The result would exceed the memory limit; checked before allocation.
     #[error("a grid of {shape:?} cells needs {bytes} bytes, the limit is {limit}")]
     TooLarge {
         /// The shape of the result.
         shape: [usize; 3],
-        /// What its cells would take.
+        /// Memory of its cells in bytes.
         bytes: u64,
-        /// The limit that was given.
+        /// Given limit in bytes.
         limit: u64,
     },
     /// A move would leave the range of lattice indices.
@@ -34,7 +34,7 @@ pub enum CombineError {
 }
 
 impl Grid {
-    /// The cells of either grid, in a box that holds both; where both are filled, `self` wins.
+    /// Union: the cells of either grid, in a box that contains both; where both are filled, `self` wins.
     ///
     /// # Errors
     ///
@@ -65,7 +65,7 @@ impl Grid {
         Ok(union)
     }
 
-    /// The cells of `self` that are filled in `other` too, with the parts of `self`.
+    /// Intersection: the cells of `self` that are filled in `other` too, with the parts of `self`.
     ///
     /// # Errors
     ///
@@ -74,7 +74,7 @@ impl Grid {
         self.keep_where(other, true)
     }
 
-    /// The cells of `self` that are empty in `other`.
+    /// Difference: the cells of `self` that are empty in `other`.
     ///
     /// # Errors
     ///
@@ -103,7 +103,7 @@ impl Grid {
         Ok(kept)
     }
 
-    /// Whole voxels from the first cell of `self` to the first cell of `other`.
+    /// Number of voxels from the first cell of `self` to the first cell of `other`.
     fn steps_to(&self, other: &Self) -> Result<[i64; 3], CombineError> {
         let size = self.voxel_size();
         if (size - other.voxel_size()).abs() > 1e-12 * size {
@@ -120,14 +120,14 @@ impl Grid {
         Ok(apart.map(|steps| steps.round() as i64))
     }
 
-    /// The mirror image of the content inside the same box, along axis 0, 1 or 2.
+    /// Mirror image of the content inside the same box, along axis 0, 1 or 2.
     ///
     /// # Panics
     ///
     /// If `axis` is greater than 2.
     pub fn flipped(&self, axis: usize) -> Self {
         let mut flipped = self.clone();
-        // Along an axis, cells come in `inner`-sized pieces; reversing the pieces mirrors the axis.
+        // Along an axis, cells come in chunks of the size `inner`; reversing the chunks mirrors the axis.
         let inner: usize = self.shape()[axis + 1..].iter().product();
         let slab = inner * self.shape()[axis];
         let slabs = flipped
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_grid_wins_in_a_union() {
+    fn first_grid_wins_in_a_union() {
         let other = row(0).shifted([2, 0, 0]).unwrap();
         let union = row(0).union(&other, u64::MAX).unwrap();
         assert_eq!(union.cells(), [1, 2, 3, 4, 3, 4]);
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_union_spans_all_axes() {
+    fn union_spans_all_axes() {
         let union = row(1)
             .union(&row(2).shifted([-1, 2, -3]).unwrap(), u64::MAX)
             .unwrap();

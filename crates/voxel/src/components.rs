@@ -1,12 +1,12 @@
-//! Connected regions of cells.
+//! Connected components of cells.
 use crate::bits::BitGrid;
 use crate::grid::Grid;
 use crate::runs::LabeledRuns;
 
-/// How two cells must touch to belong together.
+/// Contact that connects two cells: through faces, edges or corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Contact {
-    /// Through a face: 6 neighbors. The material is one component.
+    /// Through a face: 6 neighbors. The material of a component is solidly connected.
     Face,
     /// Through a face or an edge: 18 neighbors. A component may hang on a hinge line.
     Edge,
@@ -14,7 +14,7 @@ pub enum Contact {
     Corner,
 }
 
-/// The cells (i, j, first..=last) of the array, in eight bytes.
+/// A run of cells (i, j, first..=last) of the array, in eight bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CellRun {
     /// First index.
@@ -27,7 +27,7 @@ pub struct CellRun {
     pub last: u16,
 }
 
-/// A connected set of cells, kept as runs along z in C order.
+/// A connected component of cells, stored as runs along z in C order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Component {
     runs: Vec<CellRun>,
@@ -37,7 +37,7 @@ pub struct Component {
 }
 
 impl Component {
-    /// A region of at least one run; runs come in C order.
+    /// Makes a component of at least one run; runs come in C order.
     pub(crate) fn from_runs(runs: Vec<CellRun>) -> Self {
         let (mut lower, mut upper, mut cell_count) = ([u32::MAX; 3], [0; 3], 0);
         for run in &runs {
@@ -82,7 +82,7 @@ impl Component {
 
 /// The connected components of the filled cells, largest first; equal ones by their first cell in C order.
 ///
-/// Parts are not told apart: two parts that touch are one component.
+/// Parts are not distinguished: two parts that touch are one component.
 pub fn components(grid: &Grid, contact: Contact) -> Vec<Component> {
     let mut components = LabeledRuns::new(&BitGrid::filled(grid), contact).to_components(|_| true);
     sort_largest_first(&mut components, |component| component.cell_count());
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn contact_tells_faces_edges_and_corners_apart() {
+    fn contact_distinguishes_faces_edges_and_corners() {
         let count = |grid: &Grid| {
             [Contact::Face, Contact::Edge, Contact::Corner].map(|c| components(grid, c).len())
         };
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_piece_comes_first() {
+    fn largest_component_comes_first() {
         let components = components(
             &cells(&[[0, 0, 0], [2, 2, 1], [2, 2, 2], [0, 2, 0]]),
             Contact::Face,

@@ -1,12 +1,12 @@
-//! The edges of a voxel mesh, each once and sorted, without collecting and sorting them.
+//! Edges of a voxel mesh, generated once each in sorted order.
 use crate::bits::ones;
 use crate::five_tets::is_even;
 use crate::planes::fill_planes;
 use crate::voxel_lists::VoxelLists;
 
-/// The steps from a node to the other end of its edges, later ends only, in C order.
+/// Steps from a node to the other end of its edges, later ends only, in C order.
 ///
-/// Three axes, and the diagonals of the faces.
+/// They are the three axes and the diagonals of the faces.
 const STEPS: [[isize; 3]; 9] = [
     [0, 0, 1],
     [0, 1, -1],
@@ -20,7 +20,7 @@ const STEPS: [[isize; 3]; 9] = [
 ];
 
 impl VoxelLists<'_> {
-    /// The edges from each node in C order to nodes later in C order.
+    /// Edges from each node in C order to nodes later in C order.
     pub fn edges(&self) -> Vec<[i32; 2]> {
         let [planes, rows, _] = self.nodes.bits.shape();
         let words = self.nodes.bits.words_per_row();
@@ -55,7 +55,7 @@ impl VoxelLists<'_> {
         })
     }
 
-    /// For each of [`STEPS`]: the nodes of a word that have an edge there.
+    /// Nodes of a word that have an edge, for each of [`STEPS`].
     ///
     /// An edge exists if one of the cells around it is filled; a diagonal of a face, if one of the
     /// two cells beside the face is filled and the node is even.
@@ -81,7 +81,7 @@ impl VoxelLists<'_> {
         ]
     }
 
-    /// The even nodes of any word of a row; words begin at even k.
+    /// Even nodes of any word of a row; words begin at even k.
     fn even_nodes(&self, i: usize, j: usize) -> u64 {
         const EVEN_K: u64 = 0x5555_5555_5555_5555;
         if is_even(self.on_lattice([i, j, 0])) {

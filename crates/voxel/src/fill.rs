@@ -1,28 +1,28 @@
 //! Filling cells: a cell belongs to a solid when its center lies inside.
 //!
-//! Centers within 1e-9 voxels of the surface are decided by a rule and not by rounding. Of two
-//! opposite flat faces one takes them, the lower face of a box and the base of a cylinder, so that
-//! a solid of whole voxels has its volume wherever it lies. A round surface takes none.
+//! Centers within 1e-9 voxels of the surface are decided by a rule and not by rounding. One of two opposite flat faces
+//! includes them, the lower face of a box and the base of a cylinder, so that a solid of whole voxels has its exact
+//! volume at any position. A round surface includes none.
 use crate::grid::Grid;
 use crate::vectors::{dot, norm, sub};
 
-/// Share of a voxel by which a center must be inside.
+/// Tolerance in voxels of a center on the surface.
 const TIE: f64 = 1e-9;
 
 impl Grid {
-    /// Gives the cells in the box between `lower` and `upper` [m] to `part` (0 empties them).
+    /// Assigns the cells in the box between `lower` and `upper` [m] to `part` (0 empties them).
     pub fn fill_box(&mut self, lower: [f64; 3], upper: [f64; 3], part: u8) {
         self.fill_where(lower, upper, part, |_| -f64::INFINITY);
     }
 
-    /// Gives the cells in a sphere [m] to `part` (0 empties them).
+    /// Assigns the cells in a sphere [m] to `part` (0 empties them).
     pub fn fill_sphere(&mut self, center: [f64; 3], radius: f64, part: u8) {
         let lower = center.map(|x| x - radius);
         let upper = center.map(|x| x + radius);
         self.fill_where(lower, upper, part, |p| norm(sub(p, center)) - radius);
     }
 
-    /// Gives the cells in a cylinder to `part` (0 empties them).
+    /// Assigns the cells in a cylinder to `part` (0 empties them).
     ///
     /// The cylinder starts at `base` [m] and reaches `height` [m] along the direction `axis`
     /// (any length, any direction).
@@ -37,9 +37,9 @@ impl Grid {
         self.fill_tube(base, axis, radius, 0.0, height, part);
     }
 
-    /// Gives the cells between two coaxial cylinders to `part` (0 empties them).
+    /// Assigns the cells between two coaxial cylinders to `part` (0 empties them).
     ///
-    /// As [`Grid::fill_cylinder`], without the cells closer to the axis than `inner_radius` [m].
+    /// Fills like [`Grid::fill_cylinder`], without the cells closer to the axis than `inner_radius` [m].
     pub fn fill_tube(
         &mut self,
         base: [f64; 3],
@@ -51,7 +51,7 @@ impl Grid {
     ) {
         let direction = axis.map(|x| x / norm(axis));
         let top: [f64; 3] = std::array::from_fn(|a| base[a] + height * direction[a]);
-        // Moves the base out by two ties: centers on it are inside, on the top they are not.
+        // The base is moved outward by two tolerances: centers on it are inside, those on the top are not.
         let on_base = 2.0 * TIE * self.voxel_size();
         let lower = std::array::from_fn(|a| base[a].min(top[a]) - outer_radius);
         let upper = std::array::from_fn(|a| base[a].max(top[a]) + outer_radius);
@@ -72,10 +72,10 @@ impl Grid {
         });
     }
 
-    /// Gives each cell to `part` with probability `density`, the same for the same `seed`.
+    /// Assigns each cell to `part` with probability `density`, reproducibly for a `seed`.
     ///
-    /// Cells that are not drawn keep their part. Each cell's draw is a hash of the seed and of its
-    /// place in the array, so it does not depend on the order of the work.
+    /// Cells that are not drawn keep their part. The draw of a cell is a hash of the seed and of its index in the
+    /// array, so it does not depend on the order of the work.
     pub fn fill_random(&mut self, density: f64, seed: u64, part: u8) {
         let start = mix(seed);
         for (index, cell) in self.cells_mut().iter_mut().enumerate() {
@@ -86,7 +86,7 @@ impl Grid {
         }
     }
 
-    /// Gives the cells of a box where `distance(center) < 0` to `part`.
+    /// Assigns the cells of a box where `distance(center) < 0` to `part`.
     fn fill_where(
         &mut self,
         lower: [f64; 3],
@@ -95,7 +95,7 @@ impl Grid {
         distance: impl Fn([f64; 3]) -> f64,
     ) {
         let (size, origin, shape) = (self.voxel_size(), self.origin(), self.shape());
-        // The first center at (i + 1/2) μ that is not below a plane.
+        // Index of the first center at (i + 1/2) μ that is not below a plane.
         let first_from = |plane: [f64; 3]| -> [usize; 3] {
             std::array::from_fn(|a| {
                 let index = ((plane[a] - origin[a]) / size - 0.5 - TIE).ceil();
@@ -115,7 +115,7 @@ impl Grid {
     }
 }
 
-/// The finalizer of SplitMix64 (Steele, Lea and Flood 2014, doi:10.1145/2660193.2660195).
+/// Finalizer of SplitMix64 (Steele, Lea and Flood 2014, doi:10.1145/2660193.2660195).
 fn mix(state: u64) -> u64 {
     let z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_takes_the_cells_whose_center_is_inside() {
+    fn box_fills_cells_with_centers_inside() {
         let mut filled = grid(5);
         filled.fill_box([0.1, 0.1, 0.16], [0.3, 0.4, 0.34], 2);
         assert_eq!(filled.content(), Some([[1, 1, 2], [3, 4, 3]]));
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn a_radius_of_whole_voxels_leaves_the_ties_out() {
+    fn radius_of_whole_voxels_excludes_ties() {
         for radius in [0.2, 0.1 + 0.1, 0.6 / 3.0] {
             let mut ball = grid(7);
             ball.fill_sphere([0.35; 3], radius, 1);
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tube_is_a_cylinder_without_its_bore() {
+    fn tube_is_a_cylinder_without_its_bore() {
         for axis in [
             [1.0, 0.0, 0.0],
             [0.0, 3.0, 0.0],

@@ -1,15 +1,14 @@
-//! The split of a cube into five tetrahedra.
+//! Split of a cube into five tetrahedra.
 //!
-//! Call a lattice node even when the sum of its three indices is even. Every face of the lattice has
-//! two even corners, and they lie on a diagonal. The tetrahedron of a cube's four even corners uses
-//! that diagonal on all six faces; what is left of the cube are four tetrahedra, each an odd corner
-//! with its three neighbors. Two cubes that share a face thus always cut it along the same
-//! diagonal, and the mesh conforms. The middle tetrahedron has a third of the cube's volume, the
+//! A lattice node is even if the sum of its three indices is even. Every face of the lattice has two even corners, and
+//! they lie on a diagonal. The tetrahedron of a cube's four even corners uses that diagonal on all six faces; the rest
+//! of the cube is four tetrahedra, each an odd corner with its three neighbors. Two cubes that share a face thus always
+//! cut it along the same diagonal, and the mesh conforms. The middle tetrahedron has a third of the cube's volume, the
 //! others a sixth.
 //!
 //! Corner `c` of a cube lies at `(c >> 2 & 1, c >> 1 & 1, c & 1)`, so corners are in C order.
 
-/// The five tetrahedra of a cube whose corner 0 is an even node, with positive volume.
+/// Five tetrahedra of a cube whose corner 0 is an even node, with positive volume.
 const EVEN: [[usize; 4]; 5] = [
     [0, 5, 6, 3],
     [4, 0, 5, 6],
@@ -18,7 +17,7 @@ const EVEN: [[usize; 4]; 5] = [
     [7, 6, 5, 3],
 ];
 
-/// The same for an odd corner 0: [`EVEN`] mirrored in x, two corners swapped to keep the sign.
+/// Five tetrahedra for an odd corner 0: [`EVEN`] mirrored in x, two corners swapped to keep the sign.
 const ODD: [[usize; 4]; 5] = [
     [4, 1, 7, 2],
     [0, 4, 2, 1],
@@ -27,7 +26,7 @@ const ODD: [[usize; 4]; 5] = [
     [3, 2, 7, 1],
 ];
 
-/// The corners of the faces −x, +x, −y, +y, −z, +z, counter-clockwise seen from outside.
+/// Corners of the faces −x, +x, −y, +y, −z, +z, counter-clockwise seen from outside.
 const FACES: [[usize; 4]; 6] = [
     [0, 1, 3, 2],
     [4, 6, 7, 5],
@@ -37,12 +36,12 @@ const FACES: [[usize; 4]; 6] = [
     [1, 5, 7, 3],
 ];
 
-/// The corners of the five tetrahedra of a cube; `even` is the parity of its corner 0.
+/// Corners of the five tetrahedra of a cube; `even` is the parity of its corner 0.
 pub(crate) fn tets(even: bool) -> &'static [[usize; 4]; 5] {
     if even { &EVEN } else { &ODD }
 }
 
-/// The corners of the two triangles of a face, outward; faces are −x, +x, −y, +y, −z, +z.
+/// Corners of the two triangles of a face, outward; faces are −x, +x, −y, +y, −z, +z.
 pub(crate) fn face_triangles(even: bool, face: usize) -> [[usize; 3]; 2] {
     let [a, b, c, d] = FACES[face];
     let a_is_even = (a.count_ones() % 2 == 0) == even;
@@ -53,7 +52,7 @@ pub(crate) fn face_triangles(even: bool, face: usize) -> [[usize; 3]; 2] {
     }
 }
 
-/// Whether a node, or the cube whose corner 0 it is, is even.
+/// True if a node, or the cube whose corner 0 it is, is even.
 pub(crate) fn is_even(node: [i32; 3]) -> bool {
     // The lowest bit of a sum is the exclusive or of the lowest bits, also for negative numbers.
     (node[0] ^ node[1] ^ node[2]) & 1 == 0

@@ -1,4 +1,4 @@
-//! A mesh from given tetrahedra: checks them and finds edges, boundary and cavities.
+//! Meshes from given tetrahedra: checks them and finds edges, boundary and cavities.
 use thiserror::Error;
 
 use crate::shells::closed_shells;
@@ -6,16 +6,16 @@ use crate::tet_mesh::{CavitySurface, TetMesh};
 use crate::topology::{outward_face, sorted_faces, unique_edges};
 use crate::vectors::{enclosed_volume, norm, sub, tet_volume, triangle_area};
 
-/// A tet is flat when its volume is this small against the cube of its longest edge.
+/// Largest volume of a flat tet, relative to the cube of its longest edge.
 const FLAT: f64 = 1e-12;
 
-/// Why tetrahedra do not make a mesh.
+/// Error of making a mesh from tetrahedra.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FromTetsError {
-    /// There are none.
+    /// There are no tetrahedra.
     #[error("there are no tetrahedra")]
     Empty,
-    /// More tetrahedra than 32-bit indices can name the faces of.
+    /// There are more tetrahedra than 32-bit indices of their faces allow.
     #[error("{0} tetrahedra are more than the 2^30 a mesh can have")]
     TooMany(usize),
     /// The list of parts has another length than the list of tets.
@@ -62,10 +62,10 @@ pub enum FromTetsError {
     },
 }
 
-/// A mesh of given tets; those of negative volume are turned round (two corners swapped).
+/// Makes a mesh of given tets; those of negative volume are reoriented (two corners swapped).
 ///
-/// A cavity is a closed piece of the boundary that encloses negative volume, that is, one that
-/// points inward. An island floating in a cavity is not subtracted from it.
+/// A cavity is a closed shell of the boundary that encloses negative volume, that is, one that points inward. An island
+/// floating in a cavity is not subtracted from it.
 ///
 /// # Errors
 ///
@@ -146,7 +146,7 @@ fn orient(vertices: &[[f64; 3]], tets: &mut [[i32; 4]]) -> Result<(), FromTetsEr
     Ok(())
 }
 
-/// Faces held by one tet, in the order of their tets.
+/// Boundary: faces of exactly one tet, in the order of their tets.
 fn boundary(tets: &[[i32; 4]]) -> Result<Vec<[i32; 3]>, FromTetsError> {
     let faces = sorted_faces(tets);
     let mut single = Vec::new();
@@ -170,7 +170,7 @@ fn boundary(tets: &[[i32; 4]]) -> Result<Vec<[i32; 3]>, FromTetsError> {
         .collect())
 }
 
-/// Whether two triangles of the same corners run in opposite directions.
+/// True if two triangles of the same corners have opposite orientations.
 fn are_opposite(a: [i32; 3], b: [i32; 3]) -> bool {
     let start = b.iter().position(|&v| v == a[0]);
     start.is_some_and(|start| b[(start + 1) % 3] == a[2])
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn turns_negative_tets_round() {
+    fn negative_tets_are_reoriented() {
         let mesh = mesh_from_tets(corner(), vec![[0, 2, 1, 3]], vec![4]).unwrap();
         assert_eq!((mesh.tets[0], mesh.tet_part[0]), ([0, 2, 3, 1], 4));
         assert_eq!(
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn names_what_is_wrong() {
+    fn errors_name_the_faulty_item() {
         let refused = |vertices, tets: Vec<[i32; 4]>| {
             let parts = vec![1; tets.len()];
             mesh_from_tets(vertices, tets, parts).unwrap_err()
@@ -267,11 +267,11 @@ mod tests {
     }
 
     #[test]
-    fn finds_the_cavities_of_a_voxel_mesh_again() {
+    fn cavities_of_a_voxel_mesh_are_recovered() {
         let mut grid = Grid::from_cells([9; 3], [0.7, 0.0, -0.3], 0.1, vec![1; 729]).unwrap();
         grid.fill_box([0.8, 0.1, -0.2], [1.2, 0.5, 0.2], 0);
         grid.fill_box([1.3, 0.6, 0.3], [1.5, 0.8, 0.5], 0);
-        // Touches the first cavity along an edge: the surfaces share it without being one.
+        // The second cavity touches the first along an edge: the surfaces share it, but stay separate.
         grid.set([5, 5, 2], 0);
         let voxels = tet_mesh(&grid, u64::MAX).unwrap();
         let mesh = mesh_from_tets(

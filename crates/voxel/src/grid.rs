@@ -1,20 +1,19 @@
-//! The grid: a box of cells, each empty (0) or of one part (1..=255).
+//! Voxel grid: a box of cells, each empty (0) or of one part (1..=255).
 use thiserror::Error;
 
-/// The most cells a grid may have along one axis: ends of runs are kept in 16 bits, with room for
-/// some padding.
+/// Largest number of cells of a grid along one axis: ends of runs are stored in 16 bits, with room for some padding.
 pub const MAX_CELLS_PER_AXIS: usize = 65_000;
 
-/// A fraction of a voxel under which two positions on the lattice count as the same.
+/// Tolerance in voxels within which two positions on the lattice count as the same.
 pub(crate) const LATTICE_TOLERANCE: f64 = 1e-6;
 
-/// Why a grid cannot be made.
+/// Error of making a grid.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum GridError {
     /// An axis without cells, or with more than [`MAX_CELLS_PER_AXIS`].
     #[error("the grid has {shape:?} cells; each axis needs 1 to {MAX_CELLS_PER_AXIS}")]
     Shape {
-        /// The shape that was asked for.
+        /// Requested shape.
         shape: [usize; 3],
     },
     /// A voxel size that is not a positive number.
@@ -26,21 +25,21 @@ pub enum GridError {
     /// A number of cells that does not match the shape.
     #[error("{found} cells were given for a grid of {shape:?} = {expected} cells")]
     CellCount {
-        /// The shape that was asked for.
+        /// Requested shape.
         shape: [usize; 3],
         /// The product of the shape.
         expected: usize,
         /// The length of the given list.
         found: usize,
     },
-    /// The grid does not fit the memory limit; said before anything is allocated.
+    /// The grid exceeds the memory limit; checked before allocation.
     #[error("a grid of {shape:?} cells needs {bytes} bytes, the limit is {limit}")]
     TooLarge {
-        /// The shape that was asked for.
+        /// Requested shape.
         shape: [usize; 3],
-        /// What the cells alone would take.
+        /// Memory of the cells in bytes.
         bytes: u64,
-        /// The limit that was given.
+        /// Given limit in bytes.
         limit: u64,
     },
 }
@@ -58,7 +57,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// An empty grid of `shape` cells of side `voxel_size` [m], its lower corner at `origin` [m].
+    /// Makes an empty grid of `shape` cells of side `voxel_size` [m], with its lower corner at `origin` [m].
     ///
     /// # Errors
     ///
@@ -81,10 +80,10 @@ impl Grid {
         Self::from_cells(shape, origin, voxel_size, vec![0; bytes as usize])
     }
 
-    /// A grid of given cells in C order (the last index runs fastest).
+    /// Makes a grid of given cells in C order (the last index runs fastest).
     ///
-    /// An origin within 1e-6 of a whole number of voxels is taken to be that number: designs that
-    /// share a voxel size then share the lattice, whatever their rounding.
+    /// An origin within 1e-6 of a whole number of voxels is rounded to it: designs with the same voxel size then share
+    /// the lattice, independent of their rounding.
     ///
     /// # Errors
     ///
@@ -128,7 +127,7 @@ impl Grid {
         })
     }
 
-    /// A grid on the same lattice with another box; `shape` must match the number of `cells`.
+    /// Makes a grid on the same lattice with another box; `shape` must match the number of `cells`.
     pub(crate) fn on_same_lattice(
         &self,
         offset: [i32; 3],
@@ -159,7 +158,7 @@ impl Grid {
         self.node_position(self.offset)
     }
 
-    /// Index of the first cell on the endless lattice the grid was cut from.
+    /// Index of the first cell on the infinite lattice that contains the grid.
     pub fn lattice_offset(&self) -> [i32; 3] {
         self.offset
     }
@@ -173,7 +172,7 @@ impl Grid {
         &mut self.cells
     }
 
-    /// The cells in C order, taken out of the grid.
+    /// Takes the cells, in C order, out of the grid.
     pub fn into_cells(self) -> Vec<u8> {
         self.cells
     }
@@ -187,7 +186,7 @@ impl Grid {
         self.cells[self.index(cell)]
     }
 
-    /// Gives a cell to `part`, or empties it with 0.
+    /// Assigns a cell to `part`, or empties it with 0.
     ///
     /// # Panics
     ///
@@ -301,7 +300,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn refuses_before_allocating() {
+    fn too_large_grid_is_refused_before_allocation() {
         let refused = Grid::empty([60_000; 3], [0.0; 3], 1e-3, 1 << 30);
         assert!(matches!(
             refused,
@@ -313,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn refuses_impossible_sizes() {
+    fn impossible_sizes_are_refused() {
         assert!(matches!(
             Grid::empty([0, 1, 1], [0.0; 3], 1e-3, 9),
             Err(GridError::Shape { .. })
@@ -336,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rounded_origin_lands_on_the_lattice() {
+    fn rounded_origin_snaps_to_the_lattice() {
         let grid = Grid::empty([1; 3], [0.1 + 0.2, 0.0, -0.3], 0.1, 9).unwrap();
         assert_eq!(grid.lattice_offset(), [3, 0, -3]);
         assert_eq!(grid.base, [0.0; 3]);
@@ -345,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn measures_its_content() {
+    fn content_and_center_of_mass() {
         let mut grid = Grid::empty([4, 5, 6], [0.0; 3], 0.5, 1000).unwrap();
         assert_eq!((grid.content(), grid.center_of_mass()), (None, None));
         grid.set([1, 2, 3], 7);

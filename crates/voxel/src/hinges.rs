@@ -1,13 +1,13 @@
-//! Places where cells touch only along an edge or at a corner.
+//! Hinges: contacts of cells only along an edge or at a corner.
 use crate::bits::{BitGrid, ones};
 use crate::components::Contact;
 use crate::grid::Grid;
 use crate::planes::by_plane;
 
-/// Two filled cells whose only contact, here, is an edge or a corner.
+/// A hinge: two filled cells whose only contact here is an edge or a corner.
 ///
-/// The mesh is stitched there, so the cells hang together, but they turn about the edge or the
-/// corner without resistance, and no mold or printer can make such a joint.
+/// The mesh is stitched there, so the cells stay connected, but they rotate about the edge or the corner without
+/// resistance, and no mold or printer can make such a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Hinge {
     /// The two cells, in C order.
@@ -15,7 +15,7 @@ pub struct Hinge {
 }
 
 impl Hinge {
-    /// [`Contact::Edge`] or [`Contact::Corner`].
+    /// Contact of the two cells, [`Contact::Edge`] or [`Contact::Corner`].
     pub fn contact(&self) -> Contact {
         let [a, b] = self.cells;
         if (0..3).all(|axis| a[axis] != b[axis]) {
@@ -28,8 +28,8 @@ impl Hinge {
 
 /// All hinges, sorted by their first cell in C order.
 ///
-/// An edge is a hinge if of the four cells around it two opposite ones are filled; a corner, if of
-/// the eight cells around it two opposite ones are. Any further filled cell would join them.
+/// An edge is a hinge if exactly two opposite cells of the four around it are filled; a corner, if exactly two opposite
+/// cells of the eight around it are. Any further filled cell would join them.
 pub fn hinges(grid: &Grid) -> Vec<Hinge> {
     let filled = BitGrid::filled(grid);
     by_plane(grid.shape()[0], |i| {
@@ -54,10 +54,10 @@ pub fn hinges(grid: &Grid) -> Vec<Hinge> {
     })
 }
 
-/// Where cell (i, j, k) is the lowest of four or eight: the bits k with a hinge, and the steps from
-/// this cell to the two of the hinge.
+/// Hinges whose lowest of four or eight cells is (i, j, k): the bits k with a hinge, and the steps from this cell to
+/// the two of the hinge.
 fn around(filled: &BitGrid, i: isize, j: isize, w: usize) -> [(u64, [[usize; 3]; 2]); 10] {
-    // Cell (di, dj, dk) from the lowest is called by its digits: c011 is one on in j and k.
+    // Names give the offset (di, dj, dk) from the lowest cell: c011 is one further in j and k.
     let [c000, c010, c100, c110] =
         [(i, j), (i, j + 1), (i + 1, j), (i + 1, j + 1)].map(|(i, j)| filled.word(i, j, w));
     let [c001, c011, c101, c111] =
@@ -93,7 +93,7 @@ fn around(filled: &BitGrid, i: isize, j: isize, w: usize) -> [(u64, [[usize; 3];
 mod tests {
     use super::*;
 
-    /// The definition, cell by cell.
+    /// Finds hinges by their definition, cell by cell.
     fn searched(grid: &Grid) -> Vec<Hinge> {
         let end = grid.shape().map(|n| n as i64);
         let filled = |cell: [i64; 3]| {
@@ -112,7 +112,7 @@ mod tests {
                         if axes < 2 || !later || !filled([i, j, k]) || !filled(other) {
                             continue;
                         }
-                        // Cells of the box they span, apart from the two.
+                        // Cells of the box that the two span, without them.
                         let between = (1..7).any(|mask| {
                             let cell: [i64; 3] = std::array::from_fn(|a| {
                                 [i, j, k][a] + if mask >> a & 1 == 1 { step[a] } else { 0 }
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn match_a_search_cell_by_cell() {
+    fn hinges_match_a_search_cell_by_cell() {
         for seed in 0..40 {
             let shape = [1 + seed % 5, 1 + seed % 4, 1 + 7 * (seed % 11)];
             let mut grid = Grid::empty(shape, [0.0; 3], 1.0, u64::MAX).unwrap();
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn know_their_contact() {
+    fn hinges_report_their_contact() {
         let contact = |cells| Hinge { cells }.contact();
         assert_eq!(contact([[0, 0, 0], [1, 1, 1]]), Contact::Corner);
         assert_eq!(contact([[0, 0, 0], [1, 0, 1]]), Contact::Edge);

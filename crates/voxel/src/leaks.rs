@@ -1,13 +1,12 @@
-//! Chambers that are not closed: where the air would get out.
+//! Leaks: chambers that are not closed, and the openings through which air would escape.
 //!
-//! A flood fill only says that there is no cavity. A chamber with a hole is found by the size of the
-//! hole: a cube of w × w × w cells fits into the chamber, but cannot get out by moving in steps of
-//! one cell. With w = 2 all openings are one cell wide in some direction, with w = 3 at most two.
+//! A flood fill only shows that there is no cavity. A chamber with a hole is found by the size of the hole: a cube of w
+//! × w × w cells fits into the chamber, but cannot get out by moving in steps of one cell. With w = 2 all openings are
+//! one cell wide in some direction, with w = 3 at most two.
 //!
-//! Let E be the empty cells, C those that such captured cubes can cover, and O the part of E \ C
-//! that is connected with the outside. The pieces of E \ O that touch O are the open chambers, side
-//! channels and chambers behind other chambers included; the cells of O that they touch are their
-//! openings. Pieces that do not touch O are cavities.
+//! Let E be the empty cells, C those that such captured cubes can cover, and O the part of E \ C that is connected with
+//! the outside. The components of E \ O that touch O are the open chambers, side channels and chambers behind other
+//! chambers included; the cells of O that they touch are their openings. Components that do not touch O are cavities.
 use crate::bits::BitGrid;
 use crate::components::{CellRun, Component, Contact, sort_largest_first};
 use crate::grid::Grid;
@@ -20,17 +19,17 @@ pub struct Leak {
     pub region: Component,
     /// Its volume [m³].
     pub volume: f64,
-    /// Its openings are at most this many cells wide in one direction.
+    /// Largest width of its openings in one direction, in cells.
     pub width: usize,
-    /// One cell of each opening, the first in C order, where it meets the chamber.
+    /// First cell in C order of each opening where it meets the chamber.
     pub openings: Vec<[u32; 3]>,
 }
 
 /// The chambers whose openings are at most `max_width` cells wide, largest first.
 ///
-/// A chamber must be wider than its openings to be told from a bore: at least two cells in each
-/// direction for openings of one. What is open by more than `max_width` counts as outside. Open
-/// lattices have chambers in this sense wherever a pore is wider than the ways into it.
+/// A chamber must be wider than its openings to differ from a bore: at least two cells in each direction for openings
+/// of one. Regions with openings wider than `max_width` count as outside. Open lattices have chambers in this sense
+/// wherever a pore is wider than its entrances.
 pub fn leaks(grid: &Grid, max_width: usize) -> Vec<Leak> {
     let mut found: Vec<Leak> = Vec::new();
     for width in 1..=max_width {
@@ -47,7 +46,7 @@ pub fn leaks(grid: &Grid, max_width: usize) -> Vec<Leak> {
 }
 
 fn leaks_of_width(grid: &Grid, width: usize) -> Vec<Leak> {
-    // The padding lets the cube move around the grid.
+    // Padding lets the cube move around the grid.
     let cube = width + 1;
     let empty = padded_empty(grid, cube);
     let outside = |runs: &LabeledRuns| runs.label(0, 0, 0);
@@ -78,7 +77,7 @@ fn leaks_of_width(grid: &Grid, width: usize) -> Vec<Leak> {
         .collect()
 }
 
-/// The empty cells of the grid with `margin` more around it.
+/// Empty cells of the grid with a margin of empty cells around it.
 fn padded_empty(grid: &Grid, margin: usize) -> BitGrid {
     let mut filled = BitGrid::new(grid.shape().map(|n| n + 2 * margin));
     let inner = BitGrid::filled(grid);
@@ -102,7 +101,7 @@ fn unpad(run: CellRun, margin: usize) -> CellRun {
     }
 }
 
-/// The lowest cells of the cubes of `steps + 1` cells a side that fit into the set.
+/// Erosion: the lowest cells of the cubes of `steps + 1` cells a side that fit into the set.
 fn eroded(bits: &BitGrid, steps: usize) -> BitGrid {
     let mut fitting = bits.clone();
     for _ in 0..steps {
@@ -123,7 +122,7 @@ fn eroded(bits: &BitGrid, steps: usize) -> BitGrid {
     fitting
 }
 
-/// The cells of cubes of `cube` cells a side whose lowest cell is in a region that `keep` picks.
+/// Cells of cubes of `cube` cells a side whose lowest cell is in a region that `keep` selects.
 fn covered(
     runs: &LabeledRuns,
     keep: impl Fn(u32) -> bool,
@@ -163,7 +162,7 @@ fn openings(chamber: &Component, outer: &BitGrid, margin: usize) -> Vec<[u32; 3]
     let Some(&first) = mouths.first() else {
         return Vec::new();
     };
-    // Group the cells that touch; a box around them is enough for that.
+    // Groups the cells that touch, within a box around them.
     let (mut lower, mut upper) = (first, first);
     for mouth in &mouths {
         lower = std::array::from_fn(|a| lower[a].min(mouth[a]));
@@ -181,7 +180,7 @@ fn openings(chamber: &Component, outer: &BitGrid, margin: usize) -> Vec<[u32; 3]
         .collect()
 }
 
-/// Whether two regions have a cell in common; both list their runs in C order.
+/// True if two regions have a cell in common; both list their runs in C order.
 fn share_cell(a: &Component, b: &Component) -> bool {
     let (mut a, mut b) = (a.runs().iter().peekable(), b.runs().iter().peekable());
     while let (Some(p), Some(q)) = (a.peek(), b.peek()) {
@@ -203,7 +202,7 @@ mod tests {
     use super::*;
     use crate::cavities;
 
-    /// A block of 12³ cells with a chamber of 6³ in it.
+    /// Block of 12³ cells with a chamber of 6³ in it.
     fn chamber() -> Grid {
         let mut grid = Grid::from_cells([12; 3], [0.0; 3], 1.0, vec![1; 12 * 12 * 12]).unwrap();
         grid.fill_box([3.0; 3], [9.0; 3], 0);
@@ -211,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_chamber_does_not_leak() {
+    fn closed_chamber_does_not_leak() {
         assert_eq!(
             (leaks(&chamber(), 2), cavities(&chamber()).len()),
             (vec![], 1)
@@ -221,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bore_is_named_where_it_meets_the_chamber() {
+    fn bore_is_located_where_it_meets_the_chamber() {
         let mut grid = chamber();
         grid.fill_box([5.0, 4.0, 9.0], [6.0, 5.0, 12.0], 0);
         let found = leaks(&grid, 2);
@@ -232,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn every_opening_is_named_once() {
+    fn every_opening_is_reported_once() {
         let mut grid = chamber();
         grid.fill_box([0.0, 4.0, 5.0], [3.0, 5.0, 8.0], 0); // a slot
         grid.fill_box([9.0, 4.0, 5.0], [12.0, 5.0, 6.0], 0); // a bore
@@ -244,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn the_width_of_the_opening_decides() {
+    fn leak_depends_on_the_width_of_the_opening() {
         let open_by = |width: f64| {
             let mut grid = chamber();
             grid.fill_box([4.0, 4.0, 9.0], [4.0 + width, 4.0 + width, 12.0], 0);
@@ -278,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cup_is_not_a_chamber() {
+    fn cup_is_not_a_chamber() {
         let mut grid = chamber();
         grid.fill_box([3.0; 3], [9.0, 9.0, 12.0], 0);
         assert_eq!(leaks(&grid, 2), []);

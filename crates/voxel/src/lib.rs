@@ -1,16 +1,16 @@
 //! Voxel grids of soft-robot parts, and the tetrahedral meshes made of them.
 //!
-//! A [`Grid`] is a box of cubic cells, each empty or of one part. From it follow the regions a
-//! designer asks about ([`components`], [`cavities`], [`leaks`], [`hinges`], [`wall_thickness`])
-//! and the conforming mesh that the solvers use ([`tet_mesh`]).
+//! A [`Grid`] is a box of cubic cells, each empty or of one part. It gives the regions that matter to a designer
+//! ([`components`], [`cavities`], [`leaks`], [`hinges`], [`wall_thickness`]) and the conforming mesh that the solvers
+//! use ([`tet_mesh`]).
 //!
 //! # Conventions
 //!
 //! - SI units and `f64` positions; cell `(i, j, k)` of the array fills
 //!   `origin + μ [i, i+1] × [j, j+1] × [k, k+1]`, its last index runs fastest (C order).
-//! - The *lattice* is the endless grid the box was cut from. A grid remembers where on it it lies
+//! - The *lattice* is the infinite grid that contains the box. A grid stores its position on it
 //!   ([`Grid::lattice_offset`]), so that padding and cropping change neither positions nor meshes.
-//! - *Contact* is through a face unless another [`Contact`] is asked for.
+//! - *Contact* is through a face unless another [`Contact`] is given.
 //! - Tetrahedra have positive volume, boundary triangles point out of the material.
 //!
 //! # A tour

@@ -1,10 +1,10 @@
-//! The lattice nodes in use, and the number of each: the vertices of a voxel mesh.
+//! Index of the lattice nodes in use, the vertices of a voxel mesh.
 //!
-//! Nodes are a bit set with a running count per word. A node's vertex is that count plus the nodes
-//! before it in its word: 0.2 bytes per node, and a look-up is a few instructions.
+//! Nodes are a bit set with a running count per word. The vertex of a node is that count plus the number of nodes
+//! before it in its word: 0.2 bytes per node, and a lookup of a few instructions.
 use crate::bits::BitGrid;
 
-/// The lattice nodes in use, and the vertex of each.
+/// Lattice nodes in use, with the vertex of each.
 pub(crate) struct NodeIndex {
     pub bits: BitGrid,
     /// Number of nodes before each word.

@@ -1,8 +1,8 @@
-//! Pieces of a mesh: tetrahedra joined by whole faces.
+//! Connected components of a tetrahedral mesh, joined by whole faces.
 
-/// The piece of each tetrahedron, pieces being numbered by their first one.
+/// Component of each tetrahedron, numbered in the order of their first tetrahedra.
 ///
-/// Tetrahedra that share only an edge or a vertex hinge on it and count as separate pieces.
+/// Tetrahedra that share only an edge or a vertex hinge on it and count as separate components.
 ///
 /// ```
 /// use voxsoft_voxel::pieces;
@@ -12,12 +12,12 @@
 /// ```
 pub fn pieces(tets: &[[i32; 4]]) -> Vec<u32> {
     let mut parents: Vec<u32> = (0..tets.len() as u32).collect();
-    // Faces in a list for each lowest vertex: a few dozen, so that they are compared one by one.
+    // Each lowest vertex has a list of its faces: a few dozen, which are compared one by one.
     let lowest = |tet: &[i32; 4]| tet.iter().map(|&v| v as usize + 1).max().unwrap_or(0);
     let vertices = tets.iter().map(lowest).max().unwrap_or(0);
     const NONE: u32 = u32::MAX;
     let mut heads = vec![NONE; vertices];
-    // The other two vertices of a face, its tetrahedron, and the next face of the same list.
+    // Entries of the lists: the other two vertices of a face, its tetrahedron, and the next face of the same list.
     let mut faces: Vec<([i32; 2], u32, u32)> = Vec::with_capacity(4 * tets.len());
     for (tet, corners) in tets.iter().enumerate() {
         let mut sorted = *corners;
@@ -71,7 +71,7 @@ mod tests {
     use crate::{Contact, Grid, components, tet_mesh};
 
     #[test]
-    fn cells_that_touch_by_faces_are_one_piece() {
+    fn cells_that_share_faces_are_one_component() {
         // Two bars, a bar that touches one of them along an edge, and one that touches it at a corner.
         let mut grid = Grid::empty([8, 8, 8], [0.0; 3], 1.0, u64::MAX).unwrap();
         for (low, high) in [
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_piece() {
+    fn empty_mesh_has_no_component() {
         assert!(pieces(&[]).is_empty());
     }
 }

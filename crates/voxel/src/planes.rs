@@ -1,7 +1,7 @@
-//! Work that is done plane by plane, on all cores where there are threads.
+//! Parallel work plane by plane, on all cores if threads are available.
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Joins what `make` gives for plane 0, 1, …, in this order for any number of threads.
+/// Joins the lists of `make` for plane 0, 1, …, in this order for any number of threads.
 pub(crate) fn by_plane<T: Send>(
     planes: usize,
     make: impl Fn(usize) -> Vec<T> + Sync + Send,
@@ -21,10 +21,10 @@ pub(crate) fn by_plane<T: Send>(
     joined
 }
 
-/// As [`by_plane`] where the number of items of each plane is known: they are written in place.
+/// Writes the items of all planes in place, given their numbers, in the order of [`by_plane`].
 ///
-/// A mesh is hundreds of bytes per voxel, and touching new memory is most of the time of making it,
-/// so each list is touched once. Planes that are not begun when `cancel` is set keep default items.
+/// A mesh takes hundreds of bytes per voxel, and first access to new memory is most of the time of making it, so each
+/// list is written once. Planes that are not begun when `cancel` is set keep default items.
 ///
 /// # Panics
 ///
@@ -59,7 +59,7 @@ pub(crate) fn fill_planes<T: Clone + Default + Send>(
     list
 }
 
-/// The places of one plane in a list.
+/// Slots of one plane in a list.
 pub(crate) struct Slots<'a, T>(std::slice::IterMut<'a, T>);
 
 impl<T> Slots<'_, T> {

@@ -1,4 +1,4 @@
-//! Figures that tell whether a mesh is sound.
+//! Quality checks of a mesh.
 use crate::tet_mesh::TetMesh;
 use crate::topology::{outward_face, sorted_faces, sorted_triangle_edges};
 use crate::vectors::{tet_volume, triangle_area};
@@ -14,12 +14,12 @@ pub struct Quality {
     pub largest_tet: f64,
     /// Area of the boundary [m²].
     pub area: f64,
-    /// V − E + F − T; 1 for a ball, 0 for a solid ring, 2 for a ball with a cavity.
+    /// Euler number V − E + F − T; 1 for a ball, 0 for a solid ring, 2 for a ball with a cavity.
     pub euler_number: i64,
-    /// Whether the listed triangles are exactly the faces held by one tet, outward, and every other
-    /// face is held by two tets.
+    /// True if the listed triangles are exactly the faces of one tet, outward, and every other face belongs to two
+    /// tets.
     pub conforming: bool,
-    /// Edges of the boundary that do not have a triangle on both sides: holes, 0 in a sound mesh.
+    /// Number of boundary edges without a triangle on both sides: holes, 0 in a sound mesh.
     pub open_edges: usize,
     /// Edges where four or more boundary triangles meet: bodies that touch along them (hinges).
     pub nonmanifold_edges: Vec<[i32; 2]>,
@@ -58,7 +58,7 @@ pub fn quality(mesh: &TetMesh) -> Quality {
     }
 }
 
-/// Number of different faces, and whether they fit together.
+/// Number of distinct faces, and the conformity of the mesh.
 fn count_faces(mesh: &TetMesh) -> (usize, bool) {
     let faces = sorted_faces(&mesh.tets);
     let (mut different, mut shared_by_two, mut single) = (0, true, Vec::new());
@@ -75,7 +75,7 @@ fn count_faces(mesh: &TetMesh) -> (usize, bool) {
     (different, shared_by_two && single == listed)
 }
 
-/// The triangle turned so that its lowest vertex comes first; its sense is kept.
+/// Rotates a triangle so that its lowest vertex comes first; keeps its orientation.
 fn lowest_first([a, b, c]: [i32; 3]) -> [i32; 3] {
     if a < b && a < c {
         [a, b, c]
@@ -86,7 +86,8 @@ fn lowest_first([a, b, c]: [i32; 3]) -> [i32; 3] {
     }
 }
 
-/// Number of boundary edges that are passed unequally often each way, and those of many triangles.
+/// Number of open boundary edges, which have unequal numbers of triangles in each direction, and the non-manifold
+/// edges.
 fn check_boundary_edges(triangles: &[[i32; 3]]) -> (usize, Vec<[i32; 2]>) {
     let edges = sorted_triangle_edges(triangles);
     let (mut open, mut nonmanifold) = (0, Vec::new());
@@ -120,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_a_ring_and_a_hollow_block() {
+    fn quality_of_block_ring_and_hollow_block() {
         let block = quality(&mesh([2, 3, 4], &[]));
         assert!((block.volume - 3.0).abs() < 1e-12 && (block.area - 13.0).abs() < 1e-12);
         assert!((block.smallest_tet * 6.0 - 0.125).abs() < 1e-15);
@@ -141,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_is_seen() {
+    fn damage_is_detected() {
         let mut hole = mesh([2, 2, 2], &[]);
         hole.triangles.pop();
         assert_eq!(

@@ -1,7 +1,7 @@
 //! Labeling of connected regions by runs of cells instead of cells.
 //!
-//! A run is a maximal row of cells along z. Runs that touch are joined by union-find; the memory is
-//! eight bytes per run, at most 512 MiB for a checkerboard of 512³ cells and a few MiB for a robot.
+//! A run is a maximal row of cells along z. Runs that touch are joined by union-find; it takes eight bytes per run, at
+//! most 512 MiB for a checkerboard of 512³ cells and a few MiB for a robot.
 use crate::bits::BitGrid;
 use crate::components::{CellRun, Component, Contact};
 
@@ -11,7 +11,7 @@ struct Span {
     last: u16,
 }
 
-/// The regions of a set of cells; they are numbered by their first cell in C order.
+/// Labeled regions of a set of cells, numbered by their first cell in C order.
 pub(crate) struct LabeledRuns {
     shape: [usize; 3],
     /// Row r holds the spans `row_start[r]..row_start[r + 1]`.
@@ -28,7 +28,7 @@ impl LabeledRuns {
         let shape = bits.shape();
         let mut row_start = Vec::with_capacity(shape[0] * shape[1] + 1);
         row_start.push(0);
-        // Growing a list of this length would hold it three times.
+        // Counting first avoids reallocation, which would take three times the memory.
         let mut spans = Vec::with_capacity(bits.count_runs());
         for i in 0..shape[0] {
             for j in 0..shape[1] {
@@ -105,7 +105,7 @@ impl LabeledRuns {
 
     fn unite(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
-        // The smaller index stays the root, so a region is known by its first span in C order.
+        // The smaller index stays the root, so the root of a region is its first span in C order.
         self.labels[a.max(b) as usize] = a.min(b);
     }
 
@@ -131,7 +131,7 @@ impl LabeledRuns {
         }
     }
 
-    /// The region of a cell, `None` if it is not in the set.
+    /// Region of a cell; `None` if it is not in the set.
     pub fn label(&self, i: usize, j: usize, k: usize) -> Option<u32> {
         let row = self.row(i, j);
         let spans = &self.spans[row.clone()];
@@ -156,7 +156,7 @@ impl LabeledRuns {
         })
     }
 
-    /// Whether each region has a cell on the border of the box.
+    /// Flags of the regions that have a cell on the border of the box.
     pub fn touching_border(&self) -> Vec<bool> {
         let mut touching = vec![false; self.regions];
         let end = self.shape.map(|n| (n - 1) as u16);
@@ -168,7 +168,7 @@ impl LabeledRuns {
         touching
     }
 
-    /// The regions picked by `keep`, in the order of their labels.
+    /// Regions selected by `keep`, in the order of their labels.
     pub fn to_components(&self, keep: impl Fn(u32) -> bool) -> Vec<Component> {
         let mut lengths = vec![0; self.regions];
         for &label in &self.labels {

@@ -1,8 +1,8 @@
-//! The closed surfaces that a boundary consists of.
+//! Closed shells of a boundary.
 use crate::topology::sorted_triangle_edges;
 use crate::vectors::{cross, dot, norm, sub};
 
-/// Splits outward boundary triangles into shells: the surfaces that bound one side each.
+/// Splits outward boundary triangles into closed shells.
 ///
 /// Triangles that share an edge belong together. Where more than two meet at an edge (bodies that
 /// touch along it), the two that face the same wedge of empty space belong together, so that
@@ -33,7 +33,7 @@ pub(crate) fn closed_shells(vertices: &[[f64; 3]], triangles: &[[i32; 3]]) -> Ve
     shells
 }
 
-/// The pairs of triangles around an edge that have an empty wedge between them.
+/// Pairs of triangles around an edge that have an empty wedge between them.
 ///
 /// The outward normal of a triangle (low, high, third) is axis × radius, the direction of growing
 /// angle: a triangle that runs with the edge has the empty side after it, one that runs against it

@@ -1,4 +1,4 @@
-//! From cells to one conforming mesh: voxels share the vertices, edges and faces they meet at.
+//! Stitching of cells to one conforming mesh: voxels share the vertices, edges and faces at which they meet.
 //!
 //! Vertices are found by lattice node, never by position, in a time linear in the cells.
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,23 +13,23 @@ use crate::planes::by_plane;
 use crate::tet_mesh::{CavitySurface, TetMesh};
 use crate::voxel_lists::{VoxelLists, exposed_faces};
 
-/// Why a grid cannot be meshed.
+/// Error of meshing a grid.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum StitchError {
     /// No cell is filled.
     #[error("the grid has no filled cell, so there is nothing to mesh")]
     Empty,
-    /// The mesh does not fit the memory limit; said before it is allocated.
+    /// The mesh exceeds the memory limit; checked before allocation.
     #[error("a mesh of {voxels} voxels needs about {bytes} bytes, the limit is {limit}")]
     TooLarge {
         /// Number of filled cells.
         voxels: u64,
         /// Estimate of the peak while meshing.
         bytes: u64,
-        /// The limit that was given.
+        /// Given limit in bytes.
         limit: u64,
     },
-    /// More vertices or tetrahedra than 32-bit indices can name.
+    /// There are more vertices or tetrahedra than 32-bit indices allow.
     #[error("a mesh of {voxels} voxels has more than 2^31 tetrahedra")]
     TooMany {
         /// Number of filled cells.
@@ -40,10 +40,10 @@ pub enum StitchError {
     Canceled,
 }
 
-/// Bytes of a boundary triangle: in the mesh, in a cavity, and twice with the cavity it faces.
+/// Memory of a boundary triangle in bytes: in the mesh, in a cavity, and twice with the cavity it faces.
 const FACED_BYTES: u64 = 12 + 12 + 2 * 16;
 
-/// Bytes that meshing takes at its peak, for a number of filled cells that share no vertex.
+/// Peak memory of meshing in bytes, for a number of filled cells that share no vertex.
 ///
 /// Per voxel at most 8 vertices (36 bytes each), 5 tets (17 bytes each), 18 edges and 12 boundary
 /// triangles, and its cell. Real shapes need a third of it.
@@ -51,14 +51,14 @@ pub fn mesh_bytes(voxels: u64) -> u64 {
     voxels.saturating_mul(8 * 36 + 5 * 17 + 18 * 8 + 12 * FACED_BYTES + 12)
 }
 
-/// Bytes that meshing takes at its peak, from the true numbers of nodes and faces.
+/// Peak memory of meshing in bytes, from the true numbers of nodes and faces.
 fn needed_bytes(voxels: u64, nodes: u64, exposed: u64) -> u64 {
     let faces = (6 * voxels + exposed) / 2;
     let edges = 3 * nodes + faces;
     voxels * (5 * 17 + 12) + nodes * 36 + edges * 8 + exposed * 2 * FACED_BYTES
 }
 
-/// The five-tet mesh of the filled cells.
+/// Makes the five-tet mesh of the filled cells.
 ///
 /// Voxels that touch are stitched, also where they share only an edge or a corner; see
 /// [`crate::hinges`] for these. Cavity surfaces are triangles of the boundary.
@@ -71,11 +71,11 @@ pub fn tet_mesh(grid: &Grid, memory_limit: u64) -> Result<TetMesh, StitchError> 
     tet_mesh_until(grid, memory_limit, &AtomicBool::new(false))
 }
 
-/// As [`tet_mesh`], but stops soon after `cancel` is set.
+/// Makes the mesh of [`tet_mesh`], but stops soon after `cancel` is set.
 ///
 /// # Errors
 ///
-/// As [`tet_mesh`], and [`StitchError::Canceled`].
+/// [`StitchError`] like [`tet_mesh`], and [`StitchError::Canceled`].
 pub fn tet_mesh_until(
     grid: &Grid,
     memory_limit: u64,

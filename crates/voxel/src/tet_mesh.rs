@@ -1,4 +1,4 @@
-//! The tetrahedral mesh and what belongs to it.
+//! Tetrahedral mesh with its edges, boundary and cavities.
 
 /// The part of the boundary that faces one cavity.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,8 +13,7 @@ pub struct CavitySurface {
 
 /// A conforming mesh of tetrahedra with its edges, its boundary and its cavities.
 ///
-/// Plain lists that agree with each other when they come from [`crate::tet_mesh`] or
-/// [`crate::mesh_from_tets`].
+/// Its lists are consistent if they come from [`crate::tet_mesh`] or [`crate::mesh_from_tets`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct TetMesh {
     /// Positions [m]; those of a voxel mesh are in C order of their lattice nodes.
@@ -25,7 +24,7 @@ pub struct TetMesh {
     ///
     /// In a voxel mesh, tets `5v..5v + 5` make up voxel `v`, the middle one first.
     pub tets: Vec<[i32; 4]>,
-    /// The pairs of vertices joined by an edge, each once, `a < b`, sorted.
+    /// Pairs of vertices joined by an edge, each once, `a < b`, sorted.
     pub edges: Vec<[i32; 2]>,
     /// The boundary, pointing out of the material.
     pub triangles: Vec<[i32; 3]>,

@@ -1,4 +1,4 @@
-//! How thin the material is, counted in cells along the axes.
+//! Wall thickness of the material, in cells along the axes.
 //!
 //! A wall that is inclined to the axes is at most √3 times thinner than the shortest row of cells
 //! through it; on a thin wall this is the measure that decides how many elements bend.
@@ -6,20 +6,20 @@ use crate::bits::BitGrid;
 use crate::cavities::LabeledCavities;
 use crate::grid::Grid;
 
-/// A place where the material is thin.
+/// A wall: its thickness and one of its cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wall {
-    /// Number of cells.
+    /// Thickness in cells.
     pub thickness: u16,
-    /// A filled cell of it.
+    /// A filled cell of the wall.
     pub cell: [u32; 3],
 }
 
-/// The thickness of the material, cell by cell.
+/// Thickness of the material, cell by cell.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WallThickness {
-    /// For each cell in C order the shortest of the three rows of filled cells along the axes that
-    /// it lies in; 0 where empty.
+    /// Thickness at each cell in C order: the shortest of the three rows of filled cells along the axes through it; 0
+    /// where empty.
     pub cells: Vec<u16>,
     /// Number of cells of each thickness; entry 0 is 0.
     pub histogram: Vec<u64>,
@@ -27,10 +27,10 @@ pub struct WallThickness {
     pub thinnest: Option<Wall>,
 }
 
-/// The thickness of the material at each cell.
+/// Computes the thickness of the material at each cell.
 ///
-/// Takes two bytes per cell. At an outer edge or tip of a rounded body a row can be short without
-/// there being a wall; [`cavity_walls`] is free of that.
+/// Takes two bytes per cell. At an outer edge or tip of a rounded body a row can be short without a wall;
+/// [`cavity_walls`] avoids that.
 pub fn wall_thickness(grid: &Grid) -> WallThickness {
     let [nx, ny, nz] = grid.shape();
     let filled = |index: usize| grid.cells()[index] != 0;
@@ -73,7 +73,7 @@ pub fn wall_thickness(grid: &Grid) -> WallThickness {
     }
 }
 
-/// Takes the runs of filled cells in `lines` lines side by side into account.
+/// Updates the thickness by the runs of filled cells in `lines` adjacent lines.
 ///
 /// Line n holds the cells `start + n`, `start + n + stride`, … (`length` of them). The lines are
 /// walked together so that memory is read in order.
@@ -102,7 +102,7 @@ fn shorten(
     }
 }
 
-/// For each cavity, in the order of [`crate::cavities`], the thinnest wall around it.
+/// Thinnest wall around each cavity, in the order of [`crate::cavities`].
 ///
 /// A wall is a row of filled cells along an axis with this cavity at one end, and the outside or
 /// another cavity at the other.
@@ -128,8 +128,8 @@ pub fn cavity_walls(grid: &Grid) -> Vec<Wall> {
     walls.flatten().collect()
 }
 
-/// The row of filled cells next to an empty cell, if there are 1 to `most` of them, and the empty
-/// cell beyond it (`None` outside of the grid). Directions are −x, +x, −y, +y, −z, +z.
+/// Row of filled cells next to an empty cell, if there are 1 to `most` of them, and the empty cell beyond it (`None`
+/// outside of the grid). Directions are −x, +x, −y, +y, −z, +z.
 fn wall_behind(
     grid: &Grid,
     cell: [u32; 3],
@@ -176,7 +176,7 @@ mod tests {
         Grid::from_cells(shape, [0.0; 3], 1.0, vec![1; shape.iter().product()]).unwrap()
     }
 
-    /// The shortest row through each cell, by walking from it.
+    /// Finds the shortest row through each cell, by walking from it.
     fn walked(grid: &Grid) -> Vec<u16> {
         let [nx, ny, nz] = grid.shape();
         (0..nx * ny * nz)
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn the_thinnest_wall_is_named() {
+    fn thinnest_wall_is_reported() {
         let found = wall_thickness(&block([4, 3, 9]));
         assert_eq!(
             found.thinnest,
@@ -228,7 +228,7 @@ mod tests {
         let mut grid = block([9, 9, 12]);
         grid.fill_box([3.0, 3.0, 3.0], [6.0, 6.0, 6.0], 0);
         grid.fill_box([3.0, 3.0, 8.0], [6.0, 7.0, 10.0], 0);
-        // An island: the rows across the first cavity that end at it are not walls.
+        // Adds an island: the rows across the first cavity that end at it are not walls.
         grid.set([4, 4, 4], 1);
         let walls = cavity_walls(&grid);
         assert_eq!(

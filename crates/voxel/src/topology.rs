@@ -1,6 +1,6 @@
 //! Faces and edges of tetrahedra, found by sorting.
 
-/// A face with its corners ascending, and where it comes from: 4 × tet + place in [`FACES`].
+/// A face with its corners ascending, and its origin: 4 × tet + index in [`FACES`].
 pub(crate) type KeyedFace = ([i32; 3], u32);
 
 /// Corners of the faces of a tet of positive volume, outward; face f lies opposite corner f.
@@ -20,7 +20,7 @@ pub(crate) fn sorted_faces(tets: &[[i32; 4]]) -> Vec<KeyedFace> {
     faces
 }
 
-/// The face as its tet sees it, outward.
+/// Face in the outward orientation of its tet.
 pub(crate) fn outward_face(tets: &[[i32; 4]], from: u32) -> [i32; 3] {
     let tet = tets[from as usize / 4];
     FACES[from as usize % 4].map(|c| tet[c])
@@ -51,8 +51,8 @@ pub(crate) fn sorted_triangle_edges(triangles: &[[i32; 3]]) -> Vec<([i32; 2], u3
     edges
 }
 
-/// Sorts on all cores where there are threads; equal keys are told apart by their origin, so the
-/// result does not depend on the number of threads.
+/// Sorts on all cores if threads are available; equal keys are ordered by their origin, so the result does not depend
+/// on the number of threads.
 fn sort<T: Ord + Send>(items: &mut [T]) {
     #[cfg(feature = "threads")]
     rayon::slice::ParallelSliceMut::par_sort_unstable(items);

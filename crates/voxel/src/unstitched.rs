@@ -1,8 +1,8 @@
-//! The mesh before stitching, each voxel with vertices of its own.
+//! Mesh before stitching, each voxel with vertices of its own.
 use crate::five_tets::{face_triangles, is_even, tets};
 use crate::grid::Grid;
 
-/// The arrays of N voxels that share nothing: 8 N vertices, 5 N tets, 18 N edges, 16 N triangles.
+/// Arrays of N voxels without shared vertices: 8 N vertices, 5 N tets, 18 N edges, 16 N triangles.
 ///
 /// A voxel's triangles are the 12 on its surface and the 4 between the middle tetrahedron and the
 /// others.
@@ -18,7 +18,7 @@ pub struct Unstitched {
     pub triangles: Vec<[i32; 3]>,
 }
 
-/// The mesh before stitching, voxels in C order. Meant for study and tests; see [`crate::tet_mesh`].
+/// Makes the mesh before stitching, voxels in C order. For study and tests only; see [`crate::tet_mesh`].
 ///
 /// # Panics
 ///
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts_are_those_of_the_paper() {
+    fn counts_match_the_paper() {
         for (filled, cells) in [
             (0, vec![0; 8]),
             (1, vec![0, 0, 0, 0, 0, 3, 0, 0]),

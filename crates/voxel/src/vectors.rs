@@ -1,4 +1,4 @@
-//! The few operations on triples that geometry needs.
+//! Vector operations.
 
 pub(crate) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| a[axis] - b[axis])

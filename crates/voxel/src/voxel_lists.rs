@@ -1,4 +1,4 @@
-//! The lists that the mesh of a grid consists of, each in C order of its cells or nodes.
+//! Lists of the mesh of a grid, each in C order of its cells or nodes.
 use std::sync::atomic::AtomicBool;
 
 use crate::bits::{BitGrid, ones};
@@ -8,12 +8,12 @@ use crate::grid::Grid;
 use crate::nodes::NodeIndex;
 use crate::planes::{Slots, fill_planes};
 
-/// The filled cells of a grid and the lattice nodes they use.
+/// Filled cells of a grid and the lattice nodes they use.
 pub(crate) struct VoxelLists<'a> {
     pub grid: &'a Grid,
     pub filled: &'a BitGrid,
     pub nodes: &'a NodeIndex,
-    /// Set by who does not want the lists any more; they are of no use then.
+    /// Flag of cancellation, after which the lists are incomplete.
     pub cancel: &'a AtomicBool,
 }
 
@@ -52,7 +52,7 @@ impl VoxelLists<'_> {
         })
     }
 
-    /// The boundary.
+    /// Triangles of the boundary.
     pub fn triangles(&self) -> Vec<[i32; 3]> {
         let planes = 0..self.grid.shape()[0];
         let counts: Vec<usize> = planes.map(|i| 2 * exposed_faces(self.filled, i)).collect();
@@ -69,7 +69,7 @@ impl VoxelLists<'_> {
         })
     }
 
-    /// The boundary triangles of a plane of cells that face a cavity, with its place in the list.
+    /// Boundary triangles of a plane of cells that face a cavity, with its index in the list.
     pub fn facing(&self, i: usize, cavities: &LabeledCavities) -> Vec<(u32, [i32; 3])> {
         let mut facing = Vec::new();
         self.for_each_exposed(i, |cell, faces| {
@@ -85,7 +85,7 @@ impl VoxelLists<'_> {
         facing
     }
 
-    /// A list of `each` items per member of a set of cells or nodes.
+    /// Makes a list of `each` items per member of a set of cells or nodes.
     fn list<T: Clone + Default + Send>(
         &self,
         bits: &BitGrid,
@@ -132,7 +132,7 @@ impl VoxelLists<'_> {
         }
     }
 
-    /// The cavity on the other side of a face of a cell.
+    /// Cavity on the other side of a face of a cell.
     fn cavity_behind(
         &self,
         cell: [usize; 3],
@@ -162,7 +162,7 @@ pub(crate) fn exposed_faces(filled: &BitGrid, i: usize) -> usize {
         .sum()
 }
 
-/// For the faces −x, +x, −y, +y, −z, +z: the filled cells of a word whose neighbor there is empty.
+/// Filled cells of a word whose neighbor is empty, for the faces −x, +x, −y, +y, −z, +z.
 fn exposed(filled: &BitGrid, i: usize, j: usize, w: usize) -> [u64; 6] {
     let (i, j) = (i as isize, j as isize);
     let cells = filled.word(i, j, w);

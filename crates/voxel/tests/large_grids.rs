@@ -1,6 +1,6 @@
 //! Limits on time and memory: the estimate before allocating, and linear stitching.
 //!
-//! The ignored ones take seconds and a gigabyte; run them alone and in release:
+//! The ignored tests take seconds and a gigabyte; run them alone and in release mode:
 //! `cargo test --release -p voxsoft-voxel --test large_grids -- --ignored --nocapture --test-threads 1`.
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -11,7 +11,7 @@ use voxsoft_voxel::{
     wall_thickness,
 };
 
-/// The system's allocator with a record of the peak.
+/// System allocator with a record of the peak memory.
 struct Counting;
 
 static NOW: AtomicUsize = AtomicUsize::new(0);
@@ -56,7 +56,7 @@ fn gyroid(n: usize) -> Grid {
 }
 
 #[test]
-fn a_mesh_over_the_limit_is_refused_before_it_is_allocated() {
+fn mesh_over_the_limit_is_refused_before_allocation() {
     let grid = Grid::from_cells([64; 3], [0.0; 3], 1e-3, vec![1; 64 * 64 * 64]).unwrap();
     let refused = tet_mesh(&grid, 10_000_000);
     let Err(StitchError::TooLarge {
@@ -114,7 +114,7 @@ fn stitching_is_linear_in_the_number_of_voxels() {
                 vertices = tet_mesh(&grid, u64::MAX).unwrap().vertices.len();
                 start.elapsed().as_nanos() as f64 / voxels as f64
             };
-            // The best of several runs is the one that other programs disturbed least.
+            // The fastest of several runs is the least disturbed by other programs.
             let nanoseconds = std::iter::repeat_with(timed).take(5).fold(f64::INFINITY, f64::min);
             println!(
                 "gyroid {n}³: {voxels} voxels, {vertices} vertices, {nanoseconds:.0} ns and {} bytes at the peak per voxel",

@@ -1,10 +1,10 @@
-//! What every voxel mesh satisfies, on random grids, against counts made without the library.
+//! Properties of every voxel mesh, on random grids, against counts made without the library.
 use std::collections::{HashMap, HashSet};
 
 use proptest::prelude::*;
 use voxsoft_voxel::{Grid, cavities, tet_mesh};
 
-/// A grid with random cells of two parts, off the origin so that both parities start a grid.
+/// Grid with random cells of two parts, off the origin so that both parities start a grid.
 fn random_grid() -> impl Strategy<Value = Grid> {
     let shape = [1..6_usize, 1..6_usize, 1..70_usize];
     (shape, any::<u64>(), 0.05..1.0_f64, -3..3_i32).prop_map(|(shape, seed, density, start)| {
@@ -33,7 +33,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Faces of tets, sorted, each with the number of tets that hold it.
+/// Faces of tets, sorted, each with its number of tets.
 fn face_counts(tets: &[[i32; 4]]) -> HashMap<[i32; 3], usize> {
     let mut counts = HashMap::new();
     for &[a, b, c, d] in tets {
@@ -102,7 +102,7 @@ fn flooded_cavities(grid: &Grid) -> Vec<(usize, usize)> {
     found
 }
 
-/// Corners, edges, faces and cells of the filled cubes: V − E + F − N.
+/// Euler number V − E + F − N from the corners, edges, faces and cells of the filled cubes.
 fn euler_number_of_cubes(cells: &HashSet<[i32; 3]>) -> i64 {
     // In doubled coordinates the corners, edges and faces of a cube are the points around its
     // center; the number of odd coordinates is the dimension.
@@ -140,7 +140,7 @@ proptest! {
     }
 
     #[test]
-    fn the_mesh_conforms_and_its_boundary_is_listed(grid in random_grid()) {
+    fn mesh_conforms_and_lists_its_boundary(grid in random_grid()) {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
         let faces = face_counts(&mesh.tets);
         prop_assert!(faces.values().all(|&n| n <= 2));
@@ -154,7 +154,7 @@ proptest! {
     }
 
     #[test]
-    fn the_boundary_encloses_the_volume(grid in random_grid()) {
+    fn boundary_encloses_the_volume(grid in random_grid()) {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
         let volume: f64 = mesh.triangles.iter().map(|t| {
             let [a, b, c] = t.map(|v| mesh.vertices[v as usize]);
@@ -164,7 +164,7 @@ proptest! {
     }
 
     #[test]
-    fn edges_are_those_of_the_tets_once_and_sorted(grid in random_grid()) {
+    fn edges_are_unique_and_sorted(grid in random_grid()) {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
         let mut expected = HashSet::new();
         for tet in mesh.tets {
@@ -178,7 +178,7 @@ proptest! {
     }
 
     #[test]
-    fn vertices_are_lattice_nodes_once_each(grid in random_grid()) {
+    fn vertices_are_unique_lattice_nodes(grid in random_grid()) {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
         prop_assert!(mesh.keys.is_sorted_by(|a, b| a < b));
         for (&key, &vertex) in mesh.keys.iter().zip(&mesh.vertices) {
@@ -189,7 +189,7 @@ proptest! {
     }
 
     #[test]
-    fn the_euler_number_is_that_of_the_cubes(grid in random_grid()) {
+    fn euler_number_matches_the_cubes(grid in random_grid()) {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
         let counts = [mesh.vertices.len(), mesh.edges.len(),
             face_counts(&mesh.tets).len(), mesh.tets.len()].map(|n| n as i64);
@@ -198,7 +198,7 @@ proptest! {
     }
 
     #[test]
-    fn cavities_are_those_of_a_plain_flood_fill(grid in random_grid()) {
+    fn cavities_match_a_flood_fill(grid in random_grid()) {
         let found = cavities(&grid);
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
         let expected = flooded_cavities(&grid);

@@ -1,25 +1,25 @@
-//! The core in a page: a scene opened and played through plain exports.
+//! WebAssembly core of a page: opens and plays a scene through plain exports.
 //!
-//! No generated glue: numbers go in as arguments, bytes through the core's memory, and commands and events are
-//! JSON, as the studio's server has them. `studio/src/engine/core.ts` is the typed side. Each instance of the
-//! module plays one scene. Explicit steps take one constraint at a time with plain arithmetic, so that positions
-//! have the same bits as those of the native core's deterministic way. Implicit steps, which bodies with
-//! hyperelastic voxels take, factorize with whatever the processor has, and agree to rounding.
+//! There is no generated glue: numbers are passed as arguments, bytes through the core's memory, and commands and
+//! events are JSON, as in the studio's server. `studio/src/engine/core.ts` is the typed side. Each instance of the
+//! module plays one scene. Explicit steps take one constraint at a time with plain arithmetic, so that positions have
+//! the same bits as those of the native core's deterministic mode. Implicit steps, which bodies with hyperelastic
+//! voxels take, factorize with any instructions that the processor has, and agree to rounding.
 //!
-//! | export | what it does |
+//! | export | action |
 //! |---|---|
 //! | `vx_input(length) → at` | room for the bytes of the next call |
-//! | `vx_answer() → at` | where the bytes of the last answer begin, until the next call |
-//! | `vx_open() → length` | opens the scene in the input; the answer is why it cannot, or empty |
+//! | `vx_answer() → at` | address of the bytes of the last answer, valid until the next call |
+//! | `vx_open() → length` | opens the scene in the input; the answer is the error, or empty |
 //! | `vx_notes() → length` | the writer's notes, UTF-8 |
-//! | `vx_command() → length` | does the command in the input; events, a list in JSON |
-//! | `vx_advance(seconds, budget) → length` | lets time go on; events |
-//! | `vx_stat() → length`, `vx_topology() → length` | all numbers of the moment, as an event; what is drawn |
-//! | `vx_frame(field, seq) → length` | the frame that is looked at; nothing if there is no such field |
+//! | `vx_command() → length` | executes the command in the input; events, a list in JSON |
+//! | `vx_advance(seconds, budget) → length` | advances time; events |
+//! | `vx_stat() → length`, `vx_topology() → length` | present numbers, as an event; topology message of the display |
+//! | `vx_frame(field, seq) → length` | message of the displayed frame; empty if there is no such field |
 //! | `vx_positions() → length` | f64×3 of every vertex, m |
 //!
-//! A command that is refused is answered by one event of the kind `error`, without a `seq`. Times are in s; the
-//! page lends its clock as the import `page.now() → s`. Until a scene is open, answers are empty.
+//! A refused command is answered by one event of the kind `error`, without a `seq`. Times are in s; the page provides
+//! its clock as the import `page.now() → s`. Answers are empty until a scene is open.
 
 use std::cell::RefCell;
 
@@ -28,7 +28,7 @@ use voxsoft_frames::Field;
 use voxsoft_player::{Clock, Event, Player, Refusal};
 use voxsoft_scene::Scene;
 
-/// What is open, and bytes on their way in and out.
+/// Open player, and the buffers of input and answer.
 #[derive(Default)]
 struct Desk {
     input: Vec<u8>,
@@ -41,7 +41,7 @@ thread_local! {
     static DESK: RefCell<Desk> = RefCell::default();
 }
 
-/// The clock that the page lends.
+/// Clock provided by the page.
 struct PageClock;
 
 #[cfg(target_arch = "wasm32")]
@@ -58,7 +58,7 @@ impl Clock for PageClock {
         page::now()
     }
 
-    /// Outside a page there is none.
+    /// Outside a page there is no clock.
     #[cfg(not(target_arch = "wasm32"))]
     fn now(&self) -> f64 {
         0.0
@@ -84,7 +84,7 @@ fn reply(events: Result<Vec<Event>, Refusal>) -> Vec<u8> {
     }
 }
 
-/// Answers with the bytes that come of the input; gives their length.
+/// Stores the answer of `work`; returns its length.
 fn answer(work: impl FnOnce(&mut Desk) -> Vec<u8>) -> usize {
     DESK.with_borrow_mut(|desk| {
         desk.answer = work(desk);
@@ -92,7 +92,7 @@ fn answer(work: impl FnOnce(&mut Desk) -> Vec<u8>) -> usize {
     })
 }
 
-/// The same of the player, once there is one.
+/// Stores the answer of the player, empty before a scene is open; returns its length.
 fn answer_of(work: impl FnOnce(&mut Player, &[u8]) -> Vec<u8>) -> usize {
     answer(|desk| match &mut desk.player {
         Some(player) => work(player, &desk.input),
@@ -100,7 +100,7 @@ fn answer_of(work: impl FnOnce(&mut Player, &[u8]) -> Vec<u8>) -> usize {
     })
 }
 
-/// Room for `length` bytes, which the next call reads.
+/// Allocates `length` bytes of input for the next call.
 #[unsafe(no_mangle)]
 pub extern "C" fn vx_input(length: usize) -> *mut u8 {
     DESK.with_borrow_mut(|desk| {
@@ -110,13 +110,13 @@ pub extern "C" fn vx_input(length: usize) -> *mut u8 {
     })
 }
 
-/// Where the bytes of the last answer begin.
+/// Address of the bytes of the last answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn vx_answer() -> *const u8 {
     DESK.with_borrow(|desk| desk.answer.as_ptr())
 }
 
-/// Opens the scene in the input; the answer is why it cannot, or empty.
+/// Opens the scene in the input; the answer is the error, or empty.
 #[unsafe(no_mangle)]
 pub extern "C" fn vx_open() -> usize {
     answer(|desk| {
@@ -132,13 +132,13 @@ pub extern "C" fn vx_open() -> usize {
     })
 }
 
-/// The writer's notes.
+/// Answers with the writer's notes.
 #[unsafe(no_mangle)]
 pub extern "C" fn vx_notes() -> usize {
     answer(|desk| desk.notes.clone().into_bytes())
 }
 
-/// Does the command in the input, and answers with the events.
+/// Executes the command in the input, and answers with the events.
 #[unsafe(no_mangle)]
 pub extern "C" fn vx_command() -> usize {
     answer_of(|player, input| {
@@ -152,25 +152,25 @@ pub extern "C" fn vx_command() -> usize {
     })
 }
 
-/// Lets time go on by some seconds, within a budget of the clock, and answers with the events.
+/// Advances by `seconds` within a wall-clock `budget` (s), and answers with the events.
 #[unsafe(no_mangle)]
 pub extern "C" fn vx_advance(seconds: f64, budget: f64) -> usize {
     answer_of(|player, _| reply(Ok(player.advance(seconds, budget, &PageClock))))
 }
 
-/// All numbers of the moment.
+/// Answers with the present numbers of the player.
 #[unsafe(no_mangle)]
 pub extern "C" fn vx_stat() -> usize {
     answer_of(|player, _| json(&Event::Stat(player.stat())))
 }
 
-/// What is drawn.
+/// Answers with the topology message of the display.
 #[unsafe(no_mangle)]
 pub extern "C" fn vx_topology() -> usize {
     answer_of(|player, _| player.topology())
 }
 
-/// The frame that is looked at.
+/// Answers with the message of the displayed frame.
 #[unsafe(no_mangle)]
 pub extern "C" fn vx_frame(field: u16, seq: u32) -> usize {
     answer_of(|player, _| match Field::from_id(field) {
@@ -179,7 +179,7 @@ pub extern "C" fn vx_frame(field: u16, seq: u32) -> usize {
     })
 }
 
-/// Where the vertices are.
+/// Answers with the positions of all vertices in m.
 #[unsafe(no_mangle)]
 pub extern "C" fn vx_positions() -> usize {
     answer_of(|player, _| {

@@ -1,7 +1,7 @@
-//! Nanoseconds for a voxel and substep: the ways of this crate beside the textbook loop.
+//! Nanoseconds for a voxel and substep: the solvers of this crate against the textbook loop.
 //!
 //! `cargo run --release -p voxsoft-xpbd --example step_rate` prints one line for each figure:
-//! `body; what; threads; ns; ratio to the textbook`. `benchmarks/step_rate.py` reads them.
+//! `body; program; threads; ns; ratio to the textbook`. `benchmarks/step_rate.py` reads them.
 //!
 //! Every answer is checked before it counts: the sweep against the textbook loop in the same order,
 //! relaxation and dynamics by the residual that the plain loops find in their states at rest.
@@ -22,16 +22,16 @@ use voxsoft_xpbd::{Damping, Dynamics, Relaxation, Status, relax, simulate};
 
 const GRAVITY: Vec3 = [0.0, 0.0, -9.81];
 const SIDE: f64 = 5e-3;
-/// A substep that the materials below bear, in s.
+/// Substep that is stable for the materials below, in s.
 const SUBSTEP: f64 = 1e-4;
-/// The programs alternate this often; medians are printed.
+/// Number of alternating rounds of the programs; medians are printed.
 const ROUNDS: usize = 15;
 /// Voxels and substeps in a round of one program.
 const WORK: f64 = 2e5;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
-/// The voxels that `inside` holds, clamped at the lowest x, or at the lowest z for the cylinder.
+/// Problem of the voxels in `inside`, clamped at the lowest x, or at the lowest z for the cylinder.
 fn body(
     cells: [usize; 3],
     axis: usize,
@@ -65,13 +65,13 @@ fn body(
     Ok((problem, voxels))
 }
 
-/// The cylinder of the paper with a radius of five voxels, seven high, with walls of one.
+/// Cylinder of the paper with a radius of five voxels, seven high, with walls of one.
 fn in_cylinder([i, j, k]: [usize; 3]) -> bool {
     let square: f64 = [i, j].iter().map(|&n| (n as f64 - 4.5).powi(2)).sum();
     square < 25.0 && !(square < 16.0 && (1..6).contains(&k))
 }
 
-/// The arrays of a sweep.
+/// Arrays of a sweep.
 struct Sweeping<'a> {
     strips: &'a Strips,
     rest: Columns,
@@ -98,7 +98,7 @@ impl<'a> Sweeping<'a> {
         }
     }
 
-    /// A sweep from where the positions are, all multipliers being zero.
+    /// Takes a sweep from the present positions, with all multipliers zero.
     fn sweep(&mut self) {
         self.strips.sweep(Sweep {
             positions: &mut self.positions,
@@ -154,8 +154,8 @@ fn check(problem: &Problem, strips: &Strips) -> Result<()> {
     Ok(())
 }
 
-/// Seconds that `steps` more steps of relaxation take: two runs of different length, so that what comes
-/// before the first step does not count.
+/// Seconds that `steps` more steps of relaxation take: the difference of two runs of different length, which excludes
+/// the setup before the first step.
 fn relaxation(problem: &Problem, steps: u64) -> f64 {
     let run = |max_steps| {
         let settings = Relaxation {

@@ -1,5 +1,5 @@
-//! What the textbook step does to the state at rest: the plain loop of Algorithm 3, whose
-//! multipliers start from zero, on the paper's beam, beside the solver of this crate.
+//! Error of the textbook step in the state at rest: the plain loop of Algorithm 3, whose multipliers start from zero,
+//! on the paper's beam, against the solver of this crate.
 //!
 //! `cargo run --release -p voxsoft-xpbd --example textbook_step`
 

@@ -1,20 +1,21 @@
-//! The designs of the paper's study that enclose a chamber, by the textbook loop on one core: the yardstick of
+//! Designs of the paper's study that enclose a chamber, by the textbook loop on one core: the reference of
 //! `benchmarks/study.py`.
 //!
-//! `cargo run --release -p voxsoft-xpbd --example textbook_study` prints a line for each aim and design: aim,
-//! radius, height and wall in voxels, substeps, rise in m, residual. Then it answers each line of its input with
-//! the seconds that all designs take, by the wall clock and of the processor for each aim. With the argument
-//! `scan` it prints what other rates of damping cost: of 40 to 1,280 1/s, 480 projects the fewest constraints,
-//! 35 million with 0.1 ms, and the best rate for each design on its own 29 million.
+//! `cargo run --release -p voxsoft-xpbd --example textbook_study` prints a line for each aim and design: aim, radius,
+//! height and wall in voxels, substeps, rise in m, residual. Then it answers each line of its input with the seconds
+//! that all designs take for each aim, of wall-clock and of processor time. With the argument `scan` it prints the cost
+//! of other rates of damping: of 40 to 1,280 1/s, 480 projects the fewest constraints, 35 million with 0.1 ms, and the
+//! best rate for each design on its own 29 million.
 //!
-//! # What counts as rest
+//! # Criterion of rest
 //!
-//! With one sweep and multipliers from zero the loop rests where stiffnesses look smaller by a part that grows
-//! like the square of the substep (`textbook_step`): where walls are one voxel thick, rises are 0.04 to 0.08 % too
-//! large with substeps of 25 µs, 0.6 to 1.3 % with 0.1 ms, 8 to 22 % with 0.4 ms, and the forces never balance to the 1e-5
-//! of the load that the solver of this crate is asked for. So there are two aims: the rise within 0.1 % of the
-//! equilibrium, and, with a longer substep, within 0.1 % of where that substep ends. A run is over as soon as
-//! its rise stays there for 0.1 s, which it is told: it pays neither for a look at forces nor for those 0.1 s.
+//! With one sweep and multipliers from zero the loop rests in a state of smaller apparent stiffness, by a part that
+//! grows like the square of the substep (`textbook_step`): where walls are one voxel thick, rises are 0.04 to 0.08 %
+//! too large with substeps of 25 µs, 0.6 to 1.3 % with 0.1 ms, 8 to 22 % with 0.4 ms, and the forces never balance to
+//! the 1e-5 of the load that is required of the solver of this crate. So there are two aims: the rise within 0.1 % of
+//! the equilibrium, and, with a longer substep, within 0.1 % of the final rise of that substep. A run ends as soon as
+//! its rise stays there for 0.1 s. The number of substeps is found beforehand, so that the timed run includes neither
+//! checks of forces nor those 0.1 s.
 
 mod textbook;
 
@@ -30,21 +31,21 @@ use voxsoft_solid::{Body, Clamp, LatticeMaterial, Load, Mesh, Pressure, Problem,
 use voxsoft_voxel::{Grid, tet_mesh};
 use voxsoft_xpbd::{Relaxation, Status, relax};
 
-/// Of a voxel, in m.
+/// Edge of a voxel, in m.
 const SIDE: f64 = 5e-3;
-/// In Pa.
+/// Pressure in Pa.
 const PRESSURE: f64 = 4e3;
 /// Edge and bulk modulus in Pa and density in kg/m³ of the card `ecoflex-00-30-lattice`.
 const MATERIAL: [f64; 3] = [23.6e3, 2e3, 1070.0];
 /// Largest error of a rise.
 const WITHIN: f64 = 1e-3;
-/// Of the state that is taken for true, in parts of the load.
+/// Tolerance of the reference equilibrium, relative to the load.
 const TIGHT: f64 = 1e-8;
-/// How long a rise must stay where it is, and the longest run, in s.
+/// Time for which a rise must stay within the error, and the longest run, in s.
 const HOLD: f64 = 0.1;
 const LONGEST: f64 = 0.5;
 
-/// What ends a run, with its substep (s) and rate of damping (1/s), for all designs the quickest of the `scan`.
+/// End criterion of a run, with its substep (s) and rate of damping (1/s), the fastest of the `scan` for all designs.
 struct Aim {
     name: &'static str,
     is_own: bool,
@@ -76,12 +77,12 @@ struct Design {
     problem: Problem,
     pressed: Vec<[u32; 3]>,
     top: Vec<usize>,
-    /// The rise at equilibrium, in m.
+    /// Rise at equilibrium, in m.
     rise: f64,
 }
 
 impl Design {
-    /// Meshed, loaded and brought to equilibrium.
+    /// Makes a design: meshed, loaded and solved for its equilibrium.
     fn new(size: [usize; 3]) -> Result<Self> {
         let [radius, height, wall] = size;
         let mut grid = Grid::empty([2 * radius, 2 * radius, height], [0.0; 3], SIDE, u64::MAX)?;
@@ -152,7 +153,7 @@ impl Design {
         (self.rise_at(&run.state.positions) / rise - 1.0).abs() < WITHIN
     }
 
-    /// The rise in m that ends a run.
+    /// Target rise of a run in m.
     fn aim(&self, aim: &Aim) -> f64 {
         if !aim.is_own {
             return self.rise;
@@ -170,7 +171,7 @@ impl Design {
         run
     }
 
-    /// Substeps until the rise is there and stays, or `None` where it never does.
+    /// Substeps until the rise is within the error and stays, or `None` if it never does.
     fn substeps(&self, aim: &Aim, rise: f64) -> Option<usize> {
         let h = aim.substep;
         let mut run = self.start();
@@ -186,7 +187,7 @@ impl Design {
         None
     }
 
-    /// Substeps and constraints of them.
+    /// Number of projections: substeps times constraints.
     fn work(&self, substeps: usize) -> usize {
         let body = self.problem.body();
         substeps * (body.edges().len() + body.tets().len())
@@ -205,8 +206,8 @@ fn designs() -> Result<Vec<Design>> {
     Ok(found)
 }
 
-/// The constraints that each rate of damping projects until all rises are there, and those if each design had
-/// the best of the rates for itself. How long a rise takes hardly depends on the substep.
+/// Prints the projections of each rate of damping until all rises are reached, and those with the best rate for each
+/// design. The time of a rise hardly depends on the substep.
 fn scan(designs: &[Design], aim: &Aim) {
     let mut best = vec![usize::MAX; designs.len()];
     let rises: Vec<f64> = designs.iter().map(|design| design.aim(aim)).collect();
@@ -268,7 +269,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Seconds that this thread had a processor, where the system counts them: Linux does.
+/// Processor time of this thread in s, if the system reports it (Linux).
 fn processor_seconds() -> Option<f64> {
     let counts = std::fs::read_to_string("/proc/self/schedstat").ok()?;
     let nanoseconds: f64 = counts.split_whitespace().next()?.parse().ok()?;

@@ -1,6 +1,6 @@
 use voxsoft_solid::vector::{Vec3, dot, sub};
 
-/// An estimate of the frequency (rad per unit of time) that the present motion lives on.
+/// Estimates the frequency (rad per unit of time) of the present motion.
 ///
 /// The change of forces along the motion over the motion's inertia is a Rayleigh quotient of
 /// `M⁻¹K`: `ω² ≈ v·(f_before − f_now) / (Δt v·M v)`. It is high while fast modes ring and sinks to

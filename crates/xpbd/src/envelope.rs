@@ -1,25 +1,25 @@
-//! A symmetric positive definite matrix whose entries lie near its diagonal, and its Cholesky factor.
+//! Envelope (skyline) storage of a symmetric positive definite matrix, and its Cholesky factor.
 //!
-//! A row is kept from its first entry that is not zero to the diagonal; the factor fills no other place. Vertices of
-//! a membrane numbered along it ([`along`]) make rows about as long as the membrane is wide.
+//! A row is stored from its first nonzero entry to the diagonal; the factor has no fill outside. Vertices of a membrane
+//! numbered along it ([`along`]) make rows about as long as the membrane is wide.
 
 use voxsoft_solid::vector::{Vec3, axpy, scale};
 
-/// Products that are summed side by side, in an order that does not depend on the processor.
+/// Number of parallel partial sums, in an order that does not depend on the processor.
 const STRANDS: usize = 4;
 
-/// The lower triangle, row by row.
+/// Lower triangle of a matrix, row by row.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Envelope {
-    /// The column of the first entry of each row.
+    /// Column of the first entry of each row.
     first: Vec<usize>,
-    /// Where each row ends, its diagonal being the last entry.
+    /// End index of each row, whose last entry is the diagonal.
     ends: Vec<usize>,
     entries: Vec<f64>,
 }
 
 impl Envelope {
-    /// A matrix of zeros with room for entries between all `neighbors`, which list each row's own number too.
+    /// Makes a matrix of zeros with room for entries between all `neighbors`, which list each row's own number too.
     pub fn zeros(neighbors: &[Vec<usize>]) -> Self {
         let first: Vec<usize> = neighbors
             .iter()
@@ -41,7 +41,7 @@ impl Envelope {
         }
     }
 
-    /// Makes all entries zero.
+    /// Sets all entries to zero.
     pub fn clear(&mut self) {
         self.entries.fill(0.0);
     }
@@ -51,7 +51,7 @@ impl Envelope {
         self.entries[self.ends[row] - 1 - (row - column)] += value;
     }
 
-    /// Puts the factor in the place of the matrix.
+    /// Replaces the matrix by its Cholesky factor.
     pub fn factor(&mut self) {
         for row in 0..self.first.len() {
             let first = self.first[row];
@@ -71,7 +71,7 @@ impl Envelope {
         }
     }
 
-    /// Solves for three right sides at once; the matrix is factored.
+    /// Solves for three right-hand sides at once; needs a factored matrix.
     pub fn solve(&self, sides: &mut [Vec3]) {
         for row in 0..sides.len() {
             let (diagonal, left) = self.row(row);
@@ -91,7 +91,7 @@ impl Envelope {
         }
     }
 
-    /// The diagonal entry of a row and those left of it.
+    /// Diagonal entry of a row and the entries left of it.
     fn row(&self, row: usize) -> (f64, &[f64]) {
         let end = self.ends[row];
         let left = &self.entries[end - (row + 1 - self.first[row])..end - 1];
@@ -99,7 +99,7 @@ impl Envelope {
     }
 }
 
-/// The scalar product, up to the end of the shorter one.
+/// Scalar product over the length of `a`, the shorter one.
 fn product(a: &[f64], b: &[f64]) -> f64 {
     let (whole, rest) = a.as_chunks::<STRANDS>();
     let mut sums = [0.0; STRANDS];
@@ -112,8 +112,8 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + last.map(|(a, b)| a * b).sum::<f64>()
 }
 
-/// An order in which neighbors have numbers close to each other: that of Cuthill and McKee (1969), which goes
-/// from one end of each piece to the other.
+/// Cuthill–McKee (1969) order, in which neighbors have close numbers: it runs from one end of each component to the
+/// other.
 pub(crate) fn along(neighbors: &[Vec<usize>]) -> Vec<usize> {
     let mut order = Vec::with_capacity(neighbors.len());
     let mut placed = vec![false; neighbors.len()];
@@ -121,7 +121,7 @@ pub(crate) fn along(neighbors: &[Vec<usize>]) -> Vec<usize> {
         if placed[vertex] {
             continue;
         }
-        // The vertex reached last lies at an end.
+        // The vertex reached last lies at an end of its component.
         let begin = order.len();
         visit(vertex, neighbors, &mut placed, &mut order);
         let end = order[order.len() - 1];
@@ -133,7 +133,7 @@ pub(crate) fn along(neighbors: &[Vec<usize>]) -> Vec<usize> {
     order
 }
 
-/// Appends the piece that holds `first`, nearer vertices first, of equally near ones those with few neighbors.
+/// Appends the component of `first` in breadth-first order; the new neighbors of a vertex by increasing degree.
 fn visit(first: usize, neighbors: &[Vec<usize>], placed: &mut [bool], order: &mut Vec<usize>) {
     let mut next = order.len();
     placed[first] = true;
@@ -154,7 +154,7 @@ fn visit(first: usize, neighbors: &[Vec<usize>], placed: &mut [bool], order: &mu
 mod tests {
     use super::*;
 
-    /// The neighbors of each place of a grid, itself among them, numbered at random.
+    /// Neighbors of each node of a grid, itself among them, with scrambled numbers.
     fn grid(columns: usize, rows: usize) -> Vec<Vec<usize>> {
         let count = columns * rows;
         // 7 is prime to the count, so this is a permutation.
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn an_order_along_a_strip_keeps_neighbors_near() {
+    fn order_along_a_strip_keeps_neighbors_near() {
         let neighbors = grid(40, 4);
         let order = along(&neighbors);
         let mut place = vec![usize::MAX; order.len()];
@@ -186,12 +186,12 @@ mod tests {
             others.map(|&o| place[o].abs_diff(place[vertex])).max()
         };
         let widest = (0..order.len()).filter_map(apart).max();
-        // As wide as the strip, and one more where a corner begins the order.
+        // The bound is the width of the strip, and one more where a corner begins the order.
         assert!(widest <= Some(5), "{widest:?}");
     }
 
     #[test]
-    fn a_factored_matrix_gives_back_what_it_was_multiplied_with() {
+    fn factored_matrix_solves_a_known_system() {
         let neighbors = grid(9, 5);
         let count = neighbors.len();
         let mut matrix = Envelope::zeros(&neighbors);

@@ -1,18 +1,18 @@
-//! What a step does to every vertex, axis by axis on columns, compiled for the processor at hand.
+//! Vertex updates of a step, axis by axis on columns, with SIMD dispatch at run time.
 
 use pulp::{Simd, WithSimd};
 use voxsoft_solid::strips::Columns;
 
-/// Terms that are summed side by side: the order of a sum does not depend on the processor. Columns are
-/// padded to a multiple.
+/// Number of parallel partial sums: the order of a sum does not depend on the processor. Columns are padded to a
+/// multiple.
 const STRANDS: usize = 8;
 
-/// Runs a loop of plain arithmetic, compiled for the processor at hand.
+/// Runs a loop of plain arithmetic with the SIMD instructions found at run time.
 fn dispatch<Op: WithSimd>(op: Op) -> Op::Output {
     pulp::Arch::new().dispatch(op)
 }
 
-/// As [`crate::damping::frequency`].
+/// Estimates the frequency of the present motion on columns, see [`crate::damping::frequency`].
 pub(crate) fn frequency(
     velocities: &Columns,
     before: &Columns,
@@ -38,7 +38,7 @@ pub(crate) fn frequency(
     }
 }
 
-/// The kinetic energy.
+/// Kinetic energy.
 pub(crate) fn kinetic_energy(velocities: &Columns, masses: &[f64]) -> f64 {
     let twice = velocities
         .axes()
@@ -72,7 +72,7 @@ impl WithSimd for Difference<'_> {
     }
 }
 
-/// The sums `v·(f_before − f_now)` and `v·M v` for one axis.
+/// Sums `v·(f_before − f_now)` and `v·M v` for one axis.
 fn stiffness_and_inertia(
     velocity: &[f64],
     before: &[f64],
@@ -121,8 +121,7 @@ pub(crate) struct Advance<'a> {
     pub velocity: &'a mut [f64],
     pub force: &'a [f64],
     pub inverse_masses: &'a [f64],
-    /// All bits set where the axis is free, none where it is held: a velocity that is not a number
-    /// stops there too.
+    /// Bit mask: all bits set where the axis is free, none where it is held; it also clears a NaN velocity.
     pub free: &'a [u64],
     pub keep: f64,
     pub gain: f64,

@@ -1,22 +1,22 @@
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Breakdown, Problem, Solution, State, Status};
 
-/// The answer of a run: the last good state and how it was reached.
+/// Answer of a run: the last good state and statistics of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
     /// The last good state.
     pub state: State,
-    /// How the run ended.
+    /// Status at the end of the run.
     pub status: Status,
-    /// The residual force without units, see [`voxsoft_solid::balance::Balance`].
+    /// Relative residual force, dimensionless, see [`voxsoft_solid::balance::Balance`].
     pub residual: f64,
     /// Substeps (dynamics) or steps (relaxation) taken, repeated ones counted.
     pub steps: u64,
-    /// How often the step was halved.
+    /// Number of halvings of the step.
     pub back_offs: u32,
     /// The last substep in s; zero for relaxation, which has no physical time.
     pub substep: f64,
-    /// Where and when it broke down, for [`Status::Diverged`].
+    /// Place and time of the breakdown, for [`Status::Diverged`].
     pub breakdown: Option<Breakdown>,
 }
 
@@ -36,7 +36,7 @@ impl Answer {
     }
 }
 
-/// The state at rest, or at other positions in m.
+/// Start state: the rest pose, or given positions in m.
 pub(crate) fn start_at(problem: &Problem, positions: Option<&[Vec3]>) -> State {
     let mut state = State::at_rest(problem.body());
     if let Some(positions) = positions {
@@ -45,9 +45,9 @@ pub(crate) fn start_at(problem: &Problem, positions: Option<&[Vec3]>) -> State {
     state
 }
 
-/// How often the step may be halved before a run counts as diverged.
+/// Most halvings of the step before a run counts as diverged.
 pub(crate) const MAX_BACK_OFFS: u32 = 10;
 
-/// A residual this many times the loads and reactions is no motion that they could cause. Unstable
-/// steps pass 1e3 within a few dozen steps; the sound transients in the tests stay under 10.
+/// Residual over loads and reactions above which a step has blown up, as no sound motion reaches it. Unstable steps
+/// pass 1e3 within a few dozen steps; the sound transients in the tests stay under 10.
 pub(crate) const BLOW_UP_EXCESS: f64 = 300.0;

@@ -1,4 +1,4 @@
-//! Problems on which strips and single vertices are compared.
+//! Sample problems for comparing strips with single vertices.
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
@@ -38,7 +38,7 @@ fn vertices(body: &Body, inside: impl Fn(&Vec3) -> bool) -> Vec<u32> {
         .collect()
 }
 
-/// An inflated box that sags, one that is pulled and turned, one that stands on the floor.
+/// A hollow box under three loads: inflated and sagging, pulled and twisted, and standing on the floor.
 pub(crate) fn problems() -> Vec<Problem> {
     let (body, triangles) = hollow();
     let gravity = Load::gravity([0.0, 0.0, -9.81]);

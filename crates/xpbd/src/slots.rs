@@ -4,18 +4,18 @@ use voxsoft_solid::strips::{Columns, Strips};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{ExternalForce, Load, Problem, Vertices};
 
-/// A load that follows the body, on the few vertices that it joins, which are gathered for it.
+/// A follower load on its vertices, which are gathered for it.
 struct Follower {
-    /// The index of the load.
+    /// Index of the load.
     load: usize,
-    /// The load on vertices numbered from zero.
+    /// Load on vertices numbered from zero.
     kind: Box<dyn ExternalForce>,
-    /// The slots of those vertices.
+    /// Slots of those vertices.
     slots: Vec<u32>,
     rest: Vec<Vec3>,
     masses: Vec<f64>,
     positions: Vec<Vec3>,
-    /// All external forces on them in N.
+    /// External forces on them in N.
     forces: Vec<Vec3>,
 }
 
@@ -61,16 +61,16 @@ impl Follower {
     }
 }
 
-/// External forces and prescribed motions. The problem and its strips come with every call, so that a run
-/// that goes on between calls can own them beside this.
+/// External forces and prescribed motions. The problem and its strips are arguments of every call, so that a run that
+/// continues between calls can own them beside this.
 pub(crate) struct SlotProblem {
     followers: Vec<Follower>,
-    /// The forces in N that do not follow the body, at the time they were last asked for.
+    /// Dead loads in N at the time of the last request.
     dead: Columns,
     dead_vary: bool,
     clamps_move: bool,
     placed: bool,
-    /// For each axis, all bits set where it is free to move, none where it is held or no vertex is.
+    /// Bit mask for each axis: all bits set where it is free, none where it is held or in slots without a vertex.
     pub free: [Vec<u64>; 3],
 }
 
@@ -98,7 +98,7 @@ impl SlotProblem {
         slots
     }
 
-    /// After the histories of loads have changed.
+    /// Updates loads after their histories have changed.
     pub fn renew_loads(&mut self, problem: &Problem, strips: &Strips) {
         let varies = |load: &Load| !load.kind.follows() && !load.history.is_constant();
         self.dead_vary = problem.loads().iter().any(varies);
@@ -138,7 +138,7 @@ impl SlotProblem {
         }
     }
 
-    /// Puts held vertices where their clamps want them, as [`Problem::place_clamps`] does.
+    /// Moves held vertices to the targets of their clamps, like [`Problem::place_clamps`].
     pub fn place_clamps(
         &mut self,
         problem: &Problem,
@@ -164,7 +164,7 @@ impl SlotProblem {
         }
     }
 
-    /// After new positions came from elsewhere, clamps are placed again.
+    /// Places clamps again at the next call, after positions were set from elsewhere.
     pub fn forget_placed(&mut self) {
         self.placed = false;
     }

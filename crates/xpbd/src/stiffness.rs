@@ -2,23 +2,23 @@ use voxsoft_solid::strips::{Columns, Strips};
 use voxsoft_solid::vector::{Vec3, axpy, dot, scale};
 use voxsoft_solid::{Problem, elastic};
 
-/// Steps of Lanczos' method for the largest eigenvalue. It is approached from below: within 3 % on all bodies of
-/// the tests and the paper's study, which the callers' safety factors cover.
+/// Steps of the Lanczos method for the largest eigenvalue. It is approached from below: within 3 % on all bodies of the
+/// tests and the paper's study, which the callers' safety factors cover.
 const LANCZOS_STEPS: usize = 12;
-/// Halvings of the interval that holds an eigenvalue: to a millionth.
+/// Bisection steps for an eigenvalue: to a millionth of the interval.
 const HALVINGS: usize = 20;
 
-/// What membranes add to a stiffness matrix.
+/// Contribution of membranes to a stiffness matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Membranes {
-    /// All they can: they are taut.
+    /// Full stiffness: membranes are taut.
     Taut,
-    /// Nothing: their stiffness is dealt with elsewhere.
+    /// No stiffness: membranes are handled separately.
     Apart,
 }
 
-/// The largest eigenvalue of `M⁻¹K` at rest, for the masses given (kg): the square of the highest
-/// frequency in rad²/s². A body that has strips brings them, which is quicker.
+/// Largest eigenvalue of `M⁻¹K` at rest, for the given masses (kg): the square of the highest frequency in rad²/s². A
+/// body with strips passes them, which is faster.
 pub(crate) fn largest_eigenvalue(
     problem: &Problem,
     masses: &[f64],
@@ -45,7 +45,7 @@ pub(crate) fn largest_eigenvalue(
         .for_each(|d| *d = scale(1.0 / norm, *d));
     let mut before = vec![[0.0; 3]; count];
     let mut product = vec![[0.0; 3]; count];
-    // The matrix in the basis of the directions: its diagonal, and what is beside it.
+    // Tridiagonal matrix in the Lanczos basis: its diagonal and its off-diagonal.
     let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
     for _ in 0..LANCZOS_STEPS {
         match &mut on_strips {
@@ -74,7 +74,7 @@ pub(crate) fn largest_eigenvalue(
         }
         hold(problem, &mut product);
         let norm = square(&product).sqrt();
-        // Nothing is left beyond the directions so far: they hold the answer.
+        // The Krylov space is exhausted: it contains the eigenvalue.
         if norm <= f64::EPSILON * along {
             break;
         }
@@ -88,7 +88,7 @@ pub(crate) fn largest_eigenvalue(
     largest_of_tridiagonal(&diagonal, &beside)
 }
 
-/// The largest eigenvalue of a symmetric matrix that is zero but for its diagonal and the places beside it.
+/// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection.
 fn largest_of_tridiagonal(diagonal: &[f64], beside: &[f64]) -> f64 {
     let beside_of = |i: usize| beside.get(i).map_or(0.0, |b| b.abs());
     let bound = |i: usize| diagonal[i] + beside_of(i) + if i > 0 { beside_of(i - 1) } else { 0.0 };
@@ -96,7 +96,7 @@ fn largest_of_tridiagonal(diagonal: &[f64], beside: &[f64]) -> f64 {
     let mut high = (0..diagonal.len()).map(bound).fold(f64::MIN, f64::max);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        // All pivots of `middle − matrix` are positive where no eigenvalue is above.
+        // All pivots of `middle − matrix` are positive if no eigenvalue is above `middle`.
         let mut pivot = f64::INFINITY;
         let is_above = (0..diagonal.len()).all(|i| {
             let link = if i > 0 { beside_of(i - 1) } else { 0.0 };
@@ -122,7 +122,7 @@ fn hold(problem: &Problem, direction: &mut [Vec3]) {
     }
 }
 
-/// A start vector with a part in every mode: fractional parts of multiples of irrational numbers.
+/// Start vector with a component in every mode: fractional parts of multiples of irrational numbers.
 fn scrambled(vertex: usize) -> Vec3 {
     let fraction = |irrational: f64| (vertex as f64 * irrational).fract() - 0.5;
     [
@@ -138,7 +138,7 @@ mod tests {
     use crate::sample_problems::problems;
 
     #[test]
-    fn the_largest_eigenvalue_of_a_chain_is_known() {
+    fn largest_eigenvalue_of_a_chain() {
         // 2 on the diagonal and −1 beside it: 2 + 2 cos(π/(n + 1)).
         let exact = 2.0 + 2.0 * (std::f64::consts::PI / 8.0).cos();
         let found = largest_of_tridiagonal(&[2.0; 7], &[-1.0; 6]);
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_eigenvalue_is_that_of_many_power_iterations() {
+    fn largest_eigenvalue_agrees_with_power_iteration() {
         for problem in &problems() {
             let body = problem.body();
             let count = body.rest().len();

@@ -1,7 +1,7 @@
 //! Viscous stress of hyperelastic voxels.
 //!
-//! Both kinds act on the deviatoric stress `s` in the voxel's rotated frame (rubber's volume answers
-//! elastically):
+//! Both kinds act on the deviatoric stress `s` in the voxel's rotated frame (the volumetric response of rubber is
+//! elastic):
 //!
 //! - Kelvin–Voigt with the retardation time `τ`: `τ ds/dt`.
 //! - Prony branches `(γ, τ)`: `dq/dt + q/τ = γ ds/dt`, integrated exactly for a rate that is constant in a
@@ -12,12 +12,12 @@ use voxsoft_solid::Body;
 use voxsoft_solid::brick::BrickStress;
 use voxsoft_solid::vector::Vec3;
 
-/// The memory of all voxels.
+/// Viscous history variables of all voxels.
 pub(crate) struct Viscosity {
     retardation: f64,
     before: Vec<BrickStress>,
     branches: Vec<Vec<BrickStress>>,
-    /// No rate is known at the first substep, nor after a jump back.
+    /// True at the first substep and after a jump back, where no rate is known.
     fresh: bool,
 }
 
@@ -40,7 +40,7 @@ impl Viscosity {
         }
     }
 
-    /// Forgets the last stress, whose rate would mean nothing after a jump; branches stay.
+    /// Discards the last stress, whose rate is meaningless after a jump; branches stay.
     pub fn restart(&mut self) {
         self.fresh = true;
     }

@@ -1,4 +1,4 @@
-//! Relaxation, dynamics and live runs keep the laws of solvers and steppers.
+//! Conformance of relaxation, dynamics and live runs to the laws of solvers and steppers.
 
 mod common;
 
@@ -16,7 +16,7 @@ fn rubber() -> Problem {
     Problem::new(body, vec![clamp], vec![Load::gravity(GRAVITY)], None).unwrap()
 }
 
-/// A short beam, which swings fast and is soon at rest.
+/// Short beam, which swings fast and is soon at rest.
 fn lattice() -> Problem {
     let mesh = block([6, 2, 2], 5e-3);
     let clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));
@@ -24,7 +24,7 @@ fn lattice() -> Problem {
     problem(&mesh, 60e3, 400e3, vec![clamp], gravity, None)
 }
 
-/// A block that lies on a floor.
+/// Block that lies on a floor.
 fn lying() -> Problem {
     let mesh = block([4, 4, 3], 5e-3);
     let mut clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));
@@ -40,7 +40,7 @@ fn lying() -> Problem {
     )
 }
 
-/// A short beam with a spring to a fixed point, which is 25 mm from the beam's end at rest.
+/// Short beam with a spring to a fixed point, which is 25 mm from the beam's end at rest.
 fn sprung(length: f64, loads: Vec<Load>) -> Problem {
     let mut mesh = block([6, 2, 2], 5e-3);
     let vertices = where_(&mesh, |p| p[0] > 30e-3 - 1e-9);
@@ -57,7 +57,7 @@ fn sprung(length: f64, loads: Vec<Load>) -> Problem {
 }
 
 #[test]
-fn relaxation_keeps_the_laws_of_a_solver() {
+fn relaxation_conforms_to_solver() {
     let settings = Relaxation::default();
     for problem in [lattice(), lying(), rubber(), sprung(10e-3, vec![])] {
         check_solver(&settings, &problem, settings.tolerance).unwrap();
@@ -65,7 +65,7 @@ fn relaxation_keeps_the_laws_of_a_solver() {
 }
 
 #[test]
-fn dynamics_keeps_the_laws_of_a_solver() {
+fn dynamics_conforms_to_solver() {
     let settings = Dynamics::default();
     for problem in [lattice(), lying(), rubber(), sprung(10e-3, vec![])] {
         check_solver(&settings, &problem, settings.tolerance).unwrap();
@@ -73,8 +73,8 @@ fn dynamics_keeps_the_laws_of_a_solver() {
 }
 
 #[test]
-fn live_runs_keep_the_laws_of_a_stepper() {
-    // Bodies with voxels of rubber take the plain loops anyway.
+fn live_runs_conform_to_stepper() {
+    // Bodies with hyperelastic voxels take the plain loops anyway.
     for (problem, deterministic) in [
         (lattice(), false),
         (lattice(), true),

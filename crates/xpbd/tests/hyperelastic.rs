@@ -1,4 +1,4 @@
-//! Hyperelastic voxels over time: the frequency and decay of a bar do not depend on the step.
+//! Dynamics of hyperelastic voxels: frequency and decay of a bar, independent of the step.
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -11,7 +11,7 @@ const YOUNG: f64 = 60e3;
 const DENSITY: f64 = 1000.0;
 const LENGTH: f64 = 0.2;
 
-/// A bar of voxels held at x = 0 on all axes' symmetry: along x there only, so that it stays uniaxial.
+/// Bar of voxels held at x = 0 along x only, and on planes of symmetry along y and z, so that it stays uniaxial.
 fn bar(material: HyperelasticMaterial, pull: f64) -> Problem {
     let side = 0.02;
     let mut grid = Grid::empty([10, 1, 1], [0.0; 3], side, u64::MAX).unwrap();
@@ -43,8 +43,8 @@ fn bar(material: HyperelasticMaterial, pull: f64) -> Problem {
     Problem::new(body, (0..3).map(slide).collect(), vec![load], None).unwrap()
 }
 
-/// Times and the size of the lowest mode of a bar that is let go from it: the projection on the
-/// mode's shape leaves out what else rings.
+/// Times and amplitudes of the lowest mode of a bar released from it; the projection on the mode's shape excludes other
+/// modes.
 fn swing(material: HyperelasticMaterial, settings: &Dynamics) -> Vec<(f64, f64)> {
     let problem = bar(material, 0.0);
     let rest = problem.body().rest();
@@ -105,7 +105,7 @@ fn settings(step: f64, retardation: f64) -> Dynamics {
 }
 
 #[test]
-fn a_bar_swings_at_its_closed_form_frequency_for_any_step() {
+fn bar_frequency_matches_closed_form_for_any_step() {
     // Lowest mode of a rod: ω = π/2L √(E/ρ); ten voxels with lumped masses are 0.1 % slow, and ν = 0.45
     // adds lateral inertia (νπr/2L)²/2 with r² = side²/6: below 0.1 %.
     let expected = PI / (2.0 * LENGTH) * (YOUNG / DENSITY).sqrt();
@@ -121,7 +121,7 @@ fn a_bar_swings_at_its_closed_form_frequency_for_any_step() {
 }
 
 #[test]
-fn kelvin_voigt_damps_by_half_the_square_of_the_frequency() {
+fn kelvin_voigt_decay_is_half_the_squared_frequency() {
     // x'' + τω² x' + ω² x = 0 decays with τω²/2. For a bar the retarded part of E is the deviatoric one: all
     // but the part of the volume, E/9K = (1 − 2ν)/3 of the compliance.
     let poisson = 0.45;
@@ -139,8 +139,8 @@ fn kelvin_voigt_damps_by_half_the_square_of_the_frequency() {
 }
 
 #[test]
-fn prony_branches_creep_to_the_constants_at_rest() {
-    // A bar under a sudden force: at once the strain of the stiff modulus E/(1 − g), in the end that of E.
+fn prony_branches_creep_to_the_long_term_modulus() {
+    // Bar under a sudden force: at once the strain of the instantaneous modulus E/(1 − g), in the end that of E.
     let (share, time) = (0.5, 0.05);
     let material = HyperelasticMaterial::neo_hookean(YOUNG, 0.45, DENSITY)
         .unwrap()

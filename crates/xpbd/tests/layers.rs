@@ -1,4 +1,4 @@
-//! Bodies with layers over time: the rest and the motion of body and membranes together.
+//! Dynamics of bodies with membranes: equilibrium and motion.
 
 mod common;
 
@@ -13,7 +13,7 @@ use voxsoft_solid::{
 };
 use voxsoft_xpbd::{Damping, Dynamics, Live, Relaxation, Status};
 
-/// 3,000 N/m; a layer of voxels of the bodies below has 300.
+/// Fabric of 3,000 N/m; a layer of voxels of the bodies below has 300.
 const FABRIC: MembraneMaterial = MembraneMaterial {
     young: 30e6,
     poisson: 0.3,
@@ -52,7 +52,7 @@ fn bond(mesh: &mut Mesh, h: f64, z: f64, material: MembraneMaterial) {
     mesh.membranes.extend(membrane);
 }
 
-/// A cantilever of 8 × 2 × 2 voxels that sags, its upper side or its lower one bonded to a membrane.
+/// Cantilever of 8 × 2 × 2 voxels that sags, its upper side or its lower one bonded to a membrane.
 fn cantilever(material: Material, upper: bool, fabric: MembraneMaterial) -> Problem {
     let h = 5e-3;
     let mut mesh = block([8, 2, 2], h);
@@ -63,7 +63,7 @@ fn cantilever(material: Material, upper: bool, fabric: MembraneMaterial) -> Prob
 }
 
 #[test]
-fn the_rest_is_that_of_the_energies_for_any_step() {
+fn equilibrium_is_that_of_the_energies_for_any_step() {
     for (case, material) in [rubber(), lattice()].into_iter().enumerate() {
         for upper in [true, false] {
             let problem = cantilever(material.clone(), upper, FABRIC);
@@ -96,15 +96,15 @@ fn the_rest_is_that_of_the_energies_for_any_step() {
 }
 
 #[test]
-fn a_stiff_sheet_comes_to_rest_with_substeps_beyond_what_its_waves_would_stand() {
+fn stiff_membrane_rests_with_substeps_beyond_its_explicit_limit() {
     let stiff = MembraneMaterial {
         young: 3e9,
         ..FABRIC
     };
     let problem = cantilever(rubber(), true, stiff);
     let body = problem.body();
-    // Rows of the membrane that swing against each other: their Rayleigh quotient is at most the square of the
-    // highest frequency, two over which explicit forces stand.
+    // Mode of membrane rows in antiphase: its Rayleigh quotient is at most the square of the highest frequency;
+    // explicit forces are stable up to a substep of two over it.
     let h = 5e-3;
     let zigzag: Vec<Vec3> = body
         .rest()
@@ -137,12 +137,12 @@ fn a_stiff_sheet_comes_to_rest_with_substeps_beyond_what_its_waves_would_stand()
 }
 
 #[test]
-fn a_free_body_keeps_its_momenta() {
+fn free_body_keeps_its_momenta() {
     let h = 5e-3;
     let bodies = [
         (rubber(), 30e6, 0.05),
         (rubber(), 300e6, 0.05),
-        // Sweeps of a lattice take energy away.
+        // Sweeps of a lattice dissipate energy.
         (lattice(), 30e6, 0.15),
     ];
     for (case, (material, young, sway)) in bodies.into_iter().enumerate() {
@@ -157,7 +157,7 @@ fn a_free_body_keeps_its_momenta() {
             *v = cross([3.0, 5.0, -8.0], *x);
             v[2] += 0.01 * x[0] * x[0] / (h * h);
         }
-        // Momentum without that of the fall, and angular momentum about the center of mass.
+        // Momentum without that of free fall, and angular momentum about the center of mass.
         let momenta = |state: &State| {
             let (mut center, mut linear, mut angular) = ([0.0; 3], [0.0; 3], [0.0; 3]);
             for ((x, v), m) in state.positions.iter().zip(&state.velocities).zip(masses) {
@@ -169,7 +169,7 @@ fn a_free_body_keeps_its_momenta() {
             axpy(&mut linear, -total * state.time, GRAVITY);
             (linear, angular)
         };
-        // In the frame that falls with the body.
+        // Energy in the frame that falls with the body.
         let energy = |state: &State| {
             let mut falling = state.clone();
             for v in &mut falling.velocities {
@@ -179,7 +179,7 @@ fn a_free_body_keeps_its_momenta() {
         };
         let settings = Dynamics {
             damping: Damping::Rate(0.0),
-            // Not so long that it falls farther than a sound run goes.
+            // A longer fall would exceed the travel limit of a sound run.
             end_time: Some(0.2),
             ..Dynamics::default()
         };
@@ -201,9 +201,9 @@ fn a_free_body_keeps_its_momenta() {
             ControlFlow::Continue(())
         });
         assert_eq!((answer.status, answer.back_offs), (Status::EndTime, 0));
-        // Rounding. Angular momentum is kept with the inertia that membranes are given (h⁴ beyond the masses: 2 %
-        // of it here, 0.1 % with half the substep); energy but for what explicit steps let swing, and what
-        // goes in where membranes change between taut and slack.
+        // Linear momentum is kept up to rounding. Angular momentum is kept with the scaled inertia of membranes (h⁴
+        // beyond the masses: 2 % of it here, 0.1 % with half the substep); energy up to the oscillation of explicit
+        // steps and the gain where membranes change between taut and slack.
         assert!(worst[0] < 1e-10, "{case}: {worst:?}");
         assert!(worst[1] < 0.03, "{case}: {worst:?}");
         assert!(worst[2] < sway, "{case}: {worst:?}");
@@ -211,7 +211,7 @@ fn a_free_body_keeps_its_momenta() {
 }
 
 #[test]
-fn bits_do_not_depend_on_threads() {
+fn bitwise_result_is_independent_of_threads() {
     let run = |threads: usize| {
         let mut live = Live::new(cantilever(rubber(), true, FABRIC), Dynamics::default());
         live.grab(0, 3, [0.0, 0.0, 0.03], 20.0).unwrap();
@@ -225,8 +225,8 @@ fn bits_do_not_depend_on_threads() {
     }
 }
 
-/// A bar of rubber between two membranes, pulled a little so that they stay taut, let go from its lowest mode: the
-/// frequency in rad/s.
+/// Bar of rubber between two membranes, pulled a little so that they stay taut, released from its lowest mode: measured
+/// and closed-form frequency in rad/s.
 fn bar_between_membranes(fabric: MembraneMaterial, step: f64) -> (f64, f64) {
     let (h, cells) = (0.02, 10);
     let length = h * cells as f64;
@@ -294,11 +294,11 @@ fn bar_between_membranes(fabric: MembraneMaterial, step: f64) -> (f64, f64) {
 }
 
 #[test]
-fn a_bar_between_membranes_swings_at_its_closed_form_frequency() {
+fn frequency_of_bar_between_membranes_matches_closed_form() {
     // Ten voxels with lumped masses are 0.1 % slow and the lateral inertia of ν = 0.45 adds less (see
-    // `hyperelastic.rs`); a strain of 10⁻³ stiffens a membrane by 0.3 %. The third has 2,000 times the stiffness of
-    // the bar, and its substep, 4 over the highest frequency, makes it 1.1 % slow. (Wrinkled across with a hundredth of its
-    // stiffness left, as it once was, it was faster by ν²/(1 − ν²)/200 = 0.13 %.)
+    // `hyperelastic.rs`); a strain of 10⁻³ stiffens a membrane by 0.3 %. The third has 2,000 times the stiffness of the
+    // bar, and its substep, 4 over the highest frequency, makes it 1.1 % slow. (With a hundredth of its stiffness left
+    // across the wrinkles it would be faster by ν²/(1 − ν²)/200 = 0.13 %.)
     for (young, step, slack) in [(3e6, 2e-3, 5e-3), (18e6, 1e-3, 5e-3), (2e9, 1e-3, 1.2e-2)] {
         let fabric = MembraneMaterial {
             young,

@@ -1,4 +1,4 @@
-//! A run that goes on between calls: the same rest as `simulate`, loads and grabs that are felt at once.
+//! Interactive runs: the equilibrium of `simulate`, and immediate response to loads and grabs.
 
 mod common;
 
@@ -11,7 +11,7 @@ use voxsoft_solid::{
 };
 use voxsoft_xpbd::{Damping, Dynamics, Live, Status};
 
-/// A short beam of lattice voxels that sags.
+/// Short beam of lattice voxels that sags.
 fn stub() -> Problem {
     let mesh = block([6, 2, 2], 5e-3);
     let clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));
@@ -25,7 +25,7 @@ fn stub() -> Problem {
     )
 }
 
-/// The same of hyperelastic voxels.
+/// Short beam of hyperelastic voxels that sags.
 fn rubber_stub() -> Problem {
     let mesh = Mesh {
         block_fraction: vec![1.0; 24],
@@ -58,7 +58,7 @@ fn settle(live: &mut Live) -> Look {
     panic!("not at rest: {:?}", live.advance(0));
 }
 
-/// The largest distance between two sets of positions over the largest displacement of the second.
+/// Largest distance between two sets of positions over the largest displacement of the second.
 fn apart(problem: &Problem, a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     let largest = |pairs: &mut dyn Iterator<Item = ([f64; 3], [f64; 3])>| {
         pairs.map(|(a, b)| norm(sub(a, b))).fold(0.0, f64::max)
@@ -69,7 +69,7 @@ fn apart(problem: &Problem, a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
 }
 
 #[test]
-fn comes_to_the_rest_of_simulate() {
+fn live_run_reaches_equilibrium_of_simulate() {
     for (case, problem) in [stub(), rubber_stub()].into_iter().enumerate() {
         let settings = Dynamics {
             tolerance: 1e-5,
@@ -93,7 +93,7 @@ fn comes_to_the_rest_of_simulate() {
 }
 
 #[test]
-fn a_pull_balances_the_body_and_letting_go_brings_it_back() {
+fn grab_balances_the_body_and_release_restores_it() {
     for (case, problem) in [stub(), rubber_stub()].into_iter().enumerate() {
         let vertex = corner(&problem) as usize;
         let settings = Dynamics {
@@ -115,7 +115,7 @@ fn a_pull_balances_the_body_and_letting_go_brings_it_back() {
             let force = live.grabs()[0].1.force(state.positions[vertex]);
             let body = balance(live.problem(), &state.positions, state.time).net[vertex];
             for axis in 0..3 {
-                // The residual is below 1e-6 of the loads, of which the pull is the largest.
+                // The residual is below 1e-6 of the loads, the largest of which is the pull.
                 let error = (force[axis] + body[axis]).abs();
                 assert!(
                     error < 1e-5 * norm(force).max(1e-2),
@@ -137,7 +137,7 @@ fn a_pull_balances_the_body_and_letting_go_brings_it_back() {
 }
 
 #[test]
-fn no_stiffness_blows_up() {
+fn any_grab_stiffness_is_stable() {
     for damping in [Damping::Critical, Damping::Rate(20.0)] {
         let problem = stub();
         let vertex = corner(&problem);
@@ -147,7 +147,7 @@ fn no_stiffness_blows_up() {
         };
         let mut live = Live::new(problem, settings);
         let mut target = live.state().positions[vertex as usize];
-        // Farther than the body is thick.
+        // The target is farther away than the body is thick.
         target[2] += 15e-3;
         live.grab(0, vertex, target, 1e12).unwrap();
         let look = settle(&mut live);
@@ -158,7 +158,7 @@ fn no_stiffness_blows_up() {
 }
 
 #[test]
-fn a_grab_moves_and_two_may_hold_one_vertex() {
+fn grab_moves_and_two_may_hold_one_vertex() {
     let problem = stub();
     let vertex = corner(&problem);
     let mut live = Live::new(
@@ -185,7 +185,7 @@ fn a_grab_moves_and_two_may_hold_one_vertex() {
 }
 
 #[test]
-fn loads_follow_at_once_and_get_their_histories_back() {
+fn loads_change_at_once_and_restore_their_histories() {
     let mesh = block([6, 2, 2], 5e-3);
     let clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));
     let end = where_(&mesh, |p| p[0] > 29e-3);
@@ -225,9 +225,9 @@ fn loads_follow_at_once_and_get_their_histories_back() {
     assert!(live.set_load(0, Some(f64::NAN)).is_err());
 }
 
-/// A step far too long blows up, is halved until it holds, and one that no halving helps is told.
+/// A step far too long blows up and is halved until it is stable; one that no halving stabilizes is reported.
 #[test]
-fn a_step_too_long_is_halved_and_a_hopeless_one_is_reported() {
+fn too_long_step_is_halved_and_hopeless_step_is_reported() {
     let long = |substeps| Dynamics {
         time_step: 0.02,
         substeps: Some(substeps),
@@ -273,7 +273,7 @@ fn a_step_too_long_is_halved_and_a_hopeless_one_is_reported() {
 }
 
 #[test]
-fn goes_on_from_positions_of_the_callers() {
+fn seek_continues_from_given_positions() {
     let problem = beam(20e3, 100e3);
     let mut live = Live::new(problem, Dynamics::default());
     settle(&mut live);
@@ -282,7 +282,7 @@ fn goes_on_from_positions_of_the_callers() {
     assert_eq!((live.state().time, live.advance(0).substeps), (0.0, 0));
     live.advance(50);
     live.seek(rest.clone(), time).unwrap();
-    // It was at rest there, and is so again at the first look.
+    // The body was at rest there, and is so again at the first check.
     let look = live.advance(64);
     assert_eq!(look.status, LiveStatus::AtRest);
     assert!(apart(live.problem(), &live.state().positions, &rest) < 1e-3);
@@ -292,10 +292,10 @@ fn goes_on_from_positions_of_the_callers() {
     assert!(live.grab(0, 0, [0.0; 3], 0.0).is_err());
 }
 
-/// The same bits for any number of threads and any pieces of calls, on strips and with a hand on it; the
-/// deterministic way differs from the quick one by rounding alone.
+/// Identical bits for any number of threads and any split into calls, on strips and with a grab; the deterministic mode
+/// differs from the fast one by rounding alone.
 #[test]
-fn bits_do_not_depend_on_threads_or_calls() {
+fn bitwise_result_is_independent_of_threads_and_calls() {
     // Sixteen layers make four slabs and more.
     let mesh = block([16, 4, 4], 5e-3);
     let clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));
@@ -340,7 +340,7 @@ fn bits_do_not_depend_on_threads_or_calls() {
         }
     }
     let problem = problem(&mesh, 30e3, 100e3, vec![], vec![], None);
-    // 240 substeps of rounding 1e-16 to 1e-12, as in `strips_and_vertices_move_alike`.
+    // 240 substeps of rounding 1e-16 to 1e-12, as in `strips_and_vertices_agree_in_motion`.
     let error = apart(&problem, &run(1, 240, true), &run(1, 240, false));
     assert!(error < 1e-10, "{error:.1e}");
 }

@@ -1,4 +1,4 @@
-//! Motion over time against closed forms.
+//! Dynamics against closed forms.
 
 mod common;
 
@@ -7,7 +7,7 @@ use voxsoft_solid::{Clamp, History, Load, PointForces};
 use voxsoft_xpbd::{Damping, Dynamics, Status};
 
 #[test]
-fn a_free_body_falls_as_a_whole() {
+fn free_body_falls_rigidly() {
     let mesh = block([3, 2, 2], 5e-3);
     let gravity = vec![Load::gravity(common::GRAVITY)];
     let problem = problem(&mesh, 20e3, 100e3, vec![], gravity, None);
@@ -31,7 +31,7 @@ fn a_free_body_falls_as_a_whole() {
 }
 
 #[test]
-fn a_heavy_column_swings_at_its_closed_form_frequency() {
+fn axial_frequency_of_column_matches_closed_form() {
     // Axial vibration of a bar clamped at one end: f = c/(4 L), c² = E/ρ for a slender bar.
     let (h, edge, bulk) = (5e-3, 20e3, 20e3);
     let mesh = block([40, 2, 2], h);
@@ -39,7 +39,7 @@ fn a_heavy_column_swings_at_its_closed_form_frequency() {
     let clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));
     let end = where_(&mesh, |p| p[0] > length - 1e-9);
     let pull = vec![[1e-4, 0.0, 0.0]; end.len()];
-    // Pulled slowly, let go at 1 s.
+    // Load history: pulled slowly, released at 1 s.
     let load = Load {
         kind: PointForces {
             vertices: end.clone(),
@@ -73,7 +73,7 @@ fn a_heavy_column_swings_at_its_closed_form_frequency() {
     let period = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64;
     let material = voxsoft_solid::LatticeMaterial::from_moduli(edge, bulk, DENSITY).unwrap();
     let expected = 4.0 * length / (material.young(h) / DENSITY).sqrt();
-    // The clamp hinders lateral contraction at one end and two voxels make a coarse section.
+    // The tolerance covers the clamp, which hinders lateral contraction, and the coarse section of two voxels.
     assert!(
         (period / expected - 1.0).abs() < 0.03,
         "{period} against {expected}"

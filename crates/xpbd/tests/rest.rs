@@ -1,4 +1,4 @@
-//! The state at rest is that of the energies, whatever the way there.
+//! Equilibrium of the energies, independent of solver, step and start.
 
 mod common;
 
@@ -8,12 +8,12 @@ use voxsoft_solid::vector::{norm, sub};
 use voxsoft_solid::{Clamp, Floor, History, Load, Motion, Pressure, State};
 use voxsoft_xpbd::{Damping, Dynamics, Relaxation, Status};
 
-/// The issue asks for 0.1 %; the tolerance on the residual (1e-4) bounds the error of the softest
-/// mode by about that much of the displacement.
+/// Required agreement of 0.1 %; the tolerance on the residual (1e-4) bounds the error of the softest mode by about that
+/// much of the displacement.
 const SAME: f64 = 1e-3;
 
 #[test]
-fn does_not_depend_on_step_substeps_sweeps_or_damping() {
+fn equilibrium_is_independent_of_step_substeps_sweeps_and_damping() {
     let problem = beam(20e3, 100e3);
     let reference = relax(
         &problem,
@@ -71,7 +71,7 @@ fn does_not_depend_on_step_substeps_sweeps_or_damping() {
 }
 
 #[test]
-fn a_step_too_long_is_backed_off_and_ends_at_the_same_rest() {
+fn too_long_step_is_halved_and_ends_at_the_same_rest() {
     let problem = beam(20e3, 1e6);
     let expected = tip(&problem, &relax(&problem, &Relaxation::default()));
     let coarse = Dynamics {
@@ -100,7 +100,7 @@ fn reactions_balance_the_loads() {
     let support = balance(&problem, positions, f64::INFINITY);
     let weight = 9.81 * problem.body().total_mass();
     assert!((norm(load) / weight - 1.0).abs() < 1e-12);
-    // Sums of leftover forces: at most the residual times the root of the number of vertices.
+    // Sum of residual forces: at most the residual times the root of the number of vertices.
     let force_error = norm(voxsoft_solid::vector::add(support.total_reaction(), load));
     assert!(force_error / weight < 1e-3, "{force_error}");
     let turn = voxsoft_solid::vector::add(support.total_moment(positions), moment);
@@ -108,7 +108,7 @@ fn reactions_balance_the_loads() {
 }
 
 #[test]
-fn a_floor_carries_the_weight_without_friction() {
+fn floor_carries_weight_without_friction() {
     let h = 5e-3;
     let mesh = block([4, 4, 4], h);
     let gravity = vec![Load::gravity(common::GRAVITY)];
@@ -122,7 +122,7 @@ fn a_floor_carries_the_weight_without_friction() {
         let support = balance(&problem, positions, f64::INFINITY).total_reaction();
         let weight = 9.81 * problem.body().total_mass();
         assert!((support[2] / weight - 1.0).abs() < 1e-3, "{support:?}");
-        // Without friction nothing holds the sole sideways: it spreads, and no sideways force acts.
+        // Without friction no sideways force acts on the sole, and it spreads.
         assert!(support[0].abs() < 1e-9 && support[1].abs() < 1e-9);
         let sole = where_(&mesh, |p| p[2] < 1e-9);
         let spread = |axis: usize| {
@@ -135,8 +135,8 @@ fn a_floor_carries_the_weight_without_friction() {
 }
 
 #[test]
-fn a_prescribed_stretch_meets_the_closed_form() {
-    // A bar pulled by 2 % along x with free sides: F = E ε A, and its sides shrink by ν ε.
+fn prescribed_stretch_matches_closed_form() {
+    // Bar pulled along x by the strain 1e-4 with free sides: F = E ε A, and its sides shrink by ν ε.
     let (h, edge, bulk, strain) = (2e-3, 20e3, 50e3, 1e-4);
     let mesh = block([12, 4, 4], h);
     let length = 12.0 * h;
@@ -192,7 +192,7 @@ fn a_prescribed_stretch_meets_the_closed_form() {
 }
 
 #[test]
-fn a_pressure_that_nothing_can_carry_diverges_with_place_and_time() {
+fn excessive_pressure_diverges_with_place_and_time() {
     let mut grid = voxsoft_voxel::Grid::empty([5, 5, 5], [0.0; 3], 5e-3, u64::MAX).unwrap();
     grid.fill_box([0.0; 3], [25e-3; 3], 1);
     grid.fill_box([5e-3; 3], [20e-3; 3], 0);
@@ -264,8 +264,8 @@ fn a_pressure_that_nothing_can_carry_diverges_with_place_and_time() {
 }
 
 #[test]
-fn a_crumpled_body_unfolds() {
-    // Vertices thrown by up to 0.6 of a voxel turn a good part of the tetrahedra inside out.
+fn crumpled_body_unfolds() {
+    // Vertices displaced by up to 0.6 of a voxel invert many of the tetrahedra.
     let h = 5e-3;
     let mesh = block([4, 2, 2], h);
     let clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));

@@ -1,4 +1,4 @@
-//! The sweep on strips against the textbook loop, constraint after constraint in the same order.
+//! Sweep on strips against the textbook loop, with constraints in the same order.
 
 #[path = "../examples/textbook/mod.rs"]
 mod textbook;
@@ -13,7 +13,7 @@ use voxsoft_solid::{Clamp, Problem};
 
 const GRAVITY: Vec3 = [0.0, 0.0, -9.81];
 
-/// The textbook's substeps on strips.
+/// Takes the textbook's substeps on strips.
 fn on_strips(problem: &Problem, strips: &Strips, substeps: usize, h: f64) -> Vec<Vec3> {
     let body = problem.body();
     let mut positions = Columns::zeros(strips.slots());
@@ -58,7 +58,7 @@ fn on_strips(problem: &Problem, strips: &Strips, substeps: usize, h: f64) -> Vec
 }
 
 #[test]
-fn a_sweep_on_strips_is_the_textbooks() {
+fn sweep_on_strips_matches_textbook() {
     let mesh = block([13, 12, 14], 5e-3);
     let clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));
     let block = problem(&mesh, 27e3, 100e3, vec![clamp], vec![], None);
@@ -76,14 +76,14 @@ fn a_sweep_on_strips_is_the_textbooks() {
             apart = f64::max(apart, norm(sub(*row, expected)));
             moved = f64::max(moved, norm(sub(expected, rest[vertex])));
         }
-        // Positions of 0.1 m are rounded to 1e-17 m, fifty times, and forces carry that on.
+        // Positions of 0.1 m are rounded to 1e-17 m, fifty times, and forces propagate the error.
         assert!(moved > 1e-3, "the body sinks by {moved} m");
         assert!(apart / moved < 1e-11, "{:.1e}", apart / moved);
     }
 }
 
 #[test]
-fn the_order_of_the_mesh_takes_each_constraint_once() {
+fn mesh_order_takes_each_constraint_once() {
     let problem = beam(27e3, 100e3);
     let mut listed = Textbook::new(&problem, GRAVITY);
     let mut sorted = Textbook::new(&problem, GRAVITY);

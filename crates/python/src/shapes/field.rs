@@ -1,4 +1,4 @@
-//! A field whose values a Python function gives: a triangle mesh, or the user's own.
+//! Implicit field evaluated by a Python function: a triangle mesh, or the user's own.
 use std::fmt;
 use std::sync::Arc;
 
@@ -9,11 +9,11 @@ use voxsoft_shape::{Expr, Field, FieldError, distance_range};
 
 struct PythonField {
     function: Py<PyAny>,
-    /// Whether the values change by at most the distance moved
+    /// True if the values change by at most the distance moved (Lipschitz constant 1)
     is_distance: bool,
 }
 
-/// The values of `function` at x, y, z.
+/// Expression for the values of `function` at x, y, z.
 pub fn expression(function: Py<PyAny>, is_distance: bool) -> Expr {
     Expr::field(
         Arc::new(PythonField {

@@ -1,7 +1,7 @@
-//! Twist, bend and taper: the shape is asked at the point moved back.
+//! Twist, bend and taper: the function is evaluated at the inversely deformed point.
 //!
-//! They stretch space, so the function is no longer a distance: a shell or offset taken afterwards
-//! is thicker where space was compressed. Take it before deforming where that matters.
+//! They stretch space, so the function is no longer a distance: a shell or offset taken afterwards is thicker where
+//! space was compressed. Take it before the deformation if that matters.
 use crate::bounds::Bounds;
 use crate::check;
 use crate::error::BuildError;
@@ -9,8 +9,7 @@ use crate::expr::Expr;
 use crate::frame::Frame;
 use crate::shape::Shape;
 
-/// Turns each section across `axis` through `center` by `rate` (rad/m) times its height above
-/// `center`.
+/// Rotates each section normal to `axis` through `center` by `rate` (rad/m) times its height above `center`.
 pub fn twist(
     shape: &Shape,
     rate: f64,
@@ -103,7 +102,7 @@ fn bending_frame(axis: [f64; 3], toward: [f64; 3], center: [f64; 3]) -> Result<F
     })
 }
 
-/// The function at the point with local coordinates `back`.
+/// Shape of the function at the point with local coordinates `back`.
 fn asked_at(shape: &Shape, frame: &Frame, back: [Expr; 3]) -> Shape {
     let space = [0, 1, 2].map(|i| {
         let terms = (0..3).filter(|&a| frame.axes[a][i] != 0.0);

@@ -1,4 +1,4 @@
-//! Moves, turns, mirror images, scaling and repeated copies: distances stay true.
+//! Translation, rotation, mirroring, scaling and arrays of copies.
 use std::f64::consts::TAU;
 
 use super::{shifted_axes, union};
@@ -9,7 +9,7 @@ use crate::expr::Expr;
 use crate::frame::{cross, dot};
 use crate::shape::Shape;
 
-/// Copies beyond this number are refused: each is compiled.
+/// Largest number of copies, as each is compiled.
 const MOST_COPIES: usize = 4096;
 
 /// The shape moved by `by` (m).
@@ -27,7 +27,7 @@ pub fn translate(shape: &Shape, by: [f64; 3]) -> Result<Shape, BuildError> {
     })
 }
 
-/// The shape turned by `angle` (rad, right-handed) around `axis` through `center`.
+/// The shape rotated by `angle` (rad, right-handed) around `axis` through `center`.
 pub fn rotate(
     shape: &Shape,
     axis: [f64; 3],
@@ -135,7 +135,7 @@ fn matrix(entry: impl Fn(usize, usize) -> f64) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))
 }
 
-/// Rodrigues' formula. Sines and cosines of quarter turns are made exact, so that a turned box
+/// Rotation matrix by Rodrigues' formula. Sines and cosines of quarter turns are made exact, so that a rotated box
 /// keeps its faces on the lattice.
 fn rotation(axis: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
     let exact = |v: f64| {
@@ -147,7 +147,7 @@ fn rotation(axis: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
     };
     let (sine, cosine) = (exact(angle.sin()), exact(angle.cos()));
     let unit = |i: usize| [0, 1, 2].map(|j| if i == j { 1.0 } else { 0.0 });
-    // Column j is where the unit vector j goes.
+    // Column j is the image of the unit vector j.
     let columns = [0, 1, 2].map(|j| {
         let (e, turned) = (unit(j), cross(axis, unit(j)));
         let along = dot(axis, e) * (1.0 - cosine);
@@ -156,8 +156,8 @@ fn rotation(axis: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
     matrix(|i, j| columns[j][i])
 }
 
-/// Moves the shape by an orthogonal matrix about `center`; the function is asked at the point moved
-/// back.
+/// Transforms the shape by an orthogonal matrix about `center`; the function is evaluated at the inversely transformed
+/// point.
 fn apply_rotation(shape: &Shape, forward: [[f64; 3]; 3], center: [f64; 3]) -> Shape {
     let local = shifted_axes(center);
     let back = [0, 1, 2].map(|i| {
@@ -175,8 +175,7 @@ fn apply_rotation(shape: &Shape, forward: [[f64; 3]; 3], center: [f64; 3]) -> Sh
     }
 }
 
-/// The box around a turned box; a side is infinite only where an infinite side of the old box
-/// leads.
+/// Box around a rotated box; a side is infinite only if an infinite side of the old box contributes to it.
 fn turned_bounds(bounds: &Bounds, forward: [[f64; 3]; 3], center: [f64; 3]) -> Bounds {
     if bounds.is_empty() {
         return Bounds::EMPTY;

@@ -1,4 +1,4 @@
-//! Operators on the value of the function: they move or thicken the surface.
+//! Operators on the value of the function, which move or thicken the surface.
 use super::boolean::grown;
 use crate::bounds::Bounds;
 use crate::check;
@@ -50,7 +50,7 @@ pub fn blend(a: &Shape, b: &Shape, weight: &Expr) -> Shape {
     }
 }
 
-/// The part of the shape inside a box, for a function of which nothing else is known.
+/// The part of the shape inside a box, for a function with unknown bounds.
 ///
 /// # Errors
 /// The box must be finite and not empty.

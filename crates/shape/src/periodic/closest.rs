@@ -1,12 +1,11 @@
 //! The distance to a triply periodic surface, by its closest point.
 //!
-//! A grid over one period holds the point of the surface that is closest to each node. A place takes
-//! those of the eight nodes around it as starting points and slides each along the surface until the
-//! way to the place is normal to it; the shortest of these ways is the distance. It is never too
-//! short, as each ends on the surface. It is too long only where none of the eight nodes has its
-//! closest point on the same sheet as the place: there two sheets are equally far but for the
-//! curvature of their distances over one cell of the grid, an error of second order in the
-//! cell, which [`SLACK`] bounds with room (`tests/unit/test_shapes_periodic.py` measures it).
+//! A grid over one period stores the closest surface point of each node. A query takes those of the eight nodes around
+//! it as starting points and slides each along the surface until the offset to the query is normal to the surface; the
+//! shortest of these offsets is the distance. It is never too short, as each ends on the surface. It is too long only
+//! where none of the eight nodes has its closest point on the same sheet as the query: there two sheets are equally far
+//! except for the curvature of their distances over one cell of the grid, an error of second order in the cell, for
+//! which [`SLACK`] is a generous bound (`tests/unit/test_shapes_periodic.py` measures it).
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 use std::sync::{Arc, LazyLock, Mutex};
@@ -20,27 +19,27 @@ use crate::range::Range;
 /// Nodes of the grid along each edge of a period.
 const NODES: usize = 32;
 const CELL: f64 = TAU / NODES as f64;
-/// Edges of the grid on which points of the surface are looked for, finer than that of the nodes. A multiple of
-/// eight, so that the places of greatest and least g are nodes and no closed pocket is missed.
+/// Cells per period of the grid that is searched for surface points, finer than that of the nodes. A multiple of eight,
+/// so that the maxima and minima of g are nodes and no closed pocket is missed.
 const FINE: usize = 64;
-/// No distance is too long by more than this, in phase.
+/// Largest excess of a distance, in phase.
 const SLACK: f64 = 0.03;
-/// Starting points closer than this slide to the same place.
+/// Distance below which two starting points slide to the same surface point.
 const NEAR: f64 = 1.5 * CELL;
-/// Newton steps, each of which doubles the digits: four are enough but next to a center of curvature.
+/// Most Newton steps, each of which doubles the digits: four are enough except near a center of curvature.
 const MOST_JUMPS: usize = 6;
 const MOST_STEPS: usize = 24;
 const MOST_HALVINGS: usize = 8;
-/// A search ends with a step whose square is below this: the length of the way then has all its digits.
+/// Squared step size at which a search ends: the distance then has all its digits.
 const STILL: f64 = 1e-13;
-/// Where the square of the slope is below this, a surface is at a singular point, as that of P at level 1 is.
+/// Squared gradient below which a point counts as singular, such as those of P at level 1.
 const FLAT: f64 = 1e-12;
-/// Surfaces kept for the next shape that asks: a study changes a thickness more often than a level.
+/// Number of cached surfaces: a study changes a thickness more often than a level.
 const KEPT: usize = 8;
 
 static MADE: LazyLock<Mutex<Vec<Arc<Closest>>>> = LazyLock::new(Mutex::default);
 
-/// The distance to g = level, made once for all shapes that ask for it.
+/// Distance field of g = level, cached for all shapes that share it.
 pub(super) fn shared(surface: Surface, level: f64) -> Arc<dyn Field> {
     let mut made = MADE.lock().unwrap_or_else(|broken| broken.into_inner());
     let known = |c: &Arc<Closest>| c.surface == surface && c.level.to_bits() == level.to_bits();
@@ -53,12 +52,12 @@ pub(super) fn shared(surface: Surface, level: f64) -> Arc<dyn Field> {
     found
 }
 
-/// Signed distance in phase to g = level, by the three phases of a place.
+/// Signed distance in phase to g = level, as a function of the three phases of a point.
 #[derive(Debug)]
 struct Closest {
     surface: Surface,
     level: f64,
-    /// From each node to the closest point, in C order.
+    /// Offset from each node to its closest surface point, in C order.
     ways: Vec<[f64; 3]>,
 }
 
@@ -72,7 +71,7 @@ impl Field for Closest {
 
     fn range(&self, at: &[Range; 3]) -> Result<Range, FieldError> {
         let exact = distance_range(at, |middle| Ok::<_, FieldError>(self.signed(middle)))?;
-        // The sign is exact, so slack counts away from zero only; both ends are computed values.
+        // The sign is exact, so the slack matters only away from zero; both ends are computed values.
         Ok(Range {
             low: exact.low - SLACK,
             high: exact.high + SLACK,
@@ -98,7 +97,7 @@ impl Closest {
         field
     }
 
-    /// Points on the surface where it crosses the edges of the fine grid.
+    /// Surface points where it crosses the edges of the fine grid.
     fn points(&self) -> Vec<[f64; 3]> {
         let step = TAU / FINE as f64;
         let axis: Vec<_> = (0..FINE).map(|i| (i as f64 * step).sin_cos()).collect();
@@ -138,7 +137,7 @@ impl Closest {
         }
     }
 
-    /// The distance of a place in the first period.
+    /// Distance from a point in the first period to the surface.
     fn distance(&self, place: [f64; 3]) -> f64 {
         let lowest = place.map(|v| ((v / CELL) as usize).min(NODES - 1));
         let mut starts = [([0.0; 3], f64::INFINITY); 8];
@@ -161,7 +160,7 @@ impl Closest {
     }
 }
 
-/// The closest of `points` to every node, handed from node to node.
+/// Finds the closest of `points` to every node, propagated from node to node.
 fn spread(points: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
     let mut ways = vec![[f64::INFINITY; 3]; NODES * NODES * NODES];
     for point in points {
@@ -178,7 +177,7 @@ fn spread(points: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
     settle(ways)
 }
 
-/// Hands the way of each node to its neighbors wherever it leads closer, until it does nowhere.
+/// Propagates the closest point of each node to its neighbors while it is closer than theirs.
 fn settle(mut ways: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
     let steps: Vec<[usize; 3]> = (0..27).map(|i| split(i, 3)).collect();
     let mut queue: VecDeque<usize> = (0..ways.len())
@@ -194,7 +193,7 @@ fn settle(mut ways: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
                 NODES,
             );
             let from_there = [0, 1, 2].map(|a| way[a] - (step[a] as f64 - 1.0) * CELL);
-            // By more than rounding, or two equal ways would be exchanged for ever.
+            // Requires a gain beyond rounding, or two equally close points would be exchanged forever.
             if square(from_there) < square(ways[neighbor]) * (1.0 - 1e-12) {
                 ways[neighbor] = from_there;
                 if !is_queued[neighbor] {
@@ -207,7 +206,7 @@ fn settle(mut ways: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
     ways
 }
 
-/// The point next to `start` on g = level, along the slope.
+/// Projects `start` onto g = level along the gradient.
 fn onto(surface: Surface, level: f64, start: [f64; 3]) -> [f64; 3] {
     let mut point = start;
     for _ in 0..4 {
@@ -222,13 +221,13 @@ fn onto(surface: Surface, level: f64, start: [f64; 3]) -> [f64; 3] {
     point
 }
 
-/// The point of g = level closest to `place`, next to `start` on the surface.
+/// Finds the point of g = level closest to `place`, searched from `start` on the surface.
 fn closest(surface: Surface, level: f64, place: [f64; 3], start: [f64; 3]) -> [f64; 3] {
     jump(surface, level, place, start).unwrap_or_else(|| slide(surface, level, place, start))
 }
 
-/// Newton's method for point − place + λ∇g = 0 and g = level, from `start`; `None` where it does not
-/// arrive in a few steps, or at a point that is no closest one.
+/// Newton's method for point − place + λ∇g = 0 and g = level, from `start`; `None` if it does not converge in a few
+/// steps, or to a point that is farther than `start`.
 fn jump(surface: Surface, level: f64, place: [f64; 3], start: [f64; 3]) -> Option<[f64; 3]> {
     let mut point = start;
     let mut multiplier = f64::NAN;
@@ -244,7 +243,7 @@ fn jump(surface: Surface, level: f64, place: [f64; 3], start: [f64; 3]) -> Optio
             multiplier = dot(way, slope) / steep;
         }
         let plane = Plane::new(&wave, slope, steep, multiplier);
-        // The step along the normal that leads onto the surface bends the gradient as well.
+        // The normal step onto the surface changes the gradient as well.
         let along = -excess / steep;
         let normal = slope.map(|v| along * v);
         let turned = wave.bend_along(normal);
@@ -257,7 +256,7 @@ fn jump(surface: Surface, level: f64, place: [f64; 3], start: [f64; 3]) -> Optio
         }
         point = add(point, step);
         if size < STILL {
-            // One more step would change the way's length by far less than rounding.
+            // One more step would change the distance by far less than rounding.
             return (square(subtract(point, place))
                 <= square(subtract(start, place)) * (1.0 + 1e-9))
                 .then_some(point);
@@ -271,8 +270,8 @@ fn jump(surface: Surface, level: f64, place: [f64; 3], start: [f64; 3]) -> Optio
     None
 }
 
-/// The same by steps along the surface that never lead further away. They arrive everywhere, also
-/// where a whole circle of the surface is nearly as close.
+/// Finds the closest point by descent steps along the surface. They converge everywhere, also where a whole circle of
+/// the surface is nearly as close.
 fn slide(surface: Surface, level: f64, place: [f64; 3], start: [f64; 3]) -> [f64; 3] {
     let mut point = start;
     let mut far = square(subtract(point, place));
@@ -290,7 +289,7 @@ fn slide(surface: Surface, level: f64, place: [f64; 3], start: [f64; 3]) -> [f64
         if square(whole) < STILL {
             break;
         }
-        // Further than a cell the quadratic picture of the surface does not hold.
+        // Beyond a cell the quadratic model of the surface is invalid.
         let mut share = (CELL / size).min(1.0);
         let mut moved = false;
         for _ in 0..MOST_HALVINGS {
@@ -309,7 +308,7 @@ fn slide(surface: Surface, level: f64, place: [f64; 3], start: [f64; 3]) -> [f64
     point
 }
 
-/// The plane that touches the surface at a point, with the second derivative of |point − place|²/2 + λg in it.
+/// Tangent plane of the surface at a point, with the second derivative of |point − place|²/2 + λg in it.
 struct Plane {
     u: [f64; 3],
     v: [f64; 3],
@@ -331,7 +330,7 @@ impl Plane {
         }
     }
 
-    /// Newton's step for a pull, or `None` where the distance has no least value.
+    /// Newton step for a residual vector; `None` if the distance has no minimum.
     fn newton(&self, pull: [f64; 3]) -> Option<[f64; 3]> {
         let determinant = self.uu * self.vv - self.uv * self.uv;
         if self.uu <= 0.0 || determinant < 1e-3 * self.uu * self.vv {
@@ -343,7 +342,7 @@ impl Plane {
         Some(self.at(along_u, along_v))
     }
 
-    /// The part of a vector in the plane.
+    /// Projection of a vector onto the plane.
     fn part(&self, vector: [f64; 3]) -> [f64; 3] {
         self.at(dot(vector, self.u), dot(vector, self.v))
     }
@@ -353,7 +352,7 @@ impl Plane {
     }
 }
 
-/// Two unit vectors across `normal`, whose square is given, and across each other.
+/// Two orthogonal unit vectors normal to `normal`, whose squared length is given.
 fn tangents(normal: [f64; 3], squared: f64) -> [[f64; 3]; 2] {
     let scale = 1.0 / squared.sqrt();
     let unit = normal.map(|v| v * scale);
@@ -375,7 +374,7 @@ fn node(index: usize) -> [f64; 3] {
     split(index, NODES).map(|i| i as f64 * CELL)
 }
 
-/// Three indices of one in C order, with `n` along each axis.
+/// Splits an index in C order into three, with `n` along each axis.
 fn split(index: usize, n: usize) -> [usize; 3] {
     [index / (n * n), index / n % n, index % n]
 }

@@ -1,7 +1,7 @@
 //! Triply periodic surfaces and strut lattices.
 //!
-//! Both are true distances where period and thickness are numbers. Where the period is a function of
-//! space, space is stretched: the distance is then that of a lattice with the period at the place.
+//! Both are true distances if period and thickness are numbers. If the period is a function of space, space is
+//! stretched: the distance is then that of a lattice with the local period.
 mod closest;
 mod struts;
 mod waves;
@@ -17,7 +17,7 @@ use crate::shape::Shape;
 pub use struts::Struts;
 pub use waves::Surface;
 
-/// A function of space used as a number: a length in m that may be graded.
+/// Checks a length in m that may be graded: a constant must be positive.
 fn check_positive(name: &'static str, value: &Expr) -> Result<(), BuildError> {
     value
         .as_constant()
@@ -43,14 +43,14 @@ impl Surface {
         Ok(Expr::field(closest::shared(self, level), phases) * (period.clone() / TAU))
     }
 
-    /// The wall of `thickness` (m) around the surface g = level: all points within half of it.
+    /// Sheet of `thickness` (m) around the surface g = level: all points within half of it.
     pub fn sheet(self, period: &Expr, thickness: &Expr, level: f64) -> Result<Shape, BuildError> {
         check_positive("thickness", thickness)?;
         let distance = self.distance(period, level)?;
         Ok(periodic(distance.abs() - thickness.clone() / 2.0))
     }
 
-    /// The side g < level of the surface.
+    /// Solid on the side g < level of the surface.
     pub fn solid(self, period: &Expr, level: f64) -> Result<Shape, BuildError> {
         Ok(periodic(self.distance(period, level)?))
     }

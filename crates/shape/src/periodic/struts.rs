@@ -1,4 +1,4 @@
-//! Strut lattices, by their true distance.
+//! Strut lattices as true distances.
 use super::{check_positive, periodic};
 use crate::error::BuildError;
 use crate::expr::{Expr, length};
@@ -18,7 +18,7 @@ pub enum Struts {
 }
 
 impl Struts {
-    /// Bars of diameter `thickness` (m); a corner of a cell lies at the origin.
+    /// Makes bars of diameter `thickness` (m); a corner of a cell lies at the origin.
     pub fn lattice(self, period: &Expr, thickness: &Expr) -> Result<Shape, BuildError> {
         check_positive("period", period)?;
         check_positive("thickness", thickness)?;
@@ -51,7 +51,7 @@ fn f(folded: &[Expr; 3], axis: usize) -> Expr {
     folded[axis % 3].clone()
 }
 
-/// From the corner to the centers of the three faces that meet there.
+/// Distances to the bars from the corner to the centers of the three faces that meet there.
 fn face_bars(folded: &[Expr; 3]) -> Vec<Expr> {
     (0..3)
         .map(|i| {

@@ -1,6 +1,6 @@
-//! The functions whose zeros are the triply periodic surfaces, with their derivatives.
+//! Functions of the triply periodic surfaces, with their derivatives.
 
-/// The triply periodic surfaces, by their leading Fourier terms.
+/// Triply periodic surfaces, approximated by their leading Fourier terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
     /// sin x cos y + sin y cos z + sin z cos x
@@ -15,7 +15,7 @@ pub enum Surface {
     Iwp,
 }
 
-/// The function at a place, by its phases in rad.
+/// The function g at a point, given by its phases in rad.
 pub(super) struct Wave {
     surface: Surface,
     s: [f64; 3],
@@ -38,7 +38,7 @@ impl Surface {
         self.of(phases.map(f64::sin_cos))
     }
 
-    /// The same from the sine and cosine of each phase.
+    /// The function at a point, from the sine and cosine of each phase.
     pub(super) fn of(self, parts: [(f64, f64); 3]) -> Wave {
         Wave {
             surface: self,
@@ -49,7 +49,7 @@ impl Surface {
 }
 
 impl Wave {
-    /// g
+    /// Value of g.
     pub fn value(&self) -> f64 {
         let ([a, b, d], [p, q, r]) = (self.s, self.c);
         match self.surface {
@@ -62,7 +62,7 @@ impl Wave {
         }
     }
 
-    /// ∇g
+    /// Gradient ∇g.
     pub fn slope(&self) -> [f64; 3] {
         let (s, c) = (self.s, self.c);
         [0, 1, 2].map(|i| {
@@ -77,7 +77,7 @@ impl Wave {
         })
     }
 
-    /// ∇∇g along a direction.
+    /// Product of the Hessian ∇∇g with a direction.
     pub fn bend_along(&self, t: [f64; 3]) -> [f64; 3] {
         let (diagonal, mixed) = self.bend();
         [
@@ -87,7 +87,7 @@ impl Wave {
         ]
     }
 
-    /// ∇∇g: the diagonal, then the entries yz, zx, xy.
+    /// Hessian ∇∇g: the diagonal, then the entries yz, zx, xy.
     pub fn bend(&self) -> ([f64; 3], [f64; 3]) {
         let (s, c) = (self.s, self.c);
         let each = |f: &dyn Fn(usize, usize, usize) -> f64| {
@@ -130,7 +130,7 @@ mod tests {
     /// Central differences of step h are off by h²/6 times the third derivative, which is at most
     /// 8·13 here, and by rounding of 13·2⁻⁵²/h: together under 2e-8 for h = 1e-5.
     #[test]
-    fn the_derivatives_are_those_of_the_function() {
+    fn derivatives_match_central_differences() {
         let (h, place) = (1e-5, [0.3, 1.1, -2.2]);
         let moved = |axis: usize, by: f64| {
             let mut p = place;

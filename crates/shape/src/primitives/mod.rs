@@ -1,5 +1,5 @@
-//! Solids with a closed form. All are true distances (s equals the signed distance in m) unless
-//! they say otherwise; arguments are in m.
+//! Solids with a closed form. All are true distances (s equals the signed distance in m) unless noted otherwise;
+//! arguments are in m.
 mod boxes;
 mod polygons;
 mod rounds;

@@ -13,10 +13,9 @@ use crate::shape::Shape;
 
 /// A closed polygon in a plane; its field is the signed distance (the third coordinate is ignored).
 ///
-/// Inside is decided by the crossing number, so either orientation works, and a polygon that
-/// crosses itself is inside where a ray leaves through an odd number of edges. An expression of n
-/// edges would cost n inverse tangents per cell; this field costs n multiplications and keeps the
-/// distance exact.
+/// The inside is decided by the crossing number, so either orientation works, and a polygon that crosses itself is
+/// inside where a ray leaves through an odd number of edges. An expression of n edges would cost n inverse tangents per
+/// cell; this field costs n multiplications and keeps the distance exact.
 #[derive(Clone, Debug)]
 pub struct Polygon {
     points: Vec<[f64; 2]>,
@@ -153,8 +152,8 @@ pub fn revolve(base: [f64; 3], axis: [f64; 3], profile: &[[f64; 2]]) -> Result<S
 
 /// A polygon at radius ≥ 0 whose mirror image closes it across the axis.
 ///
-/// On the axis itself the crossing number is undecided (the edge there is the ray's end), so the
-/// radius is moved off it by a part of the profile's width that no float64 distance notices.
+/// On the axis itself the crossing number is undecided (the edge there is the ray's end), so the radius is moved off it
+/// by a part of the profile's width below the rounding of float64 distances.
 #[derive(Debug)]
 struct MirroredPolygon(Polygon);
 

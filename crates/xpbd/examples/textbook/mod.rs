@@ -1,30 +1,30 @@
-//! The textbook loop of Algorithm 3, a scalar at a time: the yardstick of the benchmarks, and an oracle of
-//! the tests because it shares no line with what it checks but the constraints.
+//! Textbook loop of Algorithm 3, in scalar arithmetic: the reference of the benchmarks and an oracle of the tests,
+//! since it shares only the constraints with the code under test.
 
 use voxsoft_solid::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 use voxsoft_solid::{Edge, Problem, State, Tet};
 
-/// A body under gravity with all that a substep needs.
+/// A body under gravity with the state and work arrays of a substep.
 pub struct Textbook {
     edges: Vec<Edge>,
     tets: Vec<Tet>,
-    /// In which order constraints are taken: edges first, then tetrahedra, as numbered.
+    /// Order of constraints, with edges numbered first, then tetrahedra.
     order: Vec<usize>,
-    /// One over the mass in 1/kg, zero where a vertex is held.
+    /// Inverse mass in 1/kg, zero for held vertices.
     weights: Vec<f64>,
     start: Vec<Vec3>,
-    /// The state of the run.
+    /// State of the run.
     pub state: State,
-    /// In m/s².
+    /// Gravity in m/s².
     gravity: Vec3,
-    /// Triangles that bear a pressure, with normals out of the solid; none at first.
+    /// Triangles under pressure, with normals out of the solid; none at first.
     pub pressed: Vec<[u32; 3]>,
-    /// Their pressure in Pa.
+    /// Pressure on these triangles in Pa.
     pub pressure: f64,
 }
 
 impl Textbook {
-    /// Constraints in the order of the mesh: by their vertices, which are numbered row by row.
+    /// Makes a run with constraints in the order of the mesh: by their vertices, which are numbered row by row.
     pub fn new(problem: &Problem, gravity: Vec3) -> Self {
         let body = problem.body();
         let (edges, tets) = (body.edges().to_vec(), body.tets().to_vec());
@@ -41,7 +41,7 @@ impl Textbook {
         Self::in_order(problem, gravity, order)
     }
 
-    /// Constraints in an order of the caller's.
+    /// Makes a run with constraints in a given order.
     pub fn in_order(problem: &Problem, gravity: Vec3, order: Vec<usize>) -> Self {
         let body = problem.body();
         let weight = |(mass, held): (&f64, &[bool; 3])| if held[0] { 0.0 } else { 1.0 / mass };
@@ -63,7 +63,7 @@ impl Textbook {
         }
     }
 
-    /// Constraints lie in memory as they are taken, so that the order costs no look-up.
+    /// Sorts the constraints in memory by their order, so that the order needs no indirection.
     pub fn sort(&mut self) {
         let count = self.edges.len();
         let (edges, tets): (Vec<usize>, Vec<usize>) = self.order.iter().partition(|i| **i < count);
@@ -72,7 +72,7 @@ impl Textbook {
         self.order.clear();
     }
 
-    /// One substep of `h` seconds with one sweep, velocities damped at `rate` in 1/s.
+    /// Takes one substep of `h` seconds with one sweep, and velocities damped at `rate` in 1/s.
     pub fn substep(&mut self, h: f64, rate: f64) {
         self.start.copy_from_slice(&self.state.positions);
         let keep = (-rate * h).exp();

@@ -1,4 +1,4 @@
-//! A vertex held by a spring from outside: a hand, a mouse.
+//! Grabs: vertices pulled by an external spring, such as a mouse spring.
 //!
 //! The spring is integrated linearly implicitly: over a substep of `h` a vertex of mass `m` on a spring of
 //! stiffness `k` answers to every force as if its mass were `m + h² k`. No stiffness is then unstable, and
@@ -17,7 +17,7 @@ pub(super) fn add_pulls(grabs: &[Grab], positions: &[Vec3], forces: &mut [Vec3])
     }
 }
 
-/// Vectors of vertices, by row or in columns.
+/// Vectors of vertices, stored by row or in columns.
 pub(super) trait Rows {
     fn row(&self, place: usize) -> Vec3;
     fn set_row(&mut self, place: usize, value: Vec3);
@@ -43,17 +43,17 @@ impl Rows for Columns {
     }
 }
 
-/// The grabbed vertices of a substep.
+/// Grabbed vertices of a substep.
 #[derive(Default)]
 pub(super) struct Held {
-    /// Places with the inverse masses that they have by themselves.
+    /// Indices of grabbed vertices with their own inverse masses.
     own: Vec<(usize, Vec3)>,
     pulls: Vec<(usize, Grab)>,
 }
 
 impl Held {
-    /// Makes grabbed vertices heavier for a substep of `h` and those let go as light as they were;
-    /// velocities of grabbed ones sink so that their momentum is the same.
+    /// Adds `h² k` to the masses of grabbed vertices for a substep of `h`, and restores those of released ones;
+    /// velocities of grabbed vertices are scaled so that their momentum is kept.
     pub fn weigh(
         &mut self,
         grabs: &[Grab],
@@ -80,7 +80,7 @@ impl Held {
         }
     }
 
-    /// Adds what the pulls do to velocities and positions in a substep of `h` that began at `start`.
+    /// Adds the effect of the springs on velocities and positions in a substep of `h` that began at `start`.
     pub fn pull(
         &self,
         h: f64,

@@ -1,4 +1,4 @@
-//! A run that goes on between calls, while someone changes its loads and pulls at it.
+//! Interactive run that continues between calls, with changes of loads and grabs.
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::hands::{Hands, loads_end, shortest_edge, still_state};
@@ -10,21 +10,21 @@ use voxsoft_solid::{
 use super::{Arrays, Dynamics, Subject, Window, arrays_of, at_rest, strips_of, substeps_of};
 use crate::outcome::{BLOW_UP_EXCESS, MAX_BACK_OFFS};
 
-/// Substeps between two looks for rest and breakdown.
+/// Substeps between two checks for rest and breakdown.
 const LOOK: u32 = 64;
 
-/// How far an anchor goes in a substep, in shortest edges: a jump of the target then takes some dozen
-/// substeps, milliseconds that no one sees, and inverts nothing.
+/// Largest travel of an anchor in a substep, in shortest edges: a jump of the target then takes some dozen substeps,
+/// invisible milliseconds, and inverts no element.
 const ANCHOR_TRAVEL: f64 = 0.05;
 
-/// How often the step is halved because the residual has stopped to fall: a hand that trembles or a floor
-/// that rattles looks the same, and more would make a slow run for nothing.
+/// Most halvings of the substep because the residual has stopped to fall: a trembling target or a rattling floor looks
+/// the same, and more halvings would only make the run slow.
 const MAX_STUCK: u32 = 3;
 
-/// A problem in motion.
+/// Interactive run of a problem by explicit substeps.
 ///
-/// The same substeps as [`super::simulate`], and the same rest; `end_time`, `max_time` and
-/// `record_interval` of the settings do not count.
+/// Takes the substeps of [`super::simulate`] and has its equilibrium; ignores `end_time`, `max_time` and
+/// `record_interval` of the settings.
 ///
 /// # Example
 ///
@@ -54,7 +54,7 @@ pub struct Live {
     settings: Dynamics,
     hands: Hands,
     arrays: Box<dyn Arrays + Send>,
-    /// The state at the last look, which was sound.
+    /// Last good state, from the last check.
     state: State,
     first_substep: f64,
     substep: f64,
@@ -70,7 +70,7 @@ pub struct Live {
 }
 
 impl Live {
-    /// Starts at the rest pose.
+    /// Makes a run that starts at the rest pose.
     pub fn new(problem: Problem, settings: Dynamics) -> Self {
         let subject = Subject {
             problem: &problem,
@@ -114,7 +114,7 @@ impl Live {
         self.substeps += 1;
     }
 
-    /// Keeps a sound state; goes back to the last one, with half the substep, from one that is not.
+    /// Checks the present state: keeps it if it is good, else goes back to the last good one with half the substep.
     fn look(&mut self) {
         let mut now = self.state.clone();
         self.arrays.store(&mut now);
@@ -168,7 +168,7 @@ impl Live {
         self.window = Window::default();
     }
 
-    /// Something was changed: the body may move again, after a breakdown with the first substep.
+    /// Resumes motion after a change; after a breakdown, with the first substep.
     fn wake(&mut self) {
         if self.status == LiveStatus::Diverged {
             self.substep = self.first_substep;
@@ -204,7 +204,7 @@ impl Stepper for Live {
         self.substep
     }
 
-    /// Stability decides the substep.
+    /// Ignores the request, as stability decides the substep.
     fn prefer_step(&mut self, _: f64) {}
 
     fn advance_while(&mut self, steps: u32, go_on: &mut dyn FnMut(Ask) -> bool) -> Look {

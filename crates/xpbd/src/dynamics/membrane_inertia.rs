@@ -1,8 +1,8 @@
-//! The inertia that membranes are given, so that they do not set the substep.
+//! Selective mass scaling of membranes, so that they do not limit the substep.
 //!
-//! A layer of fabric is so much stiffer than the rubber beneath it that its own waves would ask for substeps of
-//! microseconds, though nobody looks at them. Its forces stay as they are, explicit at the beginning of the
-//! substep, but the vertices of membranes answer to all forces with the masses
+//! A layer of fabric is so much stiffer than the rubber beneath it that its own waves would need substeps of
+//! microseconds, though they are of no interest. Its forces stay as they are, explicit at the beginning of the substep,
+//! but the vertices of membranes respond to all forces with the masses
 //!
 //! ```text
 //! M̃ = M + h⁴/27 L M⁻¹ L
@@ -12,47 +12,47 @@
 //! ([`voxsoft_solid::Membrane::bounding_stiffness`]): selective mass scaling (Olovsson, Simonsson and Unosson 2005,
 //! doi 10.1002/nme.1293).
 //!
-//! **Stable.** An explicit substep wants `h² K ≤ 4 M̃`. The default substep is one over the highest frequency of
-//! the rest of the body, `h² K ≤ M` there, which leaves `3 M + 4/27 h⁴ L M⁻¹ L` for the membranes; and
-//! `3 + 4/27 x² ≥ 4/3 x` for any `x`. So a membrane does not limit the substep, up to strains that make it by a
-//! third stiffer than it is at rest.
+//! **Stability.** An explicit substep needs `h² K ≤ 4 M̃`. The default substep is one over the highest frequency of the
+//! rest of the body, `h² K ≤ M` there, which leaves `3 M + 4/27 h⁴ L M⁻¹ L` for the membranes; and
+//! `3 + 4/27 x² ≥ 4/3 x` for any `x`. So a membrane does not limit the substep, up to strains that make it by a third
+//! stiffer than it is at rest.
 //!
-//! **Harmless.** A rest has no acceleration, so it is the same for any `M̃`. `L` gives zero for a translation, so
-//! momentum is kept; it is the same along all axes, so angular momentum is. A wave with the frequency `ω` in a
-//! membrane alone has its inertia multiplied by `1 + (hω)⁴/27`: motions that are resolved, `hω < 1`, hardly notice.
-//! With `L` alone in place of its square that would be `1 + (hω)²/3`, and turning as a whole would be hard. How far
-//! `hω` may go by default, [`super::MEMBRANE_FREQUENCY`] says.
+//! **Accuracy.** An equilibrium has no acceleration, so it is the same for any `M̃`. `L` gives zero for a translation,
+//! so momentum is kept; it is the same along all axes, so angular momentum is. A wave with the frequency `ω` in a
+//! membrane alone has its inertia multiplied by `1 + (hω)⁴/27`: resolved motions, `hω < 1`, hardly change. With `L`
+//! alone in place of its square the factor would be `1 + (hω)²/3`, and rigid rotation would be hard. The default limit
+//! of `hω` is [`super::MEMBRANE_FREQUENCY`].
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Problem};
 
 use crate::envelope::{Envelope, along};
 
-/// `(1 + 1/3)²/48`, see the head.
+/// Factor `(1 + 1/3)²/48` of `h⁴ L M⁻¹ L`, see the module.
 const SHARE: f64 = 1.0 / 27.0;
 
-/// Places with values in N/m, for each row of a matrix.
+/// Sparse rows of a matrix: columns with values in N/m.
 type Rows = Vec<Vec<(usize, f64)>>;
 
-/// All membranes of a body, as what they add to the inertia of their vertices.
+/// Scaled inertia of the vertices of all membranes of a body.
 pub(super) struct MembraneInertia {
-    /// The vertices of membranes, in the order of the matrices.
+    /// Vertices of membranes, in the order of the matrices.
     vertices: Vec<usize>,
     /// `L`.
     stiffness: Rows,
-    /// `M̃`, factored: for each axis, or once where clamps hold all axes of a vertex or none.
+    /// `M̃`, factored: for each axis, or once if clamps hold all axes of each vertex or none.
     masses: Vec<Envelope>,
-    /// The substep (s) and the inverse masses (1/kg, zero on held axes) that `masses` are made for.
+    /// Substep (s) and inverse masses (1/kg, zero on held axes) for which `masses` are made.
     substep: f64,
     inverse_masses: Vec<Vec3>,
-    /// Values before a change, and what is worked with.
+    /// Values before a change, followed by work arrays.
     before: Vec<Vec3>,
     momenta: Vec<Vec3>,
     changes: Vec<Vec3>,
 }
 
 impl MembraneInertia {
-    /// `None` for a body without membranes.
+    /// Makes the inertia; `None` for a body without membranes.
     pub fn of(problem: &Problem) -> Option<Self> {
         let body = problem.body();
         if body.membranes().is_empty() {
@@ -81,20 +81,20 @@ impl MembraneInertia {
         })
     }
 
-    /// The vertices that membranes share.
+    /// Vertices of membranes.
     pub fn vertices(&self) -> &[usize] {
         &self.vertices
     }
 
-    /// Notes `factor` times the values of all vertices, before they are changed.
+    /// Stores `factor` times the values of all vertices, before they are changed.
     pub fn note(&mut self, factor: f64, values: &[Vec3]) {
         for (before, &vertex) in self.before.iter_mut().zip(&self.vertices) {
             *before = values[vertex].map(|value| factor * value);
         }
     }
 
-    /// Makes the changes of the values since they were noted, by impulses that met the masses alone in a
-    /// substep of `h`, those that the same impulses bring about.
+    /// Replaces the changes of the values since [`Self::note`], by impulses on the plain masses in a substep of `h`,
+    /// with those of the same impulses on `M̃`.
     pub fn spread(&mut self, h: f64, inverse_masses: &[Vec3], values: &mut [Vec3]) {
         self.weigh(h, inverse_masses);
         for (place, &vertex) in self.vertices.iter().enumerate() {
@@ -122,7 +122,7 @@ impl MembraneInertia {
         }
     }
 
-    /// Brings `M̃` up to date.
+    /// Updates `M̃` after a change of the substep or of the inverse masses.
     fn weigh(&mut self, h: f64, inverse_masses: &[Vec3]) {
         let mut places = self.inverse_masses.iter().zip(&self.vertices);
         if h == self.substep && places.all(|(known, &vertex)| *known == inverse_masses[vertex]) {
@@ -155,7 +155,7 @@ impl MembraneInertia {
     }
 }
 
-/// `L`, for vertices in the order given.
+/// Assembles `L` for vertices in the order given.
 fn bounding_stiffness(body: &Body, vertices: &[usize]) -> Rows {
     let mut place_of = vec![usize::MAX; body.rest().len()];
     for (place, &vertex) in vertices.iter().enumerate() {
@@ -176,7 +176,7 @@ fn bounding_stiffness(body: &Body, vertices: &[usize]) -> Rows {
     rows
 }
 
-/// The columns of the square of a matrix that are not zero, for each row.
+/// Sparsity pattern of the square of a matrix: the nonzero columns of each row.
 fn pattern_of_square(rows: &Rows) -> Vec<Vec<usize>> {
     let pattern = |row: &Vec<(usize, f64)>| {
         let columns = row

@@ -23,28 +23,27 @@ pub use live::Live;
 /// Settings of [`simulate`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dynamics {
-    /// Length of a step in s, divided into substeps. Larger: fewer looks at rest and breakdown.
+    /// Length of a step in s, divided into substeps. Longer steps have fewer checks for rest and breakdown.
     pub time_step: f64,
     /// Substeps per step; `None` takes as many as the highest frequency needs.
     pub substeps: Option<u32>,
     /// Sweeps over all constraints per substep. More allow longer substeps.
     pub iterations: u32,
-    /// Damping of all motion.
+    /// Global damping of all motion.
     pub damping: Damping,
-    /// Retardation time `τ` in s of Kelvin–Voigt damping: a constraint answers to `C + τ dC/dt`, and the
-    /// deviatoric stress of a hyperelastic voxel to `s + τ ds/dt`.
+    /// Retardation time `τ` in s of Kelvin–Voigt damping: a constraint responds to `C + τ dC/dt`, and the deviatoric
+    /// stress of a hyperelastic voxel is `s + τ ds/dt`.
     pub retardation: f64,
-    /// Run to this time in s; `None` runs until rest.
+    /// End time of the run in s; `None` runs until rest.
     pub end_time: Option<f64>,
-    /// With no end time, how long to wait for rest, in s.
+    /// Longest time to wait for rest without an end time, in s.
     pub max_time: f64,
-    /// Rest is where the relative residual force is below this, and the kinetic energy below this
-    /// part of the elastic energy.
+    /// Tolerance of rest: bound on the relative residual force, and on the kinetic energy over the elastic energy.
     pub tolerance: f64,
-    /// Take constraints one at a time with plain arithmetic: the same bits on every processor, WebAssembly
-    /// included, a few times slower where there are lanes.
+    /// Takes constraints one at a time with plain arithmetic: the same bits on every processor, WebAssembly included; a
+    /// few times slower than with SIMD lanes.
     pub deterministic: bool,
-    /// Tell the observer to record at multiples of this time in s (rounded to steps).
+    /// Interval of records by the observer in s (rounded to steps).
     pub record_interval: Option<f64>,
 }
 
@@ -65,21 +64,21 @@ impl Default for Dynamics {
     }
 }
 
-/// A substep of one over the highest frequency: half the explicit limit.
+/// Default substep times the highest frequency: half the explicit limit.
 const SUBSTEP_FREQUENCY: f64 = 1.0;
-/// A substep of at most so many over the highest frequency of the body with its membranes taut, though longer
-/// ones are stable ([`membrane_inertia`]): the inertia that membranes are given grows with the fourth power. A
-/// bar between membranes of 2,000 times its stiffness is 1.5 % slow with 8 and 0.7 % with 4, most of that of its
-/// voxels; a free body between the two has its angular momentum change by 7 % and 2 %.
+/// Bound on the default substep times the highest frequency of the body with its membranes taut, though longer substeps
+/// are stable ([`membrane_inertia`]): the inertia of mass scaling grows with the fourth power. A bar between membranes
+/// of 2,000 times its stiffness is 1.5 % slow with 8 and 0.7 % with 4, most of that due to its voxels; a free body
+/// between the two has its angular momentum change by 7 % and 2 %.
 const MEMBRANE_FREQUENCY: f64 = 4.0;
 /// Damping times after which an oscillation must have shrunk (by `e⁻²` at least).
 const WINDOW_DAMPING_TIMES: f64 = 4.0;
 
 /// Runs the problem from `start`.
 ///
-/// When a step blows up, the last good state is taken again with twice the substeps; so also when
-/// the residual has stopped to fall although damping should have halved it several times over (an
-/// unstable step can saturate at a small amplitude).
+/// When a step blows up, the run goes back to the last good state with twice the substeps. The substeps also double,
+/// without going back, when the residual has stopped to fall although damping should have halved it several times over
+/// (an unstable step can saturate at a small amplitude).
 pub fn simulate(
     problem: &Problem,
     start: State,
@@ -109,8 +108,8 @@ impl Solver for Dynamics {
     }
 }
 
-/// What a run is about. Its arrays borrow none of it, so that a run that goes on between calls can own
-/// both.
+/// Problem, settings and grabs of a run. Its arrays borrow none of it, so that a run that continues between calls can
+/// own both.
 #[derive(Clone, Copy)]
 struct Subject<'a> {
     problem: &'a Problem,
@@ -119,7 +118,7 @@ struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// One that nobody grabs.
+    /// Makes a subject without grabs.
     fn alone(problem: &'a Problem, settings: &'a Dynamics) -> Self {
         Self {
             problem,
@@ -129,7 +128,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// Strips for bodies that have them.
+/// Makes strips for bodies that have them.
 fn strips_of(
     Subject {
         problem, settings, ..
@@ -150,21 +149,21 @@ fn arrays_of(subject: Subject<'_>, strips: Option<Strips>) -> Box<dyn Arrays + S
     }
 }
 
-/// The arrays that substeps work in.
+/// Work arrays of substeps.
 trait Arrays {
-    /// Starts again from a state.
+    /// Restarts from a state.
     fn load(&mut self, state: &State);
-    /// The present time in s.
+    /// Present time in s.
     fn time(&self) -> f64;
-    /// Gives the present state.
+    /// Stores the present state.
     fn store(&self, state: &mut State);
-    /// The balance at the present positions, which are those of `state`.
+    /// Force balance at the present positions, which are those of `state`.
     fn balance(&mut self, subject: Subject<'_>, state: &State) -> Balance;
-    /// One substep of `h` seconds.
+    /// Takes one substep of `h` seconds.
     fn substep(&mut self, subject: Subject<'_>, h: f64);
-    /// After the histories of loads have changed.
+    /// Updates loads after their histories have changed.
     fn renew_loads(&mut self, problem: &Problem);
-    /// The rate of damping in force, in 1/s.
+    /// Present rate of damping, in 1/s.
     fn damping_rate(&self) -> f64;
 }
 
@@ -177,7 +176,7 @@ fn run(
     mut substeps: u32,
 ) -> Answer {
     let limit = travel_limit(&problem);
-    // What still changes is not at rest, though nothing pulls at it yet.
+    // A body whose loads still change is not at rest, even if no force acts yet.
     let steady = loads_end(&problem);
     arrays.load(&state);
     let mut checkpoint = state.clone();
@@ -274,8 +273,8 @@ fn at_rest(problem: &Problem, state: &State, residual: f64, tolerance: f64) -> b
     residual <= tolerance && is_still(problem, &state.positions, kinetic(), tolerance)
 }
 
-/// The substeps per step: those of the settings, or as many as the highest frequency needs, that of membranes
-/// as far as [`membrane_inertia`] cannot do without.
+/// Substeps per step: those of the settings, or as many as the highest frequency needs; membranes count only as far as
+/// [`MEMBRANE_FREQUENCY`] limits their mass scaling.
 fn substeps_of(subject: Subject<'_>, strips: Option<&Strips>) -> u32 {
     let Subject {
         problem, settings, ..
@@ -294,7 +293,7 @@ fn substeps_of(subject: Subject<'_>, strips: Option<&Strips>) -> u32 {
         .max(1.0) as u32
 }
 
-/// Watches whether the residual still falls.
+/// Detector of a residual that no longer falls.
 #[derive(Default)]
 struct Window {
     start: f64,
@@ -346,7 +345,7 @@ mod tests {
         })
     }
 
-    /// The largest distance between two answers over the largest displacement.
+    /// Largest distance between two answers over the largest displacement.
     fn distance(problem: &Problem, [fast, slow]: &[Answer; 2]) -> f64 {
         let rest = problem.body().rest();
         let (mut apart, mut moved) = (0.0, 0.0);
@@ -358,11 +357,10 @@ mod tests {
         apart / moved
     }
 
-    /// Without a sweep both do the same arithmetic, up to rounding. A sweep takes constraints in
-    /// different orders (`crates/solid/tests/strips.rs` tries it in the same), and what that changes
-    /// vanishes with the step.
+    /// Without a sweep both do the same arithmetic, up to rounding. Sweeps take constraints in different orders
+    /// (`crates/solid/tests/strips.rs` tests the same order), a difference that vanishes with the step.
     #[test]
-    fn strips_and_vertices_move_alike() {
+    fn strips_and_vertices_agree_in_motion() {
         for (case, problem) in problems().iter().enumerate() {
             for damping in [Damping::Rate(5.0), Damping::Critical] {
                 let mut settings = Dynamics {

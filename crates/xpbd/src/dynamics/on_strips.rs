@@ -1,4 +1,4 @@
-//! Substeps of a lattice body of voxels, several constraints at a time.
+//! Substeps of a lattice body of voxels, several constraints at a time in SIMD lanes.
 
 use voxsoft_solid::balance::{Balance, balance_of_forces};
 use voxsoft_solid::strips::{Columns, Strips, Sweep};
@@ -10,7 +10,7 @@ use super::{Arrays, Damping, Subject};
 use crate::motion::{self, Advance};
 use crate::slots::SlotProblem;
 
-/// The arrays of a run; nothing is allocated in a substep, unless dead loads vary over time.
+/// Arrays of a run; nothing is allocated in a substep, unless dead loads vary over time.
 pub(super) struct OnStrips {
     strips: Strips,
     slots: SlotProblem,
@@ -20,19 +20,19 @@ pub(super) struct OnStrips {
     start: Columns,
     forces: Columns,
     before: Columns,
-    /// Forces of a look, which must not come between those of two substeps.
+    /// Forces of a check, kept apart from those of two substeps.
     looked: Columns,
     masses: Vec<f64>,
-    /// 1/kg for each axis, zero where a clamp holds it and where no vertex is.
+    /// Inverse masses in 1/kg for each axis, zero where a clamp holds it and in slots without a vertex.
     inverse_masses: Columns,
-    /// The vertices that are grabbed.
+    /// Grabbed vertices.
     held: Held,
-    /// Whether clamps hold all axes of a vertex or none.
+    /// True if clamps hold all axes of each vertex or none.
     isotropic: bool,
     multipliers: Vec<f64>,
-    /// The rate in 1/s in force.
+    /// Present rate of damping in 1/s.
     damping_rate: f64,
-    /// The substep before, in s; zero at the start.
+    /// Previous substep, in s; zero at the start.
     substep_before: f64,
 }
 
@@ -76,7 +76,8 @@ impl OnStrips {
         }
     }
 
-    /// Multipliers from the elastic forces at the first position, then free flight under all forces.
+    /// Prediction: sets the multipliers from the elastic forces at the first positions, then moves freely under all
+    /// forces.
     fn predict(&mut self, subject: Subject<'_>, h: f64) {
         let problem = subject.problem;
         let time = self.time + h;
@@ -197,7 +198,7 @@ impl Arrays for OnStrips {
                 retardation: settings.retardation,
             });
         }
-        // Also those that never move: a run that blows up must not take them along.
+        // Places fixed clamps again too: a run that blows up must not displace them.
         self.slots.forget_placed();
         let (problem, time) = (subject.problem, self.time + h);
         self.slots

@@ -1,4 +1,4 @@
-//! Substeps of any body, constraint by constraint.
+//! Substeps of any body, one constraint at a time.
 
 use voxsoft_solid::balance::{Balance, balance_of_forces};
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
@@ -10,12 +10,12 @@ use super::{Arrays, Damping, Subject};
 use crate::damping;
 use crate::viscosity::Viscosity;
 
-/// The state of a run and the arrays it works in; nothing is allocated in a substep.
+/// State and work arrays of a run; nothing is allocated in a substep.
 pub(super) struct OnVertices {
     state: State,
     /// Inverse masses in 1/kg for each axis, zero where a clamp holds it.
     inverse_masses: Vec<Vec3>,
-    /// The vertices that are grabbed.
+    /// Grabbed vertices.
     held: Held,
     start: Vec<Vec3>,
     forces: Vec<Vec3>,
@@ -26,9 +26,9 @@ pub(super) struct OnVertices {
     edge_compliances: Vec<f64>,
     tet_multipliers: Vec<f64>,
     tet_compliances: Vec<f64>,
-    /// The rate in 1/s in force.
+    /// Present rate of damping in 1/s.
     damping_rate: f64,
-    /// The substep before, in s; zero at the start.
+    /// Previous substep, in s; zero at the start.
     substep_before: f64,
 }
 
@@ -68,9 +68,9 @@ impl OnVertices {
         }
     }
 
-    /// Multipliers from the elastic forces at the first position, then free flight under all forces.
-    /// All else is forces only: a substep of one over the highest frequency integrates voxels and attached
-    /// terms as it stands (symplectic Euler), [`MembraneInertia`] sees to membranes, and there is nothing to project.
+    /// Prediction: sets the multipliers from the elastic forces at the first positions, then moves freely under all
+    /// forces. Other terms have forces only and are not projected: a substep of one over the highest frequency
+    /// integrates voxels and attached terms as they are (symplectic Euler), and [`MembraneInertia`] handles membranes.
     fn predict(&mut self, subject: Subject<'_>, h: f64) {
         let body = subject.problem.body();
         self.start.copy_from_slice(&self.state.positions);
@@ -156,9 +156,8 @@ impl OnVertices {
         }
     }
 
-    /// One Gauss–Seidel pass over all constraints:
-    /// `Δλ = −(C + τ ∇C·Δx/h + α λ) / ((1 + τ/h) h² ∇C·M⁻¹∇C + α)`, `Δx = h² M⁻¹ ∇C Δλ`,
-    /// with the multipliers in N (edges) and Pa (volumes).
+    /// Takes one Gauss–Seidel pass over all constraints: `Δλ = −(C + τ ∇C·Δx/h + α λ) / ((1 + τ/h) h² ∇C·M⁻¹∇C + α)`,
+    /// `Δx = h² M⁻¹ ∇C Δλ`, with the multipliers in N (edges) and Pa (volumes).
     fn sweep(&mut self, body: &Body, retardation: f64, h: f64) {
         let positions = &mut self.state.positions;
         let lag = retardation / h;

@@ -1,4 +1,4 @@
-//! Dynamic relaxation: the short way to the state at rest.
+//! Dynamic relaxation to the equilibrium.
 
 mod on_strips;
 mod on_vertices;
@@ -17,22 +17,22 @@ use crate::stiffness::{Membranes, largest_eigenvalue};
 /// Settings of [`relax`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Relaxation {
-    /// Rest is where the relative residual force is below this. The state is then about as close
-    /// to the limit, relative to its displacement, since the slowest mode converges last.
+    /// Tolerance of rest on the relative residual force. The state is then about as close to the equilibrium, relative
+    /// to its displacement, since the slowest mode converges last.
     pub tolerance: f64,
-    /// Steps after which a run counts as not at rest.
+    /// Most steps, after which a run counts as not at rest.
     pub max_steps: u64,
-    /// When to leave a body that comes to rest slowly to another solver.
+    /// Trial that leaves a slowly converging body to another solver.
     pub trial: Option<Trial>,
 }
 
-/// A stretch of a run that shows whether it is worth going on.
+/// Trial period of a run, after which slow convergence ends it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trial {
-    /// Steps of the stretch; the first look after them decides.
+    /// Steps of the trial; the first check after them decides.
     pub steps: u64,
-    /// A run whose relative residual is above this then ends with [`Status::Slow`]. Any other goes on as if
-    /// nothing had been asked.
+    /// Relative residual above which the run then ends with [`Status::Slow`]. Any other run continues as without a
+    /// trial.
     pub residual: f64,
 }
 
@@ -46,15 +46,15 @@ impl Default for Relaxation {
     }
 }
 
-/// Steps between two looks at residual, masses, breakdown and observer.
+/// Steps between two checks of residual and breakdown, updates of masses, and calls of the observer.
 const LOOK: u64 = 25;
-/// Steps over which prescribed motions are brought up, so that no element starts inside out.
+/// Steps over which prescribed motions are ramped up, so that no element starts inverted.
 const RAMP: u64 = 200;
-/// On the largest eigenvalue, which is estimated from below and grows as the body deforms.
+/// Safety factor on the largest eigenvalue, which is estimated from below and grows as the body deforms.
 const SAFETY: f64 = 1.15;
-/// Central differences with a unit step are stable up to this eigenvalue.
+/// Largest eigenvalue for which central differences with a unit step are stable.
 const STABLE_EIGENVALUE: f64 = 4.0;
-/// Damping per unit step: at 2 a step would forget its velocity.
+/// Largest damping per unit step: at 2 a step would lose all of its velocity.
 const MAX_DAMPING: f64 = 1.9;
 
 /// Finds the state at rest under the final values of all loads and motions, from `start`.
@@ -95,19 +95,19 @@ impl Solver for Relaxation {
     }
 }
 
-/// The arrays that steps work in.
+/// Work arrays of steps.
 trait Arrays {
-    /// Starts again from a state.
+    /// Restarts from a state.
     fn load(&mut self, state: &State);
-    /// Gives the present positions and velocities.
+    /// Stores the present positions and velocities.
     fn store(&self, state: &mut State);
-    /// The balance at the present positions, which are those of `state`.
+    /// Force balance at the present positions, which are those of `state`.
     fn balance(&mut self, state: &State) -> Balance;
-    /// Makes the masses `factor` times the row sums at the present positions (kg per unit of time squared).
+    /// Sets the masses to `factor` times the row sums at the present positions (kg per unit of time squared).
     fn renew_masses(&mut self, factor: f64);
-    /// The kinetic energy in J.
+    /// Kinetic energy in J.
     fn kinetic_energy(&self) -> f64;
-    /// One step, prescribed motions being scaled by `ramp`.
+    /// Takes one step, with prescribed motions scaled by `ramp`.
     fn step(&mut self, ramp: f64);
 }
 
@@ -223,8 +223,7 @@ fn run(
     }
 }
 
-/// What a step of unit length keeps of a velocity, and what it takes of an acceleration, where damping is
-/// critical for the frequency given.
+/// Factors of a unit step on velocity and acceleration, with damping critical for the given frequency.
 fn damped(frequency: f64) -> (f64, f64) {
     let rate = (2.0 * frequency).min(MAX_DAMPING);
     ((2.0 - rate) / (2.0 + rate), 2.0 / (2.0 + rate))
@@ -237,7 +236,7 @@ mod tests {
     use voxsoft_solid::vector::{norm, sub};
 
     #[test]
-    fn a_trial_ends_slow_runs_and_leaves_others_alone() {
+    fn trial_ends_slow_runs_only() {
         for problem in &problems() {
             let run = |trial| {
                 let settings = Relaxation {
@@ -266,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn strips_and_vertices_come_to_the_same_rest() {
+    fn strips_and_vertices_reach_the_same_equilibrium() {
         let settings = Relaxation {
             tolerance: 1e-8,
             max_steps: 20_000,

@@ -1,4 +1,4 @@
-//! Relaxation of a lattice body of voxels, several constraints at a time.
+//! Relaxation of a lattice body of voxels, several constraints at a time in SIMD lanes.
 
 use voxsoft_solid::balance::{Balance, balance_of_forces};
 use voxsoft_solid::strips::{Columns, Strips};
@@ -16,10 +16,10 @@ pub(super) struct OnStrips<'a> {
     velocities: Columns,
     forces: Columns,
     before: Columns,
-    /// Forces of a look, which must not come between those of two steps.
+    /// Forces of a check, kept apart from those of two steps.
     looked: Columns,
     masses: Vec<f64>,
-    /// One over the mass where a slot holds a vertex, else zero.
+    /// Inverse mass of the vertex in a slot; zero in slots without a vertex.
     inverse_masses: Vec<f64>,
 }
 
@@ -40,7 +40,7 @@ impl<'a> OnStrips<'a> {
         }
     }
 
-    /// The floor carries what touches it and is pressed down.
+    /// Removes vertical forces that the floor carries: those that press vertices on it downward.
     fn release_on_floor(&mut self) {
         let Some(floor) = self.problem.floor() else {
             return;

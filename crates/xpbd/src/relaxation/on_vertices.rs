@@ -1,4 +1,4 @@
-//! Relaxation of any body, vertex by vertex.
+//! Relaxation of any body, one vertex at a time.
 
 use voxsoft_solid::balance::{Balance, balance, rests_on_floor};
 use voxsoft_solid::vector::Vec3;
@@ -97,7 +97,7 @@ fn release_supported(problem: &Problem, positions: &[Vec3], forces: &mut [Vec3])
     }
 }
 
-/// One central-difference step of unit length, velocities at half steps.
+/// Takes one central-difference step of unit length, with velocities at half steps.
 fn advance(
     problem: &Problem,
     state: &mut State,

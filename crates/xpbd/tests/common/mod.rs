@@ -1,4 +1,4 @@
-//! Small problems that the tests share.
+//! Small problems shared by the tests.
 #![allow(dead_code, reason = "each test file uses some of them")]
 
 use std::ops::ControlFlow;
@@ -11,7 +11,7 @@ use voxsoft_xpbd::{Answer, Dynamics, Relaxation};
 pub const DENSITY: f64 = 1070.0;
 pub const GRAVITY: Vec3 = [0.0, 0.0, -9.81];
 
-/// The arrays of a block of `cells` voxels of the edge `h`, from the origin.
+/// Mesh of a block of `cells` voxels of the edge `h`, from the origin.
 pub fn block(cells: [usize; 3], h: f64) -> Mesh {
     let mut grid = Grid::empty(cells, [0.0; 3], h, u64::MAX).unwrap();
     grid.fill_box([0.0; 3], cells.map(|n| n as f64 * h), 1);
