@@ -2,9 +2,9 @@
 //!
 //! With the closest point `y = Σ b_i x_i` of the triangle and the relative position `r = x − y`, the gap is `g = n·r`,
 //! and `∂g = n·(∂x − Σ b_i ∂x_i)`: motion of the closest point along the triangle does not change it. Over the inside
-//! of a triangle, with `∇β_i` the gradients of its barycentric coordinates, the second variation is `−2 Σ
-//! (n·∂x_i)(∇β_i·∂r) − g Σ (∇β_i·∇β_j)(n·∂x_i)(n·∂x_j)` with `∂r = ∂x − Σ b_i ∂x_i`: the normal turns by `∂n = −Σ
-//! (n·∂x_i) ∇β_i`. Beside a triangle the normal is held constant.
+//! of a triangle, with `∇β_i` the gradients of its barycentric coordinates, the second variation is
+//! `−2 Σ (n·∂x_i)(∇β_i·∂r) − g Σ (∇β_i·∇β_j)(n·∂x_i)(n·∂x_j)` with `∂r = ∂x − Σ b_i ∂x_i`: the normal turns by
+//! `∂n = −Σ (n·∂x_i) ∇β_i`. Beside a triangle the normal is held constant.
 
 use voxsoft_solid::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 
@@ -125,10 +125,11 @@ const LEAST_SINE: f64 = 0.05;
 
 /// Crossing of two lines through given points; `None` for nearly parallel ones.
 ///
-/// With the directions `a` and `b`, `c = a × b` and the dual vectors `A = b × c/c²`, `B = c × a/c²`, the vector `r` between the
-/// first points says all: they are closest where `r + s a − t b` is along `c`, at `s = −A·r`, `t = B·r`. When both move, the
-/// normal turns by `∂n = −(n·∂a) A − (n·∂b) B`, as that of a triangle does with the gradients of its coordinates: the formulas
-/// above hold with `−A, A` for the points of the first line and `−B, B` for those of the second.
+/// With the directions `a` and `b`, `c = a × b` and the dual vectors `A = b × c/c²`, `B = c × a/c²`, the vector `r`
+/// between the first points determines the rest: the lines are closest where `r + s a − t b` is along `c`, at
+/// `s = −A·r`, `t = B·r`. When both move, the normal turns by `∂n = −(n·∂a) A − (n·∂b) B`, as that of a triangle does
+/// with the gradients of its coordinates: the formulas above hold with `−A, A` for the points of the first line and
+/// `−B, B` for those of the second.
 pub(super) fn crossing(first: [Vec3; 2], second: [Vec3; 2]) -> Option<Crossing> {
     let (a, b) = (sub(first[1], first[0]), sub(second[1], second[0]));
     let c = cross(a, b);
