@@ -7,9 +7,9 @@
 //! (K + G C Gᵀ)⁻¹ s = y − W (1 + C H)⁻¹ C Gᵀ y,   y = K⁻¹ s,   W = K⁻¹ G,   H = Gᵀ W.
 //! ```
 //!
-//! Past the limit of a balloon `K` is indefinite, and the sum is positive where the amount of gas holds the balloon. With
-//! `C = L Lᵀ` of the rank `r`, as many eigenvalues of the sum are negative as of `K` and of `−1 − Lᵀ H L` together, less `r`
-//! (Haynsworth 1968, doi 10.1016/0024-3795(68)90050-5).
+//! Past the limit of a balloon `K` is indefinite, and the sum is positive definite if the amount of gas holds the
+//! balloon. With `C = L Lᵀ` of the rank `r`, as many eigenvalues of the sum are negative as of `K` and of `−1 − Lᵀ H L`
+//! together, less `r` (Haynsworth 1968, doi 10.1016/0024-3795(68)90050-5).
 
 use voxsoft_solid::fluid::{Coupling, solve_small};
 use voxsoft_solid::vector::Vec3;
