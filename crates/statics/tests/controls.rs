@@ -225,7 +225,7 @@ fn arc_length_past_a_limit_onto_a_plate() {
     assert!(limit > 0.98 && limit < 1.0 + EXACT, "{limit}");
     let lowest = free.last().unwrap().0 * weight / largest();
     assert!(lowest < 0.7, "{lowest}");
-    // On the plate it carries the rest.
+    // The plate carries the rest.
     let way = -answer.positions[0][2];
     assert!((way - FREE).abs() < CLEARANCE, "{way}");
     let off = force(&problem, &answer) - (weight - truss(way));

@@ -174,7 +174,7 @@ impl Touch {
             .collect();
         let mut sum = [0.0; 3];
         let Some(&first) = on.first() else {
-            return sum; // The weights of points that are no numbers.
+            return sum; // Weights of points with NaN coordinates.
         };
         for &other in &self.around[first as usize] {
             let of_other = self.triangles[other as usize];

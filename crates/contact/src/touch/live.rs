@@ -320,7 +320,7 @@ impl Contact for LiveTouch {
         self.each_pressed(state, positions, |meeting, pressure| {
             let sample = meeting.sample as usize;
             if -meeting.gap > deepest {
-                return; // It is let go, and `excess_depth` says so.
+                return; // Released as too deep; see `excess_depth`.
             }
             pressures[sample] = pressure;
             let both = (pressure, self.run.borne[sample]);

@@ -123,13 +123,13 @@ pub struct Touch {
     rest_points: Vec<Vec3>,
     /// Axes across planes of symmetry through the origin.
     planes: [bool; 3],
-    /// With planes of symmetry, the part of each sample that counts: 0 on the negative sides, which are images.
+    /// Part of each sample that counts with planes of symmetry: 0 on the negative sides, which are images.
     weights: Vec<f64>,
-    /// With planes of symmetry, the point of which each is an image, itself if it counts.
+    /// Point of which each is an image with planes of symmetry, itself if it counts.
     twins: Vec<u32>,
     /// Axes along which vertices never move; empty if nothing touches in the unloaded design.
     still: Vec<[bool; 3]>,
-    /// With these, the samples within their clearance in the unloaded design.
+    /// True for samples within their clearance in the unloaded design; empty where `still` is.
     touching: Vec<bool>,
     /// Triangles of all surfaces, of these points.
     triangles: Vec<[u32; 3]>,

@@ -327,7 +327,7 @@ impl Implicit {
             fresh = true;
         }
         if self.excess > self.lagged.as_ref().map_or(0.0, Lagged::factor_cost) {
-            // For the next step.
+            // A fresh tangent for the next step.
             self.assemble(&positions, goal, Tangent::Exact)?;
         }
         Ok((positions, value))
