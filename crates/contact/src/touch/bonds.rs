@@ -31,8 +31,8 @@ use super::{Carried, PENALTY, Surface, Touch};
 
 /// Tolerance of the tie constraint, in voxels: a hundredth of the clearance of contact.
 const OFF: f64 = 1e-6;
-/// Penalty of a tie over that of contact: a tie has no kinks, and each correction reduces the multiplier error by this
-/// factor more.
+/// Penalty of a tie over that of contact: a tie has no kinks, and a larger penalty reduces the multiplier error more
+/// with each correction.
 const STIFFER_THAN_CONTACT: f64 = 10.0;
 
 /// Body that carries points in it, also a little beside its surface.

@@ -52,8 +52,8 @@ use state::{Facing, Memory, State};
 use surface::Sample;
 pub use surface::{Carried, Surface};
 
-/// Contact penalty in units of Young's modulus over the voxel size. Each correction divides the multiplier error by it;
-/// at 100, blocks of rubber held against bulging take ten times as many corrections.
+/// Contact penalty in units of Young's modulus over the voxel size. The larger it is, the more each correction reduces
+/// the multiplier error; at 100, blocks of rubber held against bulging take ten times as many corrections.
 const PENALTY: f64 = 1000.0;
 /// Smallest area from which the penalty of a sample is computed, relative to the mean one of its surface. Multipliers
 /// of slivers of a skin would otherwise converge endlessly, a little with each correction.
