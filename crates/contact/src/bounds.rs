@@ -1,7 +1,7 @@
-//! Boxes along the axes.
+//! Axis-aligned bounding boxes.
 use crate::predicates::Point;
 
-/// A box along the axes; closed.
+/// Axis-aligned bounding box; closed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Bounds {
     pub(crate) low: Point,
@@ -9,13 +9,13 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// Holds nothing, and grows by [`Self::with`].
+    /// Empty box, which grows by [`Self::with`].
     pub(crate) const EMPTY: Self = Self {
         low: [f64::INFINITY; 3],
         high: [f64::NEG_INFINITY; 3],
     };
 
-    /// The box of some points.
+    /// Bounding box of some points.
     pub(crate) fn of(points: impl IntoIterator<Item = Point>) -> Self {
         let mut bounds = Self::EMPTY;
         for point in points {
@@ -27,7 +27,7 @@ impl Bounds {
         bounds
     }
 
-    /// The box of both.
+    /// Bounding box of both.
     pub(crate) fn with(&self, other: &Self) -> Self {
         Self {
             low: std::array::from_fn(|axis| self.low[axis].min(other.low[axis])),
@@ -35,24 +35,24 @@ impl Bounds {
         }
     }
 
-    /// Whether the boxes have a point in common.
+    /// Tests whether the boxes share a point.
     pub(crate) fn meets(&self, other: &Self) -> bool {
-        // Without branches: this is what most of the time of a search goes into.
+        // Free of branches: a search spends most of its time here.
         let along = |a: usize| (self.low[a] <= other.high[a]) & (other.low[a] <= self.high[a]);
         along(0) & along(1) & along(2)
     }
 
-    /// Whether the boxes have inner points in common.
+    /// Tests whether the interiors of the boxes intersect.
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
         (0..3).all(|a| self.low[a] < other.high[a] && other.low[a] < self.high[a])
     }
 
-    /// Whether the point is in the box.
+    /// Tests whether the point is in the box.
     pub(crate) fn holds(&self, point: Point) -> bool {
         (0..3).all(|a| self.low[a] <= point[a] && point[a] <= self.high[a])
     }
 
-    /// Whether a ray from the point along x meets the box.
+    /// Tests whether a ray from the point along +x meets the box.
     pub(crate) fn is_ahead_of(&self, point: Point) -> bool {
         self.high[0] >= point[0]
             && (1..3).all(|a| self.low[a] <= point[a] && point[a] <= self.high[a])

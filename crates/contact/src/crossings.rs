@@ -1,4 +1,4 @@
-//! Which triangles of a body pass through each other.
+//! Intersecting triangles of a body.
 use std::collections::HashMap;
 
 use crate::incidence::Incidence;
@@ -8,16 +8,16 @@ use crate::tetrahedra;
 use crate::tree::Tree;
 use crate::triangles::{Meeting, meeting};
 
-/// Triangles that pass through each other, and those of shells that lie wholly within other material.
+/// Intersecting triangles, and triangles of shells that lie wholly within other material.
 pub(crate) struct Crossings {
-    /// Ascending, each pair once, the smaller number first.
+    /// Pairs, ascending, each once, the smaller number first.
     pub(crate) pairs: Vec<[u32; 2]>,
     /// Triangles of shells within other material.
     pub(crate) swallowed: Vec<u32>,
 }
 
 impl Crossings {
-    /// Looks at a closed `surface` of tetrahedra, and membranes whose triangles follow it in `all`.
+    /// Tests a closed `surface` of tetrahedra, and membranes whose triangles follow it in `all`.
     pub(crate) fn of(
         points: &[Point],
         all: &[[i32; 3]],
@@ -41,10 +41,10 @@ impl Crossings {
     }
 }
 
-/// The pairs that cross, and those of which only edges and vertices meet while the material behind them overlaps.
+/// Pairs that cross, and pairs of which only edges and vertices meet while the material behind them overlaps.
 ///
-/// Where surfaces meet along edges, or lie in one plane, the triangles alone do not tell whether the bodies touch or
-/// are in each other: the tetrahedra at their vertices do.
+/// If surfaces meet along edges, or lie in one plane, the triangles alone do not decide between touching and
+/// overlapping bodies: the tetrahedra at their vertices do.
 fn decided(
     points: &[Point],
     all: &[[i32; 3]],
@@ -86,7 +86,7 @@ fn decided(
         .collect()
 }
 
-/// Triangles of shells that cross nothing and lie in material that is not theirs.
+/// Triangles of shells that cross nothing and lie in foreign material.
 fn swallowed(points: &[Point], surface: &[[i32; 3]], tree: &Tree, pairs: &[[u32; 2]]) -> Vec<u32> {
     let (shells, of_triangle) = shells(points, surface);
     if shells.len() < 2 {
@@ -105,7 +105,7 @@ fn swallowed(points: &[Point], surface: &[[i32; 3]], tree: &Tree, pairs: &[[u32;
         }
         let is_own = |t: u32| of_triangle[t as usize] == number as u32;
         let corners = shell.triangles.iter().flat_map(|&t| surface[t as usize]);
-        // A vertex that lies on another shell does not tell.
+        // A vertex on another shell is undecided and is skipped.
         let count = corners
             .filter_map(|v| covering(points, surface, tree, points[v as usize], is_own))
             .next();

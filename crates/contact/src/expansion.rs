@@ -1,9 +1,9 @@
-//! Sums of floating-point numbers without rounding (Shewchuk 1997), for the few determinants that are not orientations
-//! of four points. Slow, and only asked where rounding could decide.
+//! Exact floating-point sums (Shewchuk 1997), for the few determinants that are not orientations of four points. Slow,
+//! and evaluated only if rounding could change the sign.
 use crate::predicates::Point;
 use crate::vectors::{cross, dot};
 
-/// Of rounding in the determinant below, relative to the products that are added up.
+/// Bound of the rounding error in the determinant below, relative to the products that are added up.
 const ROUNDING: f64 = 1e-14;
 
 /// The sign of det(b − a, d − c, y − x): -1, 0 or 1.
@@ -47,11 +47,11 @@ fn exact_sign(u: [Point; 2], v: [Point; 2], w: [Point; 2]) -> f64 {
             }
         }
     }
-    // The parts do not overlap, so that the largest decides.
+    // The parts do not overlap, so the largest decides the sign.
     sum.last().map_or(0.0, |part| part.signum())
 }
 
-/// Adds a number to a sum of parts that do not overlap, smallest first (Shewchuk's grow-expansion).
+/// Adds a number to an expansion of parts that do not overlap, smallest first (Shewchuk's grow-expansion).
 fn add(sum: &mut Vec<f64>, number: f64) {
     let mut carry = number;
     let mut kept = 0;
@@ -69,7 +69,7 @@ fn add(sum: &mut Vec<f64>, number: f64) {
     }
 }
 
-/// a + b as a rounded sum and what rounding left (Knuth).
+/// Rounded sum a + b and its rounding error (Knuth's two-sum).
 fn total(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let of_b = sum - a;
@@ -77,7 +77,7 @@ fn total(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - of_a) + (b - of_b))
 }
 
-/// a · b as a rounded product and what rounding left (Dekker).
+/// Rounded product a · b and its rounding error (Dekker's two-product).
 fn product(a: f64, b: f64) -> (f64, f64) {
     let rounded = a * b;
     let ((a1, a0), (b1, b0)) = (split(a), split(b));
@@ -87,7 +87,7 @@ fn product(a: f64, b: f64) -> (f64, f64) {
     )
 }
 
-/// A number as two of 26 bits each (Veltkamp).
+/// Splits a number into two of 26 bits each (Veltkamp).
 fn split(a: f64) -> (f64, f64) {
     let c = 134_217_729.0 * a;
     let high = c - (c - a);

@@ -1,14 +1,14 @@
-//! Which crossings are one place: of two components, and hanging together.
+//! Groups of crossings: connected, and between the same two components.
 use std::collections::HashMap;
 
 use crate::union::Sets;
 
-/// Sets of triangles, each together with the component that it is in.
+/// Sets of triangles, each together with the component that it penetrates.
 ///
-/// A triangle that reaches into two components is in two places, and so are two fingers that both reach into what is
-/// between them.
+/// A triangle that penetrates two components belongs to two groups, and two fingers that both penetrate a body between
+/// them are two groups.
 pub(crate) struct Groups {
-    /// The component of each vertex: the smallest vertex that tetrahedra join it to.
+    /// Component of each vertex: the smallest vertex connected to it by tetrahedra.
     component: Vec<u32>,
     numbers: HashMap<(u32, u32), usize>,
     sets: Sets,
@@ -29,18 +29,18 @@ impl Groups {
         }
     }
 
-    /// The component of a vertex.
+    /// Component of a vertex.
     pub(crate) fn component(&self, vertex: i32) -> u32 {
         self.component[vertex as usize]
     }
 
-    /// The group of a triangle in a component.
+    /// Group of a triangle in a component.
     pub(crate) fn of(&mut self, triangle: u32, component: u32) -> usize {
         let number = self.number(triangle, component);
         self.sets.find(number)
     }
 
-    /// Makes one group of two triangles, each in a component.
+    /// Merges the groups of two triangles, each in a component.
     pub(crate) fn join(&mut self, one: (u32, u32), other: (u32, u32)) {
         let (one, other) = (self.number(one.0, one.1), self.number(other.0, other.1));
         self.sets.join(one, other);

@@ -1,6 +1,6 @@
-//! Which cells hold a vertex.
+//! Vertex-to-cell incidence.
 
-/// For every vertex, the numbers of the cells that have it as a corner, ascending.
+/// Numbers of the cells at each vertex, ascending.
 pub(crate) struct Incidence {
     starts: Vec<u32>,
     cells: Vec<u32>,
@@ -30,7 +30,7 @@ impl Incidence {
         }
     }
 
-    /// The cells at a vertex.
+    /// Cells at a vertex.
     pub(crate) fn of(&self, vertex: i32) -> &[u32] {
         let vertex = vertex as usize;
         &self.cells[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]

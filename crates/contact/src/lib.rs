@@ -1,15 +1,15 @@
-//! Where a body passes through itself: an exact test of its surface, and how deep.
+//! Self-intersection of a body: an exact test of its surface, and the depth of each overlap.
 //!
-//! Two places of a body overlap if their material would have to be at one place. The surface tells: triangles of it
-//! then pass through each other, or a whole piece of it lies in other material. Which triangles do is decided by
-//! predicates without rounding ([`robust`]), so that bodies which touch, to the last bit, do not overlap, and bodies
-//! that overlap by the last bit do.
+//! Two places of a body overlap if their material would have to be at one place. The surface shows it: triangles of it
+//! then intersect, or a whole shell of it lies in other material. Intersecting triangles are found by predicates
+//! without rounding ([`robust`]), so that bodies which touch, to the last bit, do not overlap, and bodies that overlap
+//! by the last bit do.
 //!
 //! # Depth
 //!
-//! A vertex of the surface in foreign material is as deep as it is far from the surface of *that* material: the
-//! distance to the nearest face that it sees through it. The depth of an overlap is the largest one of its vertices, and
-//! of the middles of the stretches of edges that lie in foreign material.
+//! The depth of a surface vertex in foreign material is its distance from the surface of *that* material: the distance
+//! to the nearest face reached from it through the material. The depth of an overlap is the largest one of its
+//! vertices, and of the midpoints of the edge segments that lie in foreign material.
 //!
 //! ```
 //! use voxsoft_contact::{Body, penetration};
@@ -60,54 +60,55 @@ pub use predicates::Point;
 pub struct Body<'a> {
     /// Vertices of the unloaded body [m].
     pub rest: &'a [Point],
-    /// The same vertices now [m]; finite.
+    /// Vertices of the deformed body [m]; finite.
     pub positions: &'a [Point],
     /// Tetrahedra, of positive volume in the unloaded body.
     pub tets: &'a [[i32; 4]],
-    /// Their boundary, outward.
+    /// Boundary triangles of the tetrahedra, outward.
     pub triangles: &'a [[i32; 3]],
     /// Triangles of membranes without volume, which nothing may pass through either.
     pub membranes: &'a [[i32; 3]],
 }
 
-/// Where a body overlaps itself.
+/// Overlaps of a body with itself.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Penetration {
-    /// Triangles that pass through each other, ascending; those of the membranes are numbered on from the surface's.
+    /// Pairs of triangles that intersect, ascending; triangles of membranes are numbered after those of the surface.
     pub pairs: Vec<[u32; 2]>,
-    /// The places where they do, the deepest first.
+    /// Overlaps, the deepest first.
     pub overlaps: Vec<Overlap>,
     /// Vertices of the surface in foreign material.
     pub covered: Vec<Covered>,
 }
 
-/// One place where a component overlaps itself or another.
+/// One overlap of a component with itself or another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overlap {
-    /// How deep [m]; for membranes, how far an edge reaches through at least.
+    /// Depth [m]; for membranes, a lower bound of the distance by which an edge reaches through.
     pub depth: f64,
-    /// The deepest point now [m].
+    /// Deepest point of the deformed body [m].
     pub now: Point,
-    /// The two points of the unloaded body that are there [m]: of the surface, and of what it is in.
+    /// The two material points there, in the unloaded body [m]: one on the surface, one in the material that it
+    /// penetrates.
     pub rest: [Point; 2],
-    /// The tetrahedra of both; -1 where a membrane has none.
+    /// Tetrahedra of both points; -1 where a membrane has none.
     pub tets: [i32; 2],
-    /// Whether there is no overlap but a surface turned inside out, at tetrahedra that are.
+    /// True if this is no overlap but a surface turned inside out, at inverted tetrahedra.
     pub inverted: bool,
 }
 
 /// A vertex of the surface in foreign material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Covered {
-    /// The vertex.
+    /// Vertex number.
     pub vertex: i32,
-    /// The tetrahedron that it is in.
+    /// Tetrahedron that contains the vertex.
     pub tet: i32,
-    /// The overlap, as they are listed.
+    /// Number of the overlap in [`Penetration::overlaps`].
     pub overlap: u32,
 }
 
-/// Finds where a body overlaps itself. The answer has the same bits for any number of threads.
+/// Finds the overlaps of a body with itself. The result has the same bits for any number of threads.
 ///
 /// # Panics
 ///

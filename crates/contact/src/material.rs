@@ -1,4 +1,4 @@
-//! The tetrahedra of a deformed body: which of them a point is in, and how deep below their surface.
+//! Tetrahedra of a deformed body: point location, and depth below the surface.
 use std::collections::{BinaryHeap, HashMap};
 
 use crate::bounds::Bounds;
@@ -10,14 +10,14 @@ use crate::vectors::distance_to_triangle;
 /// Faces of a tetrahedron; face f lies across from corner f.
 const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// Tetrahedra at their positions now.
+/// Tetrahedra at their deformed positions.
 pub(crate) struct Material<'a> {
     points: &'a [Point],
     tets: &'a [[i32; 4]],
-    /// The tetrahedra at each vertex.
+    /// Tetrahedra at each vertex.
     pub(crate) stars: Incidence,
     tree: Tree,
-    /// Neighbors across faces that were asked for: -1 where there is none.
+    /// Cached neighbors across faces: -1 at the surface.
     neighbors: HashMap<u32, [i64; 4]>,
 }
 
@@ -36,14 +36,14 @@ impl<'a> Material<'a> {
         }
     }
 
-    /// The corners of a tetrahedron now.
+    /// Deformed corners of a tetrahedron.
     pub(crate) fn corners(&self, tet: u32) -> [Point; 4] {
         self.tets[tet as usize].map(|v| self.points[v as usize])
     }
 
-    /// The tetrahedra of positive volume that hold a point, those at `own` vertices left out, if the material there
-    /// covers it: tetrahedra that are turned inside out count against the others, and where all at `own` vertices
-    /// are, they count for the surface itself.
+    /// Tetrahedra of positive volume that contain a point, without those at all `own` vertices; empty unless foreign
+    /// material covers the point. Inverted tetrahedra cancel others, and if all tetrahedra at the first `own` vertex
+    /// are inverted, one more has to contain the point, for the surface itself.
     pub(crate) fn covering(&self, point: Point, own: &[i32]) -> Vec<u32> {
         let mut holding = Vec::new();
         let (mut inner, mut inverted) = (0_usize, 0_usize);
@@ -75,8 +75,8 @@ impl<'a> Material<'a> {
         holding
     }
 
-    /// How deep a point in a tetrahedron is: the distance to the nearest face of the surface that it sees through the
-    /// material, from tetrahedron to tetrahedron. Other places of the body that happen to be there do not count.
+    /// Depth of a point in a tetrahedron: the distance to the nearest surface face reached through the material, from
+    /// tetrahedron to tetrahedron. Other places of the body that happen to be there do not count.
     pub(crate) fn depth(&mut self, point: Point, tet: u32) -> f64 {
         let mut nearest = f64::INFINITY;
         let mut open = BinaryHeap::from([Entry { distance: 0.0, tet }]);
@@ -109,7 +109,7 @@ impl<'a> Material<'a> {
         nearest
     }
 
-    /// The tetrahedra across the faces of one, -1 at the surface.
+    /// Tetrahedra across the faces of one, -1 at the surface.
     fn across(&mut self, tet: u32) -> [i64; 4] {
         if let Some(known) = self.neighbors.get(&tet) {
             return *known;
@@ -136,7 +136,7 @@ impl<'a> Material<'a> {
         self.stars.of(a).iter().find(holds).copied()
     }
 
-    /// The weights of the corners of a tetrahedron at a point in it.
+    /// Barycentric weights of the corners of a tetrahedron at a point in it.
     pub(crate) fn weights(&self, tet: u32, point: Point) -> [f64; 4] {
         let corners = self.corners(tet);
         let volumes = FACES.map(|[i, j, k]| side(corners[i], corners[j], corners[k], point).abs());
@@ -149,7 +149,7 @@ impl<'a> Material<'a> {
     }
 }
 
-/// A tetrahedron to look at, the nearest first; equal ones in order of their number.
+/// Tetrahedron in the search queue, the nearest first; equal ones in order of their number.
 #[derive(PartialEq)]
 struct Entry {
     distance: f64,

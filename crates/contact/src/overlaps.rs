@@ -1,4 +1,4 @@
-//! From triangles that cross to the places where a body overlaps itself, and how deep.
+//! Overlaps of a body with itself and their depths, from intersecting triangles.
 use std::collections::{BTreeMap, VecDeque};
 
 use crate::crossings::Crossings;
@@ -10,10 +10,10 @@ use crate::triangles::reaches;
 use crate::vectors::{axpy, cross, distance, dot, sub};
 use crate::{Body, Covered, Overlap};
 
-/// Depths below this part of the edge that they are measured on are rounding.
+/// Relative depth, in lengths of the edge that it is measured on, below which it is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Finds the overlaps, the deepest first, and all vertices that other material covers.
+/// Finds the overlaps, the deepest first, and all vertices covered by foreign material.
 pub(crate) fn overlaps(
     body: &Body<'_>,
     all: &[[i32; 3]],
@@ -46,35 +46,35 @@ pub(crate) fn overlaps(
     (overlaps, covered)
 }
 
-/// A vertex in foreign material: that of a component, and the tetrahedra there that hold it.
+/// Vertex in foreign material: the component of that material, and its tetrahedra that contain the vertex.
 struct Vertex {
     vertex: i32,
     component: u32,
     tets: Vec<u32>,
 }
 
-/// A point of the surface in foreign material.
+/// Point of the surface in foreign material.
 #[derive(Clone, Copy)]
 struct Sample {
     depth: f64,
-    /// The ends of the edge that it is on, and how far along.
+    /// Ends of its edge, and its parameter along the edge.
     ends: [i32; 2],
     along: f64,
-    /// The tetrahedron that holds it.
+    /// Tetrahedron that contains it.
     within: u32,
 }
 
-/// An edge that passes through triangles of a component: one of its own triangles, and how far along it does.
+/// Edges that pass through triangles of a component: one of the edge's own triangles, and the parameters of the cuts.
 type Pierced = BTreeMap<([i32; 2], u32), (u32, Vec<f64>)>;
 
 struct Search<'a> {
     body: &'a Body<'a>,
     all: &'a [[i32; 3]],
     material: Material<'a>,
-    /// The triangles at each vertex.
+    /// Triangles at each vertex.
     around: Incidence,
     groups: Groups,
-    /// The deepest sample of each group.
+    /// Deepest sample of each group.
     deepest: BTreeMap<usize, Sample>,
 }
 
@@ -83,8 +83,8 @@ impl Search<'_> {
         self.groups.component(self.all[triangle as usize][0])
     }
 
-    /// Finds the covered vertices from the triangles that cross inwards, in the order of finding; triangles at a
-    /// covered vertex are of one group.
+    /// Finds the covered vertices by a flood fill from the crossing triangles inward, in the order of finding;
+    /// triangles at a covered vertex are of one group.
     fn flood(&mut self, crossings: &Crossings) -> Vec<Vertex> {
         let mut seen = vec![false; self.body.positions.len()];
         let mut open: VecDeque<i32> = VecDeque::new();
@@ -129,8 +129,8 @@ impl Search<'_> {
         self.groups.of(triangle, covered.component)
     }
 
-    /// Measures covered vertices, those that were found last first: they lie deepest, and spare the others, because
-    /// from a vertex to the next the depth grows by no more than their distance.
+    /// Measures covered vertices in reverse order of finding: the last lie deepest, and spare the others, because from
+    /// a vertex to the next the depth grows by no more than their distance.
     fn measure_vertices(&mut self, vertices: &[Vertex]) {
         let points = self.body.positions;
         let mut limit: BTreeMap<(i32, u32), f64> = BTreeMap::new();
@@ -162,7 +162,7 @@ impl Search<'_> {
         }
     }
 
-    /// Measures the middle of every stretch between places where an edge passes through a triangle.
+    /// Measures the midpoint of every segment between the cuts of an edge.
     fn measure_edges(&mut self, pairs: &[[u32; 2]]) {
         let points = self.body.positions;
         for ((ends, component), (triangle, mut cuts)) in self.pierced(pairs) {
@@ -174,7 +174,7 @@ impl Search<'_> {
             for stretch in cuts.windows(2) {
                 let along = 0.5 * (stretch[0] + stretch[1]);
                 let middle = between(p, q, along);
-                // One end at least is on the other surface.
+                // At least one end lies on the other surface.
                 let bound = (stretch[1] - along) * distance(p, q);
                 if bound <= self.deepest_of(group).max(least) {
                     continue;
@@ -211,12 +211,12 @@ impl Search<'_> {
         edges
     }
 
-    /// How deep a group is as far as is known; less than nothing where nothing is.
+    /// Largest depth of a group so far; negative without a sample.
     fn deepest_of(&self, group: usize) -> f64 {
         self.deepest.get(&group).map_or(-1.0, |best| best.depth)
     }
 
-    /// The edges of one triangle that pass through another, and how far along.
+    /// Edges of one triangle that pass through another, and the parameter of the cut along each.
     fn cuts(&self, own: u32, other: u32) -> impl Iterator<Item = ([i32; 2], f64)> {
         let points = self.body.positions;
         let [u, v, w] = self.all[own as usize];
@@ -250,14 +250,14 @@ impl Search<'_> {
         }
     }
 
-    /// The overlaps, the deepest first, each with its group.
+    /// Overlaps, the deepest first, each with its group.
     fn overlaps(&mut self, crossings: &Crossings, vertices: &[Vertex]) -> Vec<(usize, Overlap)> {
         let mut first: BTreeMap<usize, [u32; 2]> = BTreeMap::new();
         for &[i, j] in &crossings.pairs {
             let group = self.groups.of(i, self.component(j));
             first.entry(group).or_insert([i, j]);
         }
-        // Where no surface is crossed: a piece wholly within another, and what that piece crosses besides.
+        // Without intersecting surfaces: a component wholly within another, and others that it crosses besides.
         for each in vertices {
             let triangle = self.around.of(each.vertex)[0];
             first.entry(self.group_of(each)).or_insert([triangle; 2]);
@@ -273,12 +273,12 @@ impl Search<'_> {
                 ),
             })
             .collect();
-        // A stable sort: of equal depths the one with the first triangle comes first.
+        // Stable sort: of equal depths the one with the first triangle comes first.
         found.sort_by(|(_, a), (_, b)| b.depth.total_cmp(&a.depth));
         found
     }
 
-    /// How far edges reach beyond the planes of membranes, at least, by overlap: a membrane has no inside.
+    /// Lower bounds, by overlap, of the distance by which edges reach beyond membranes, which have no inside.
     fn membrane_depths(&mut self, pairs: &[[u32; 2]]) -> BTreeMap<usize, f64> {
         let mut depths: BTreeMap<usize, f64> = BTreeMap::new();
         for &[i, j] in pairs {
@@ -325,7 +325,7 @@ impl Search<'_> {
         }
     }
 
-    /// Where nothing is deep: at the middles of two triangles that cross.
+    /// Overlap without a deep sample: at the centroids of two crossing triangles.
     fn at_pair(&self, pair: [u32; 2], depth: f64) -> Overlap {
         let center = |points: &[Point], triangle: u32| {
             let mut center = [0.0; 3];

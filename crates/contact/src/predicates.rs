@@ -4,10 +4,10 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 /// A point [m].
 pub type Point = [f64; 3];
 
-/// Which side of the plane through `a`, `b`, `c` the point `d` is on.
+/// Orientation predicate: the side of the plane through `a`, `b`, `c` on which the point `d` lies.
 ///
-/// Positive where the normal (b − a) × (c − a) points to, negative behind, zero on the plane; the sign is exact,
-/// the size is six times the volume of the tetrahedron up to rounding.
+/// Positive where the normal (b − a) × (c − a) points to, negative behind, zero on the plane; the sign is exact, the
+/// size is six times the volume of the tetrahedron up to rounding.
 pub(crate) fn side(a: Point, b: Point, c: Point, d: Point) -> f64 {
     let coord = |[x, y, z]: Point| Coord3D { x, y, z };
     -orient3d(coord(a), coord(b), coord(c), coord(d))
@@ -19,12 +19,12 @@ pub(crate) fn area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     orient2d(coord(a), coord(b), coord(c))
 }
 
-/// Whether the tetrahedron has positive volume.
+/// Tests whether the tetrahedron has positive volume.
 pub(crate) fn is_positive([a, b, c, d]: [Point; 4]) -> bool {
     side(a, b, c, d) > 0.0
 }
 
-/// How many faces of a positive tetrahedron a point lies on, if it is in it at all.
+/// Number of faces of a positive tetrahedron on which a point lies, if the tetrahedron contains it.
 pub(crate) fn faces_touched([a, b, c, d]: [Point; 4], p: Point) -> Option<usize> {
     let mut touched = 0;
     for [u, v, w] in [[b, d, c], [a, c, d], [a, d, b], [a, b, c]] {
@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tetrahedron_knows_what_is_in_it_and_on_it() {
+    fn points_in_and_on_a_tetrahedron() {
         let tet = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         assert!(is_positive(tet));
         assert_eq!(faces_touched(tet, [0.1; 3]), Some(0));

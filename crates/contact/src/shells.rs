@@ -1,4 +1,4 @@
-//! Whole pieces of surface, and how often a point is covered by what they enclose.
+//! Connected shells of a surface, and the number of them that enclose a point.
 use crate::bounds::Bounds;
 use crate::predicates::{Point, area, side};
 use crate::tree::Tree;
@@ -6,13 +6,13 @@ use crate::triangles::holds;
 use crate::union::Sets;
 use crate::vectors::{cross, dot, sub};
 
-/// Triangles that hang together at vertices, with the volume they enclose [m³], negative around a cavity.
+/// Triangles connected at vertices, with the enclosed volume [m³], negative around a cavity.
 pub(crate) struct Shell {
     pub(crate) triangles: Vec<u32>,
     pub(crate) volume: f64,
 }
 
-/// The shells of a closed surface, in the order of their first triangles.
+/// Shells of a closed surface, in the order of their first triangles.
 pub(crate) fn shells(points: &[Point], triangles: &[[i32; 3]]) -> (Vec<Shell>, Vec<u32>) {
     let mut sets = Sets::new(points.len());
     for &[a, b, c] in triangles {
@@ -32,7 +32,7 @@ pub(crate) fn shells(points: &[Point], triangles: &[[i32; 3]]) -> (Vec<Shell>, V
             });
         }
         let shell = &mut shells[number[root] as usize];
-        // About a point of the shell, so that a small one far away loses nothing to rounding.
+        // Relative to a point of the shell, so that a small one far away loses nothing to rounding.
         let origin = shell
             .triangles
             .first()
@@ -45,11 +45,11 @@ pub(crate) fn shells(points: &[Point], triangles: &[[i32; 3]]) -> (Vec<Shell>, V
     (shells, of_triangle)
 }
 
-/// How often the shells other than `own` cover a point: the sum of the crossings of a ray, +1 where it leaves and -1
-/// where it enters. None for a point on one of them.
+/// Number of shells other than `own` that enclose a point: the sum of the crossings of a ray, +1 where it leaves and -1
+/// where it enters. `None` for a point on one of them.
 ///
-/// The ray runs along x from a point that is moved by as good as nothing along y, and by much less along z, so that it
-/// meets no edge.
+/// The ray runs along x from a point shifted infinitesimally along y, and by a smaller order along z, so that it meets
+/// no edge.
 pub(crate) fn covering(
     points: &[Point],
     triangles: &[[i32; 3]],
@@ -74,7 +74,7 @@ pub(crate) fn covering(
         let [a, b, c] = at(t);
         let turns = [turn(a, b, point), turn(b, c, point), turn(c, a, point)];
         let one_turn = turns[0] == turns[1] && turns[1] == turns[2];
-        // Seen along x a triangle that turns left has its front away from where the ray comes from.
+        // Seen along x, a triangle that turns left has its front away from the origin of the ray.
         if one_turn && side(a, b, c, point) * turns[0] < 0.0 {
             count += turns[0] as i64;
         }
@@ -82,18 +82,18 @@ pub(crate) fn covering(
     Some(count)
 }
 
-/// On which side of the edge from `a` to `b`, seen along x, the moved point is: 1 for left, -1 for right.
+/// Side of the edge from `a` to `b`, seen along x, on which the shifted point lies: 1 for left, -1 for right.
 fn turn(a: Point, b: Point, point: Point) -> f64 {
     let flat = |p: Point| [p[1], p[2]];
     let exact = area(flat(a), flat(b), flat(point));
-    // What a small step along y, and a much smaller one along z, add to it.
+    // Terms added by the infinitesimal shift along y, and by the smaller one along z.
     [exact, -(b[2] - a[2]), b[1] - a[1]]
         .into_iter()
         .find(|&term| term != 0.0)
         .map_or(1.0, f64::signum)
 }
 
-/// The boxes of triangles.
+/// Bounding boxes of triangles.
 pub(crate) fn bounds_of(points: &[Point], triangles: &[[i32; 3]]) -> Vec<Bounds> {
     triangles
         .iter()

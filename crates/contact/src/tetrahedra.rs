@@ -1,11 +1,11 @@
-//! Whether two tetrahedra have common interior, decided without rounding.
+//! Intersection test of two tetrahedra, decided without rounding.
 use crate::bounds::Bounds;
 use crate::expansion::sign_of;
 use crate::predicates::{Point, is_positive, side};
 
 /// Faces of a positive tetrahedron, outward.
 const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
-/// Its edges, and the two vertices across from each.
+/// Edges, and the two vertices opposite to each.
 const EDGES: [[usize; 4]; 6] = [
     [0, 1, 2, 3],
     [0, 2, 1, 3],
@@ -15,10 +15,10 @@ const EDGES: [[usize; 4]; 6] = [
     [2, 3, 0, 1],
 ];
 
-/// Whether the interiors of two tetrahedra have a point in common; one without positive volume has none.
+/// Tests whether the interiors of two tetrahedra intersect; one without positive volume intersects none.
 ///
-/// They have none exactly if one of the planes along a face of either, or along an edge of each, has them on
-/// different sides (the facets of the difference of two convex bodies lie in no other directions).
+/// They are disjoint exactly if one of the planes along a face of either, or along an edge of each, separates them
+/// (separating-axis theorem: the facets of the difference of two convex bodies lie in no other directions).
 pub(crate) fn overlap(one: [Point; 4], other: [Point; 4]) -> bool {
     Bounds::of(one).overlaps(&Bounds::of(other))
         && is_positive(one)
@@ -47,7 +47,7 @@ fn edges_part(one: [Point; 4], other: [Point; 4]) -> bool {
             let below = own[0] + own[1];
             let foreign = [other[c], other[r], other[s]].map(height);
             let all = |sign: f64| foreign.iter().all(|&h| h * sign >= 0.0);
-            // Zero everywhere: the edges are parallel, and there is no plane.
+            // Zero everywhere: the edges are parallel, and span no plane.
             let flat = below == 0.0 && foreign.iter().all(|&h| h == 0.0);
             !flat && ((below <= 0.0 && all(1.0)) || (below >= 0.0 && all(-1.0)))
         })
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tetrahedron_overlaps_itself_and_what_is_in_it() {
+    fn a_tetrahedron_overlaps_itself_and_smaller_ones_in_it() {
         assert!(both(CORNER, CORNER));
         let small = CORNER.map(|p| p.map(|x| 0.125 * x));
         assert!(both(CORNER, moved(small, [0.125; 3])));
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn two_tetrahedra_of_one_cube_overlap_though_only_their_edges_meet() {
+    fn tetrahedra_with_crossing_edges_overlap() {
         // Kepler's star: every edge of one crosses one of the other's on a face of the cube.
         let one = [[0.0; 3], [1.0, 1.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
         let other = one.map(|p| p.map(|x| 1.0 - x));
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn crossed_edges_part_or_do_not() {
+    fn crossed_edges_separate_or_overlap() {
         let below = [
             [-1.0, 0.0, 0.0],
             [1.0, 0.0, 0.0],

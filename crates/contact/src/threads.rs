@@ -1,13 +1,13 @@
-//! Work on all threads, where there are threads, that gives the same for any number of them.
+//! Parallel loops with the same result for any number of threads.
 
 #[cfg(feature = "threads")]
 use rayon::prelude::*;
 
-/// Things that one task handles.
+/// Items per task.
 #[cfg(feature = "threads")]
 const CHUNK: usize = 256;
 
-/// `each(index)` for `0..count`, in this order.
+/// Values of `each(index)` for `0..count`, in this order.
 pub(crate) fn map<T: Send>(count: usize, each: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     #[cfg(feature = "threads")]
     if count > CHUNK {
@@ -17,7 +17,7 @@ pub(crate) fn map<T: Send>(count: usize, each: impl Fn(usize) -> T + Sync + Send
     (0..count).map(each).collect()
 }
 
-/// Both answers, side by side if the work is `large` and there are threads.
+/// Both results, computed in parallel if the work is `large` and threads are available.
 pub(crate) fn both<T: Send>(
     large: bool,
     first: impl FnOnce() -> T + Send,

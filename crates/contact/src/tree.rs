@@ -1,28 +1,28 @@
-//! A tree of boxes: which of many things are near each other, or near a point.
+//! Bounding-volume hierarchy: finds boxes near each other, or near a point.
 //!
-//! Things are sorted along a curve that fills space (Morton 1966), and the tree halves this list again and again, so
-//! that it is built in the time of a sort and is the same for any number of threads.
+//! Boxes are sorted along a space-filling curve (Morton 1966), and the tree halves this list again and again, so that
+//! it is built in the time of a sort and is the same for any number of threads.
 use crate::bounds::Bounds;
 use crate::predicates::Point;
 use crate::threads::both;
 
-/// Things in a leaf.
+/// Boxes per leaf.
 const LEAF: usize = 4;
-/// Leaves that one task handles.
+/// Leaves per task.
 const TASK: usize = 256;
 
-/// A tree over boxes.
+/// Bounding-volume hierarchy.
 pub(crate) struct Tree {
     /// Numbers of the boxes along the curve.
     order: Vec<u32>,
-    /// The boxes in that order.
+    /// Boxes in that order.
     boxes: Vec<Bounds>,
-    /// The box of each node: of a range of n leaves the node itself, then the 2m − 1 nodes of its first
-    /// m = n / 2 leaves, then those of the others.
+    /// Box of each node: of a range of n leaves the node itself, then the 2m − 1 nodes of its first m = n / 2 leaves,
+    /// then those of the others.
     nodes: Vec<Bounds>,
 }
 
-/// A node with its range of leaves.
+/// Node with its range of leaves.
 #[derive(Clone, Copy)]
 struct Node {
     place: usize,
@@ -72,8 +72,7 @@ impl Tree {
         })
     }
 
-    /// What `test` finds for all pairs of things whose boxes meet, each pair once; in an order that depends on
-    /// the boxes alone.
+    /// Results of `test` for all pairs of boxes that meet, each pair once; in an order that depends on the boxes alone.
     pub(crate) fn pairs<T: Send>(&self, test: &(impl Fn(u32, u32) -> Option<T> + Sync)) -> Vec<T> {
         self.root()
             .map_or_else(Vec::new, |root| self.within(root, test))
@@ -159,17 +158,17 @@ impl Tree {
         leaf * LEAF..((leaf + 1) * LEAF).min(self.boxes.len())
     }
 
-    /// Calls `each` with every thing whose box holds the point.
+    /// Calls `each` with the number of every box that contains the point.
     pub(crate) fn around(&self, point: Point, each: impl FnMut(u32)) {
         self.visit(|bounds| bounds.holds(point), each);
     }
 
-    /// Calls `each` with every thing whose box meets these bounds.
+    /// Calls `each` with the number of every box that meets these bounds.
     pub(crate) fn meeting(&self, bounds: &Bounds, each: impl FnMut(u32)) {
         self.visit(|other| other.meets(bounds), each);
     }
 
-    /// Calls `each` with every thing whose box a ray from the point along x meets.
+    /// Calls `each` with the number of every box that a ray from the point along +x meets.
     pub(crate) fn ahead_of(&self, point: Point, each: impl FnMut(u32)) {
         self.visit(|bounds| bounds.is_ahead_of(point), each);
     }
@@ -193,7 +192,7 @@ impl Tree {
     }
 }
 
-/// Gives every node of a range of leaves its box, and returns that of the range.
+/// Fits the boxes of all nodes of a range of leaves, and returns that of the range.
 fn fit(boxes: &[Bounds], nodes: &mut [Bounds], first: usize, count: usize) -> Bounds {
     let bounds = if count == 1 {
         let leaf = &boxes[first * LEAF..((first + 1) * LEAF).min(boxes.len())];
@@ -212,7 +211,7 @@ fn fit(boxes: &[Bounds], nodes: &mut [Bounds], first: usize, count: usize) -> Bo
     bounds
 }
 
-/// The boxes in the order of their centers along Morton's curve; equal ones in order of their number.
+/// Numbers of the boxes sorted by their centers along Morton's curve; equal ones by number.
 fn along_curve(bounds: &[Bounds]) -> Vec<u32> {
     let all = bounds
         .iter()
@@ -239,10 +238,10 @@ fn along_curve(bounds: &[Bounds]) -> Vec<u32> {
     keyed.into_iter().map(|(_, number)| number).collect()
 }
 
-/// The largest place along an axis: 20 bits, three times which fit in a word.
+/// Largest coordinate along an axis: 20 bits, so that three fit in a word.
 const CELLS: f64 = ((1 << 20) - 1) as f64;
 
-/// The bits of a number of 21 bits, two zeros after each.
+/// Spreads the bits of a number of 21 bits, two zeros after each.
 fn spread(number: u64) -> u64 {
     let mut bits = number;
     for (shift, mask) in [
@@ -271,7 +270,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn finds_what_a_search_through_all_pairs_finds(boxes in boxes()) {
+        fn pairs_agree_with_brute_force(boxes in boxes()) {
             let tree = Tree::new(&boxes);
             let mut found = tree.pairs(&|i, j| Some([i, j]));
             found.sort_unstable();
@@ -287,7 +286,7 @@ mod tests {
         }
 
         #[test]
-        fn finds_the_boxes_around_and_ahead_of_a_point(boxes in boxes(), point in prop::array::uniform3(0.0..1.2_f64)) {
+        fn boxes_around_and_ahead_of_a_point(boxes in boxes(), point in prop::array::uniform3(0.0..1.2_f64)) {
             let tree = Tree::new(&boxes);
             let listed = |wanted: &dyn Fn(&Bounds) -> bool| -> Vec<u32> {
                 (0..boxes.len() as u32).filter(|&i| wanted(&boxes[i as usize])).collect()

@@ -1,25 +1,26 @@
-//! Whether two triangles pass through each other, decided without rounding.
+//! Intersection test of two triangles, decided without rounding.
 use crate::predicates::{Point, area, side};
 use crate::vectors::{cross, dot, sub};
 
-/// Vertices of a triangle.
+/// Vertex numbers of a triangle.
 pub(crate) type Corners = [i32; 3];
 
-/// How two triangles meet, beyond the vertices that they share.
+/// Intersection of two triangles, beyond the vertices that they share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Meeting {
-    /// Not at all.
+    /// No common point.
     Apart,
-    /// They have common points, but neither passes through the other.
+    /// Common points, but neither passes through the other.
     Touch,
-    /// Their open interiors cross, along a segment.
+    /// Interiors cross along a segment.
     Cross,
 }
 
-/// Of rounding, relative to the products that are added up: more than is possible in a dozen operations.
+/// Bound of the rounding error, relative to the products that are added up: more than is possible in a dozen
+/// operations.
 const ROUNDING: f64 = 1e-14;
 
-/// How two triangles of a surface meet.
+/// Classifies the intersection of two triangles of a surface.
 pub(crate) fn meeting(points: &[Point], one: Corners, other: Corners) -> Meeting {
     let shared = one.iter().filter(|corner| other.contains(corner)).count();
     match shared {
@@ -58,12 +59,12 @@ fn unlinked(points: &[Point], one: Corners, other: Corners) -> Meeting {
     }
 }
 
-/// Whether a plane along a triangle, or along one of its edges and across it, surely has the triangles on different
-/// sides. It spares nearly all that lie beside each other in one plane the predicates, which take longest there.
+/// Tests whether a plane along a triangle, or along one of its edges and across it, surely separates the triangles. It
+/// spares nearly all coplanar neighbors the exact predicates, which take longest there.
 fn a_plane_parts(t: [Point; 3], u: [Point; 3]) -> bool {
     let edges = [sub(t[1], t[0]), sub(t[2], t[1]), sub(t[0], t[2])];
     let plane = cross(edges[0], edges[1]);
-    // Any direction tells, however it was rounded.
+    // Any direction may separate, however it was rounded.
     let parts = |normal: Point| {
         let span = |p: [Point; 3]| {
             let mut span = [f64::INFINITY, f64::NEG_INFINITY];
@@ -81,7 +82,7 @@ fn a_plane_parts(t: [Point; 3], u: [Point; 3]) -> bool {
     parts(plane) || edges.iter().any(|&edge| parts(cross(edge, plane)))
 }
 
-/// Triangles (a, b, c) and (a, d, e): the edges across from a tell whether more than a is common.
+/// Triangles (a, b, c) and (a, d, e): the edges opposite to a decide whether more than a is common.
 fn at_a_vertex(points: &[Point], one: Corners, other: Corners) -> Meeting {
     let first = |own: Corners, foreign: Corners| {
         let place = own.iter().position(|corner| foreign.contains(corner));
@@ -94,7 +95,7 @@ fn at_a_vertex(points: &[Point], one: Corners, other: Corners) -> Meeting {
     }
     let behind = u.map(|p| side(t[0], t[1], t[2], p));
     let before = t.map(|p| side(u[0], u[1], u[2], p));
-    // The first signs are zero.
+    // The first signs are zero: the shared vertex.
     if behind[1] * behind[2] > 0.0 || before[1] * before[2] > 0.0 {
         return Meeting::Apart;
     }
@@ -107,8 +108,8 @@ fn at_a_vertex(points: &[Point], one: Corners, other: Corners) -> Meeting {
     }
 }
 
-/// Whether a plane through the common first corner surely has one triangle on each side: the plane across the
-/// difference of their bisectors. It tells nearly all neighbors on a smooth surface apart.
+/// Tests whether a plane through the common first corner surely separates the triangles: the plane across the
+/// difference of their bisectors. It separates nearly all neighbors on a smooth surface.
 fn parted([a, b, c]: [Point; 3], [_, d, e]: [Point; 3]) -> bool {
     let [b, c, d, e] = [b, c, d, e].map(|corner| sub(corner, a));
     let across = |b: Point, c: Point, d: Point, e: Point| -> Point {
@@ -129,8 +130,7 @@ fn parted([a, b, c]: [Point; 3], [_, d, e]: [Point; 3]) -> bool {
     tells(across(b, c, d, e)) || tells(across(unit(b), unit(c), unit(d), unit(e)))
 }
 
-/// Triangles (a, b, c) and (a, b, d): they have more than their edge in common only where one is folded onto
-/// the other.
+/// Triangles (a, b, c) and (a, b, d): they have more than their edge in common only if one is folded onto the other.
 fn along_an_edge(points: &[Point], one: Corners, other: Corners) -> Meeting {
     let apex = |own: Corners, foreign: Corners| {
         let place = own.iter().position(|corner| !foreign.contains(corner));
@@ -151,7 +151,7 @@ fn along_an_edge(points: &[Point], one: Corners, other: Corners) -> Meeting {
     }
 }
 
-/// Whether two points surely lie on opposite sides of an edge, seen along it.
+/// Tests whether two points surely lie on opposite sides of an edge, seen along it.
 fn opposite([a, b]: [Point; 2], c: Point, d: Point) -> bool {
     let (edge, to_c, to_d) = (sub(b, a), sub(c, a), sub(d, a));
     let (square, along_c, along_d) = (dot(edge, edge), dot(to_c, edge), dot(to_d, edge));
@@ -159,8 +159,8 @@ fn opposite([a, b]: [Point; 2], c: Point, d: Point) -> bool {
     square * dot(to_c, to_d) - along_c * along_d < -ROUNDING * size
 }
 
-/// Whether the open triangles cross, from the sides that each vertex has of the other's plane (Guigue and Devillers
-/// 2003, doi 10.1080/10867651.2003.10487580, with open sets in place of closed ones).
+/// Tests whether the open triangles cross, from the sides of each other's plane on which their vertices lie (Guigue and
+/// Devillers 2003, doi 10.1080/10867651.2003.10487580, with open sets in place of closed ones).
 fn crosses(t: [Point; 3], u: [Point; 3], before: [f64; 3], behind: [f64; 3]) -> bool {
     let (Some((t_alone, t_up)), Some((u_alone, u_up))) = (alone(before), alone(behind)) else {
         return false;
@@ -169,14 +169,14 @@ fn crosses(t: [Point; 3], u: [Point; 3], before: [f64; 3], behind: [f64; 3]) -> 
         let [a, b, c] = std::array::from_fn(|i| p[(from + i) % 3]);
         if flip { [a, c, b] } else { [a, b, c] }
     };
-    // The lone vertex of each lies on the positive side of the other's plane once the other is turned over.
+    // Turning over the other triangle puts the lone vertex of each on the positive side of the other's plane.
     let [p1, q1, r1] = turned(t, t_alone, !u_up);
     let [p2, q2, r2] = turned(u, u_alone, !t_up);
     side(p1, q1, p2, q2) < 0.0 && side(p1, r1, r2, p2) < 0.0
 }
 
-/// The vertex that is strictly on its side of a plane while the others are on it or beyond, and whether that side is
-/// the positive one; none where the plane does not cut the open triangle.
+/// Vertex strictly on its side of a plane while the others are on it or beyond, and true if that side is the positive
+/// one; `None` if the plane does not cut the open triangle.
 fn alone(sides: [f64; 3]) -> Option<(usize, bool)> {
     let count = |sign: f64| sides.iter().filter(|&&s| s * sign > 0.0).count();
     let (above, below) = (count(1.0), count(-1.0));
@@ -193,7 +193,7 @@ fn one_sided(sides: [f64; 3]) -> bool {
     sides.iter().all(|&s| s > 0.0) || sides.iter().all(|&s| s < 0.0)
 }
 
-/// Whether a closed segment and a closed triangle have a point in common. A triangle without area has none: what
+/// Tests whether a closed segment and a closed triangle share a point. A degenerate triangle shares none: anything that
 /// touches it touches its neighbors.
 pub(crate) fn reaches([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
     let (above, below) = (side(a, b, c, p), side(a, b, c, q));
@@ -207,7 +207,7 @@ pub(crate) fn reaches([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
     turns.iter().all(|&turn| turn >= 0.0) || turns.iter().all(|&turn| turn <= 0.0)
 }
 
-/// Whether a point lies on a closed triangle; on one without area lies none.
+/// Tests whether a point lies on a closed triangle; none lies on a degenerate one.
 pub(crate) fn holds(triangle: [Point; 3], point: Point) -> bool {
     let [a, b, c] = triangle;
     side(a, b, c, point) == 0.0 && reaches_in_plane([point, point], triangle)
@@ -232,7 +232,7 @@ fn reaches_in_plane([p, q]: [Point; 2], triangle: [Point; 3]) -> bool {
     holds(p) || holds(q) || [[a, b], [b, c], [c, a]].into_iter().any(cut)
 }
 
-/// Ways to look at a triangle along an axis, the one that shows most of it first.
+/// Projections of a triangle along an axis, the one with the largest area first.
 fn projections([a, b, c]: [Point; 3]) -> impl Iterator<Item = impl Fn(Point) -> [f64; 2]> {
     let normal = cross(sub(b, a), sub(c, a)).map(f64::abs);
     let mut axes = [0, 1, 2];
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbors_at_a_vertex_meet_only_beyond_it() {
+    fn neighbors_at_a_vertex() {
         let from_corner = |d, e| meet(&with(&[d, e]), [0, 1, 2], [0, 3, 4]);
         assert_eq!(
             from_corner([-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]),
@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbors_along_an_edge_meet_only_where_they_are_folded_flat() {
+    fn neighbors_along_an_edge_meet_if_folded_flat() {
         let folded = |d: Point| meet(&with(&[d]), [0, 1, 2], [1, 0, 3]);
         assert_eq!(folded([1.0, -1.0, 0.0]), Meeting::Apart);
         assert_eq!(folded([1.0, 1.0, 0.1]), Meeting::Apart);
@@ -328,9 +328,9 @@ mod tests {
         assert_ne!(meet(&points, [0, 1, 2], [3, 4, 5]), Meeting::Cross);
     }
 
-    /// The same question in whole numbers: is there a common point of the open triangles, and of the closed ones?
-    /// Fourier's elimination of the four weights would do; here the segment in which the planes meet is cut
-    /// with both, in fractions of a common denominator.
+    /// Reference in integer arithmetic: tests whether the open triangles cross. Fourier's elimination of the four
+    /// weights would do; here the segment in which the planes meet is cut with both, in fractions of a common
+    /// denominator.
     fn counted(t: [[i64; 3]; 3], u: [[i64; 3]; 3]) -> bool {
         let minus = |a: [i64; 3], b: [i64; 3]| -> [i64; 3] { std::array::from_fn(|i| a[i] - b[i]) };
         let times = |a: [i64; 3], b: [i64; 3]| -> [i64; 3] {
@@ -346,7 +346,7 @@ mod tests {
         if line == [0; 3] {
             return false;
         }
-        // Places along the line where a triangle's edges meet the other's plane, as fractions (above, below).
+        // Parameters along the line where a triangle's edges meet the other's plane, as fractions (above, below).
         let cut =
             |t: [[i64; 3]; 3], normal: [i64; 3], from: [i64; 3]| -> Option<[(i128, i128); 2]> {
                 let heights = t.map(|p| inner(normal, minus(p, from)));

@@ -1,4 +1,4 @@
-//! Small vectors.
+//! Operations on small vectors.
 use crate::predicates::Point;
 
 pub(crate) fn sub(a: Point, b: Point) -> Point {
@@ -29,7 +29,7 @@ pub(crate) fn distance(a: Point, b: Point) -> f64 {
     dot(d, d).sqrt()
 }
 
-/// The distance of a point from a closed triangle (Ericson 2005, Real-Time Collision Detection, 5.1.5).
+/// Distance of a point from a closed triangle (Ericson 2005, Real-Time Collision Detection, 5.1.5).
 pub(crate) fn distance_to_triangle(p: Point, [a, b, c]: [Point; 3]) -> f64 {
     let (ab, ac) = (sub(b, a), sub(c, a));
     let along = |q: Point| (dot(ab, sub(p, q)), dot(ac, sub(p, q)));

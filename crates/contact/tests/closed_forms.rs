@@ -1,9 +1,9 @@
-//! Bodies whose overlap is known.
+//! Bodies with known overlap.
 use proptest::prelude::*;
 use voxsoft_contact::{Body, Penetration, Point, penetration};
 use voxsoft_voxel::{Grid, TetMesh, tet_mesh};
 
-/// A block of voxels of 1 m, its lower corner at the origin.
+/// Block of voxels of 1 m, its lower corner at the origin.
 fn block(shape: [usize; 3]) -> TetMesh {
     let mut grid = Grid::empty(shape, [0.0; 3], 1.0, u64::MAX).unwrap();
     grid.fill_box([0.0; 3], shape.map(|n| n as f64), 1);
@@ -50,7 +50,7 @@ fn moved(by: Point) -> impl Fn(Point) -> Point {
     move |p| std::array::from_fn(|i| p[i] + by[i])
 }
 
-/// Turns about an axis by Rodrigues' formula.
+/// Rotates about an axis by Rodrigues' formula.
 fn turned(axis: Point, angle: f64) -> impl Fn(Point) -> Point {
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     let n = axis.map(|x| x / length);
@@ -67,7 +67,7 @@ fn turned(axis: Point, angle: f64) -> impl Fn(Point) -> Point {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
     #[test]
-    fn a_block_in_another_is_as_deep_as_it_was_pushed(
+    fn depth_of_a_block_pushed_into_another(
         depth in 0.001..1.4_f64,
         beside in prop::array::uniform2(1.5..2.5_f64),
         axis in prop::array::uniform3(-1.0..1.0_f64),
@@ -81,12 +81,12 @@ proptest! {
             .with(&block([2, 2, 3]), |p| turn(push(p)))
             .find();
         prop_assert_eq!(found.overlaps.len(), 1);
-        // Positions have about 10 m, so rounding of 2e-15.
+        // Positions are about 10 m, so rounding is 2e-15.
         prop_assert!((found.overlaps[0].depth - depth).abs() < 1e-13, "{:?}", found.overlaps);
     }
 
     #[test]
-    fn on_a_common_grid_the_voxels_tell(by in prop::array::uniform3(-3..4_i32)) {
+    fn overlap_of_blocks_on_a_common_grid(by in prop::array::uniform3(-3..4_i32)) {
         // Blocks of 2 x 2 x 2 and 3 x 2 x 2 voxels: their faces, edges and vertices fall onto each other.
         let found = Bodies::default()
             .with(&block([2, 2, 2]), still)
@@ -98,7 +98,7 @@ proptest! {
 }
 
 #[test]
-fn touching_is_no_overlap_and_the_last_bit_is() {
+fn touching_blocks_overlap_from_the_last_bit_on() {
     let at = |z: f64| {
         Bodies::default()
             .with(&block([4, 4, 2]), still)
@@ -114,7 +114,7 @@ fn touching_is_no_overlap_and_the_last_bit_is() {
 }
 
 #[test]
-fn a_block_wholly_in_another_is_found_without_a_crossing() {
+fn block_wholly_in_another_is_found() {
     let found = Bodies::default()
         .with(&block([5, 5, 5]), still)
         .with(&block([1, 1, 1]), moved([1.25, 2.25, 2.25]))
@@ -125,13 +125,13 @@ fn a_block_wholly_in_another_is_found_without_a_crossing() {
 }
 
 #[test]
-fn what_lies_in_one_block_and_crosses_another_is_in_two_places() {
+fn block_in_one_and_across_another_has_two_overlaps() {
     let found = Bodies::default()
         .with(&block([5, 5, 5]), still)
         .with(&block([1, 1, 1]), moved([2.0, 2.0, 2.25]))
         .with(&block([1, 1, 2]), moved([2.25, 2.5, 3.0]))
         .find();
-    // The second and third in the first, and the third in the second.
+    // Blocks 2 and 3 in block 1, and block 3 in block 2.
     assert_eq!(found.overlaps.len(), 3);
     let depths: Vec<f64> = found.overlaps.iter().map(|overlap| overlap.depth).collect();
     assert_eq!(depths[0], 2.0);
@@ -159,7 +159,7 @@ fn a_block_in_a_cavity_is_free() {
 }
 
 #[test]
-fn crossed_bars_overlap_though_no_vertex_is_inside() {
+fn crossed_bars_overlap_without_a_vertex_inside() {
     // Edge to edge: square bars turned by 45 degrees about their lengths, one along x, one along y.
     let half = 0.5_f64.sqrt();
     let bar = |p: Point| {
@@ -188,7 +188,7 @@ fn crossed_bars_overlap_though_no_vertex_is_inside() {
     );
 }
 
-/// A strip in the plane y = const, rolled up along x by an angle per meter: it meets itself after a turn.
+/// Strip in the plane y = const, rolled up along x by an angle per meter: it meets itself after a turn.
 fn rolled(turns: f64) -> Bodies {
     let strip = block([40, 2, 1]);
     let radius = 40.0 / (turns * std::f64::consts::TAU);
@@ -199,7 +199,7 @@ fn rolled(turns: f64) -> Bodies {
 }
 
 #[test]
-fn a_strip_that_is_rolled_up_overlaps_itself_past_one_turn() {
+fn rolled_strip_overlaps_itself_past_one_turn() {
     assert!(rolled(0.99).find().overlaps.is_empty());
     let found = rolled(1.1).find();
     assert_eq!(found.overlaps.len(), 1);
@@ -211,8 +211,8 @@ fn a_strip_that_is_rolled_up_overlaps_itself_past_one_turn() {
 }
 
 #[test]
-fn a_tube_drawn_through_its_own_wall_overlaps_there_alone() {
-    // As in Klein's bottle: a strip that turns back and passes through its own middle, at a right angle.
+fn strip_through_itself_overlaps_once() {
+    // Path as in Klein's bottle: a strip that turns back and passes through its own middle, at a right angle.
     let path = |s: f64| -> ([f64; 2], f64) {
         use std::f64::consts::{FRAC_PI_2, PI};
         let (straight, radius) = (20.0, 6.0);
@@ -246,7 +246,7 @@ fn a_tube_drawn_through_its_own_wall_overlaps_there_alone() {
         (overlap.now[0] - 14.0).abs() < 1.5 && overlap.now[2].abs() < 1.5,
         "{overlap:?}"
     );
-    // Two membranes of 2 m that cross at a right angle: nowhere deeper than half a membrane.
+    // Two strips 2 m thick that cross at a right angle: nowhere deeper than half the thickness.
     assert!(
         overlap.depth > 0.7 && overlap.depth < 1.0 + 1e-9,
         "{overlap:?}"
@@ -254,7 +254,7 @@ fn a_tube_drawn_through_its_own_wall_overlaps_there_alone() {
 }
 
 #[test]
-fn a_vertex_pushed_through_its_own_cell_is_a_dent_and_no_overlap() {
+fn vertex_pushed_through_its_own_cell_is_no_overlap() {
     let mesh = block([3, 3, 3]);
     let mut body = Bodies::default().with(&mesh, still);
     let corner = mesh.vertices.iter().position(|p| *p == [3.0; 3]).unwrap();
@@ -263,7 +263,7 @@ fn a_vertex_pushed_through_its_own_cell_is_a_dent_and_no_overlap() {
 }
 
 #[test]
-fn the_answer_does_not_depend_on_threads() {
+fn result_is_independent_of_threads() {
     let body = Bodies::default()
         .with(&block([20, 20, 20]), still)
         .with(&block([20, 20, 20]), |p| {

@@ -1,4 +1,4 @@
-//! Derivatives at an equilibrium, without solving for it again.
+//! Adjoint derivatives at an equilibrium, without another nonlinear solution.
 //!
 //! At an equilibrium `r(x, p) = 0` with the tangent `K = −∂r/∂x`, a number `J(x)` changes with a
 //! parameter by `dJ/dp = (∂J/∂x)·K⁻¹ ∂r/∂p = μ·∂r/∂p` with the adjoint state `Kᵀ μ = ∂J/∂x`. The state `μ`
@@ -14,18 +14,17 @@ use crate::point::Point;
 use crate::settings::LinearSolver;
 use crate::system::{FactorError, Means};
 
-/// What an iterative solution leaves of a gradient, in energy; rounding in a slender body leaves no less
-/// than 1e-10.
+/// Relative tolerance of iterative solutions, in the energy norm; rounding in a slender body limits it to 1e-10.
 const TOLERANCE: f64 = 1e-8;
 
-/// Why there is no derivative.
+/// Reasons for a missing derivative.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AdjointError {
-    /// The tangent is singular there: the state is at a limit, or a part moves freely.
+    /// The tangent is singular there: the state is a limit point, or a part moves freely.
     Singular,
     /// The tangent takes more memory than there is, in bytes; 0 where that is not known.
     OutOfMemory(u64),
-    /// What contact holds does not settle to the first order.
+    /// Derivatives of contact multipliers, or vibration modes, do not converge.
     Unsettled,
     /// The caller asked to stop.
     Cancelled,
@@ -44,9 +43,9 @@ impl fmt::Display for AdjointError {
 
 impl std::error::Error for AdjointError {}
 
-/// The adjoint states `Kᵀ μ = g` at an equilibrium under all loads, one for each gradient `g` (of a
-/// number by the positions of all vertices); zero on held coordinates. The tangent may take `memory`
-/// bytes; `stop` is asked between the steps of the work.
+/// Solves for the adjoint states `Kᵀ μ = g` at an equilibrium under all loads, one for each gradient `g` (of a number
+/// with respect to the positions of all vertices); zero on held coordinates. The tangent may take `memory` bytes;
+/// `stop` is polled between the steps of the work.
 pub fn adjoint(
     problem: &Problem,
     positions: &[Vec3],
@@ -73,7 +72,7 @@ pub fn adjoint(
     gradients.iter().map(&mut solve).collect()
 }
 
-/// An equilibrium under all loads with its tangent assembled, which may take `memory` bytes.
+/// Equilibrium under all loads with its tangent assembled, which may take `memory` bytes.
 pub(crate) fn with_tangent<'a>(
     problem: &'a Problem,
     positions: &[Vec3],

@@ -1,24 +1,24 @@
-//! What changes along a path whose loads are given.
+//! Parametrization of a path with prescribed loads.
 
 use crate::point::Point;
 use crate::settings::Control;
 
-/// What grows, or goes on, from the start of a path to its end.
+/// Quantity that grows from the start of a path to its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Along {
-    /// All loads and motions, to those at an instant.
+    /// All loads and motions, up to those at an instant.
     All {
-        /// In s; without end for those after all histories.
+        /// Instant in s; infinite for the values after all histories.
         time: f64,
     },
-    /// All but pressures, which volume control goes on with.
+    /// All loads except pressures, which volume control adds afterward.
     Dead,
     /// The time of all histories.
     Time { from: f64, to: f64 },
 }
 
 impl Along {
-    /// What a control changes by itself; volume and arc length look for the load.
+    /// Path of a control; volume control and arc length solve for the load.
     pub fn of(control: Control) -> Self {
         match control {
             Control::Time {
@@ -33,7 +33,7 @@ impl Along {
         }
     }
 
-    /// The point at a part of the way.
+    /// Point at a fraction of the path.
     pub fn at(self, part: f64) -> Point {
         match self {
             Self::All { time } => Point {
@@ -45,7 +45,7 @@ impl Along {
         }
     }
 
-    /// Whether its points have a factor on all loads, so that it may have a limit to look for.
+    /// Tests whether its points share a factor on all loads, so that a limit of the load can be searched.
     pub fn has_factor(self) -> bool {
         matches!(self, Self::All { time } if time.is_infinite())
     }

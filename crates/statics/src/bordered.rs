@@ -1,15 +1,15 @@
-//! Newton's method where the load is an unknown, which arc length and volume control share.
+//! Newton's method with the load factor as an unknown, shared by arc length and volume control.
 //!
-//! Equilibrium `r(x, s) = 0` comes with one more equation `c(x, s) = 0`, the constraint. A step of the bordered system takes two
-//! solutions with the same tangent, `K a = r` and `K b = ∂r/∂s`: `δx = a + b δs`, and the constraint gives
-//! `δs` (Riks 1979, doi 10.1016/0020-7683(79)90081-7). The tangent may be indefinite; it is singular only at single points of
-//! the path. Clamps that move with the load are part of `∂r/∂s`.
+//! Equilibrium `r(x, s) = 0` comes with one more equation `c(x, s) = 0`, the constraint. A step of the bordered system
+//! takes two solutions with the same tangent, `K a = r` and `K b = ∂r/∂s`: `δx = a + b δs`, and the constraint gives
+//! `δs` (Riks 1979, doi 10.1016/0020-7683(79)90081-7). The tangent may be indefinite; it is singular only at single
+//! points of the path. Clamps that move with the load are part of `∂r/∂s`.
 //!
-//! Strains are carried along first ([`voxsoft_solid::mixed`]), which is quick but may go round in circles, as where layers
-//! change between taut and wrinkled. From the best state of that it goes on with a line search: where the equilibria are
-//! minima of an energy among all states that keep the constraint, on the augmented Lagrangian
-//! `Π − s c + ρ/2 c²` (Nocedal and Wright 2006, chapter 17, doi 10.1007/978-0-387-40065-5); else, which only contact asks for, on
-//! the residual. Long because the two ways share how they see a state and how they step.
+//! Mixed iterations, with strains as unknowns ([`voxsoft_solid::mixed`]), come first; they are quick but may cycle, for
+//! example where layers change between taut and wrinkled. From their best state a line search continues: if the
+//! equilibria are minima of an energy among all states that satisfy the constraint, on the augmented Lagrangian
+//! `Π − s c + ρ/2 c²` (Nocedal and Wright 2006, chapter 17, doi 10.1007/978-0-387-40065-5); otherwise, which only
+//! contact needs, on the residual. The file is long because both methods share the evaluation of a state and the steps.
 
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale};
@@ -21,34 +21,34 @@ use crate::settings::Settings;
 use crate::settle::Search;
 use crate::system::Factor;
 
-/// A constraint counts as kept within this part of what it asks for.
+/// Relative tolerance of the constraint.
 const KEPT: f64 = 1e-9;
-/// Iterations with strains carried along: most steps take less than ten.
+/// Most mixed iterations: most steps take less than ten.
 const MIXED_ITERATIONS: u32 = 30;
-/// Such iterations without the residual halving, after which they count as lost.
+/// Mixed iterations without halving the residual, after which they count as diverged.
 const PATIENCE: u32 = 6;
-/// Iterations with a line search.
+/// Most iterations with a line search.
 const SEARCHED_ITERATIONS: u32 = 60;
-/// The smallest and the largest shift of the diagonal.
+/// Smallest and largest relative shift of the diagonal.
 const LEAST_SHIFT: f64 = 1e-6;
 const LARGEST_SHIFT: f64 = 10.0;
-/// Armijo's condition: the part of the predicted gain that a step must bring.
+/// Armijo's condition: the fraction of the predicted decrease that a step must achieve.
 const SUFFICIENT: f64 = 1e-4;
-/// How often a step may be halved.
+/// Most halvings of a step.
 const HALVINGS: u32 = 14;
-/// Energies are sums of many terms and known to about this part of their size.
+/// Relative rounding of energies, which are sums of many terms.
 const ROUNDING: f64 = 1e-12;
-/// How far a vertex may move in an iteration, in sizes of the body: beyond it that is lost. With contact less, since what may meet on such
-/// a way would be listed, and is of no use.
+/// Largest move of a vertex in an iteration, in sizes of the body: beyond it the iteration counts as diverged. It is
+/// smaller with contact, because candidates on such a way would be listed without any use.
 const FARTHEST: f64 = 1.0;
 const FARTHEST_WITH_CONTACT: f64 = 0.5;
-/// What an iterative solution leaves of the displacements by the factor: its change, which they are multiplied with, falls as
-/// the residual does.
+/// Tolerance of iterative solutions for the displacements by the load factor: they are multiplied by its change, which
+/// decreases with the residual.
 pub(crate) const DIRECTION_TOLERANCE: f64 = 1e-4;
-/// The change of the factor over which the velocity of clamps is a difference: rotations are good to its square.
+/// Change of the factor for the central difference of the velocity of clamps: rotations are accurate to its square.
 const DIFFERENCE: f64 = 1e-4;
 
-/// Which factor is the unknown.
+/// Load factor that is the unknown.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Unknown {
     All,
@@ -66,7 +66,7 @@ impl Unknown {
         }
     }
 
-    /// The factors that it moves.
+    /// Factors that the unknown changes.
     fn direction(self) -> Point {
         match self {
             Self::All => Point::all(1.0),
@@ -75,34 +75,35 @@ impl Unknown {
     }
 }
 
-/// One more equation on the way along a path.
+/// Additional equation along a path.
 pub(crate) trait Constraint: Clone {
-    /// The factor that is unknown.
+    /// Load factor that is the unknown.
     fn unknown(&self) -> Unknown;
 
-    /// What is missing at a state.
+    /// Constraint violation at a state.
     fn missing(&self, problem: &Problem, positions: &[Vec3], factor: f64) -> Missing;
 
-    /// Its derivatives by free coordinates and by the factor.
+    /// Derivatives with respect to free coordinates and to the factor.
     fn gradient(&self, equilibrium: &Equilibrium<'_>, positions: &[Vec3]) -> (Vec<f64>, f64);
 
-    /// Whether equilibria are stationary points of an energy among all states that keep it, with the factor as its multiplier.
+    /// Tests whether equilibria are stationary points of an energy on the constraint, with the factor as Lagrange
+    /// multiplier.
     fn has_potential(&self, problem: &Problem) -> bool;
 
-    /// The longest move of a coordinate (m) that a correction may take.
+    /// Longest move of a coordinate (m) that a correction may take.
     fn longest_correction(&self) -> f64 {
         f64::INFINITY
     }
 }
 
-/// What a constraint misses, in its own unit and as a part of what it asks for.
+/// Constraint violation, in its own unit and relative to the prescribed value.
 #[derive(Clone, Copy)]
 pub(crate) struct Missing {
     pub size: f64,
     pub relative: f64,
 }
 
-/// A search for the equilibrium that keeps a constraint.
+/// Search for the equilibrium that satisfies a constraint.
 #[derive(Clone)]
 pub(crate) struct Bordered<C> {
     pub constraint: C,
@@ -156,7 +157,7 @@ impl<C: Constraint> Search for Bordered<C> {
     }
 }
 
-/// The derivative of the forces by an unknown factor, on free coordinates, with clamps where they are.
+/// Derivative of the forces with respect to an unknown factor, on free coordinates, with clamps in place.
 pub(crate) fn load_direction(
     equilibrium: &Equilibrium<'_>,
     positions: &[Vec3],
@@ -172,7 +173,7 @@ pub(crate) fn load_direction(
     equilibrium.system.gather(&forces)
 }
 
-/// How fast clamps move with an unknown factor, for all vertices; `None` where they do not.
+/// Velocity of clamps with respect to an unknown factor, for all vertices; `None` without moving clamps.
 fn clamp_velocity(problem: &Problem, point: Point, unknown: Unknown) -> Option<Vec<Vec3>> {
     let moves = problem.clamps().iter().any(|clamp| clamp.motion.is_some());
     if unknown == Unknown::Pressure || !moves {
@@ -189,26 +190,26 @@ fn clamp_velocity(problem: &Problem, point: Point, unknown: Unknown) -> Option<V
     Some(after.iter().zip(&before).map(speed).collect())
 }
 
-/// The right-hand sides of both solutions on free coordinates.
+/// Right-hand sides of both solutions on free coordinates.
 pub(crate) struct Sides {
     residual: Vec<f64>,
-    /// `∂r/∂s`, with the clamps that move.
+    /// Load vector `∂r/∂s`, including moving clamps.
     direction: Vec<f64>,
     velocity: Option<Vec<Vec3>>,
 }
 
-/// A state at which the tangent is asked for.
+/// State at which the tangent is assembled.
 #[derive(Clone, Copy)]
 pub(crate) struct Place<'a> {
     pub positions: &'a [Vec3],
     pub point: Point,
     pub unknown: Unknown,
     pub strains: Option<&'a Strains>,
-    /// How held coordinates are about to move.
+    /// Prescribed displacement increments of held coordinates.
     pub jump: Option<&'a [Vec3]>,
 }
 
-/// Assembles the tangent at a place, where contact has been followed to.
+/// Assembles the tangent at a place, for which the contact pattern is up to date.
 pub(crate) fn assemble(
     equilibrium: &mut Equilibrium<'_>,
     place: Place<'_>,
@@ -244,7 +245,7 @@ pub(crate) fn assemble(
 }
 
 impl Sides {
-    /// `a` and `b` with a factorized tangent; where solutions come from an iteration, to such errors.
+    /// Solves for `a` and `b` with a factorized tangent; iterative solutions use the given tolerances.
     pub fn solve(
         &self,
         equilibrium: &Equilibrium<'_>,
@@ -270,7 +271,7 @@ pub(crate) fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Where Newton's method stands between two equilibria.
+/// State of Newton's method between two equilibria.
 #[derive(Clone)]
 struct Iterate {
     positions: Vec<Vec3>,
@@ -286,17 +287,17 @@ impl Iterate {
     }
 }
 
-/// A state on the way to an equilibrium.
+/// Evaluated state on the way to an equilibrium.
 struct Seen {
     point: Point,
     forces: Forces,
     missing: Missing,
-    /// How far held coordinates are from where they belong.
+    /// Prescribed displacement increments that remain on held coordinates.
     jump: Option<Vec<Vec3>>,
 }
 
 impl Seen {
-    /// How much both equations are off, in parts.
+    /// Sum of the relative violations of both equations.
     fn both(&self) -> f64 {
         self.forces.relative() + self.missing.relative
     }
@@ -308,17 +309,17 @@ impl Seen {
     }
 }
 
-/// A solution of the bordered system.
+/// Solution of the bordered system.
 struct Step {
     free: Vec<f64>,
     change: f64,
-    /// `δ·K δ` (J).
+    /// Curvature `δ·K δ` (J).
     curvature: f64,
-    /// How the constraint grows with the factor along the path of equilibria.
+    /// Derivative of the constraint with respect to the factor along the path of equilibria.
     compliance: f64,
 }
 
-/// What a line search keeps from one iteration to the next.
+/// Penalty and shift kept from one line-search iteration to the next.
 #[derive(Default)]
 struct Memory {
     penalty: f64,
@@ -329,17 +330,18 @@ struct Memory {
 struct Newton<'n, 'e, 'o, C> {
     equilibrium: &'n mut Equilibrium<'e>,
     constraint: &'n C,
-    /// Whose factors the unknown one is among.
+    /// Point of the path, in which the unknown factor is replaced.
     point: Point,
     settings: &'n Settings,
     observer: &'n mut Observer<'o>,
 }
 
 impl<C: Constraint> Newton<'_, '_, '_, C> {
-    /// The way to the equilibrium: with a line search first from one that is `near`, or last where there is something to search.
+    /// Finds the equilibrium: from a `near` one with a line search first, otherwise with one last if the problem
+    /// `searches`.
     fn find(&mut self, now: &mut Iterate, near: bool, searches: bool) -> Result<Seen, Failure> {
         if near {
-            // Friction may let go there, and iterations without a line search overshoot.
+            // Friction may begin to slip there, and iterations without a line search overshoot.
             let start = now.clone();
             return match self.searched(now) {
                 Err(Failure::Lost | Failure::Singular) => {
@@ -355,7 +357,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         }
     }
 
-    /// Looks at both equations, with room in the tangent for what touches, and tells the observer.
+    /// Evaluates both equations, updates the contact pattern of the tangent, and notifies the observer.
     fn look(&mut self, positions: &[Vec3], factor: f64) -> Result<Seen, Failure> {
         self.equilibrium.follow_contact(positions)?;
         let point = self.constraint.unknown().with(self.point, factor);
@@ -425,7 +427,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         })
     }
 
-    /// The moves of all vertices in a step, held ones included.
+    /// Moves of all vertices in a step, held ones included.
     fn moves(&self, step: &Step, sides: &Sides, seen: &Seen) -> Vec<Vec3> {
         let mut moves = self.equilibrium.system.spread(&step.free);
         let mut shift = |by: &[Vec3], part: f64| {
@@ -438,7 +440,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         moves
     }
 
-    /// Puts clamps exactly where the factor has them.
+    /// Puts clamps exactly at their targets for the factor.
     fn place_clamps(&self, now: &mut Iterate) {
         if self.constraint.unknown() == Unknown::All {
             let problem = &self.equilibrium.problem;
@@ -447,8 +449,8 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         }
     }
 
-    /// A tangent for an iteration with strains carried along. With contact it goes astray from where more than one direction
-    /// goes downhill, as one does past a limit.
+    /// Factorizes the tangent for a mixed iteration. With contact, more than one negative pivot counts as divergence;
+    /// one is expected past a limit.
     fn carried(&mut self) -> Result<Factor, Failure> {
         let factor = self.equilibrium.system.factor(0.0)?;
         let problem = &self.equilibrium.problem;
@@ -470,7 +472,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         }
     }
 
-    /// With strains carried along. Where it is lost, `now` is the best that it came by.
+    /// Mixed iterations, with strains as unknowns. If they diverge, `now` is their best state.
     fn mixed(&mut self, now: &mut Iterate) -> Result<Seen, Failure> {
         let mut at = now.clone();
         let mut strains: Option<Strains> = None;
@@ -533,7 +535,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         Err(Failure::Lost)
     }
 
-    /// Whether all that a step of the size `largest` (m) would change is rounding.
+    /// Tests whether a step of the size `largest` (m) would change nothing but rounding.
     fn stands_still(&self, at: &Iterate, seen: &Seen, largest: f64) -> bool {
         let relative = seen.forces.relative();
         seen.missing.relative <= KEPT
@@ -542,7 +544,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
                 .stands_still(&at.positions, largest, relative)
     }
 
-    /// With a line search.
+    /// Newton's method with a line search.
     fn searched(&mut self, now: &mut Iterate) -> Result<Seen, Failure> {
         let mut memory = Memory::default();
         for _ in 0..SEARCHED_ITERATIONS {
@@ -566,7 +568,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
                 return Ok(seen);
             }
             if seen.jump.is_some() {
-                // What carries held coordinates along may raise either measure.
+                // A step that moves held coordinates may raise either measure.
                 now.shift(&moves, 1.0);
                 now.factor += step.change;
             } else if potential {
@@ -578,9 +580,9 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         Err(Failure::Lost)
     }
 
-    /// Finds a step along which the augmented Lagrangian falls, by `δ·K δ + ρ c²`: where it would not, the diagonal is
-    /// lifted. The penalty ρ only grows: to twice the stiffness of the factor against the constraint, so that it outweighs that of a
-    /// balloon past its limit, which is negative.
+    /// Finds a step along which the augmented Lagrangian decreases, by `δ·K δ + ρ c²`: otherwise the diagonal is
+    /// shifted. The penalty ρ only grows: to twice the stiffness of the factor against the constraint, so that it
+    /// outweighs that of a balloon past its limit, which is negative.
     fn descending(
         &mut self,
         sides: &Sides,
@@ -607,7 +609,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         }
     }
 
-    /// Goes along `moves` as far as the augmented Lagrangian falls.
+    /// Line search along `moves` on the augmented Lagrangian.
     fn along_energy(
         &self,
         now: &mut Iterate,
@@ -616,7 +618,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         seen: &Seen,
         penalty: f64,
     ) -> Result<(), Failure> {
-        // The multiplier.
+        // Lagrange multiplier of the constraint.
         let factor = now.factor + step.change;
         let point = self.constraint.unknown().with(self.point, factor);
         let merit = |positions: &[Vec3]| {
@@ -633,7 +635,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         })
     }
 
-    /// Goes along `moves` as far as the residual and what is missing fall.
+    /// Line search along `moves` on the residual and the constraint violation.
     fn along_residual(
         &self,
         now: &mut Iterate,
@@ -654,7 +656,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         })
     }
 
-    /// Halves the way along `moves` until a state is good and no voxel inside out.
+    /// Halves the step along `moves` until a state is good and no voxel inverted.
     fn halve(
         &self,
         now: &mut Iterate,
@@ -678,7 +680,7 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
     }
 }
 
-/// How fast the augmented Lagrangian falls along a step (J).
+/// Predicted decrease of the augmented Lagrangian along a step (J).
 fn gain(step: &Step, seen: &Seen, penalty: f64) -> f64 {
     step.curvature + penalty * seen.missing.size * seen.missing.size
 }

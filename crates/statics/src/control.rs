@@ -1,5 +1,6 @@
-//! Arc-length control: steps are measured along the path in displacements and loads, so that it is followed where the load
-//! falls. The constraint of [`crate::bordered`] is the plane across the path's tangent at the length of the step.
+//! Arc-length control: steps are measured along the path in displacements and loads, so that it is followed where the
+//! load falls. The constraint of [`crate::bordered`] is the plane normal to the path's tangent at the length of the
+//! step.
 
 use voxsoft_solid::vector::{Vec3, dot, scale, sub};
 use voxsoft_solid::{Problem, Status};
@@ -13,27 +14,29 @@ use crate::point::Point;
 use crate::settings::Settings;
 use crate::settle::AtLoad;
 
-/// Steps of the look for a limit, and its first arc.
+/// Steps of the search for a limit, and its first arc length.
 const LOOK_STEPS: u32 = 60;
 const FIRST_LOOK: f64 = 0.02;
-/// By what an arc that is lost is divided, and how often.
+/// Divisor of an arc length whose step failed, and most such cuts.
 const CUT: f64 = 3.0;
 const CUTS: u32 = 10;
-/// A step that took no more iterations than this lets the next one grow, by this.
+/// Most iterations of a step after which the next one may grow, and the factor of this growth.
 const EASY: u32 = 5;
 const GROWTH: f64 = 1.5;
-/// The same with contact, every correction of which takes some of them.
+/// Most iterations of an easy step with contact, every correction of which takes some of them.
 const EASY_WITH_CONTACT: u32 = 15;
-/// How often a step with contact is cut before a corner of the path is looked for.
+/// Cuts of a step with contact before a corner of the path is assumed.
 const CUTS_TO_A_CORNER: u32 = 1;
-/// How many times more than a path allows on which the answer depends the load may change where it turns in a step.
+/// Largest change of the load in a step, in longest steps of a path-dependent problem: the path may turn within the
+/// step.
 const LONGER: f64 = 2.0;
-/// How many lengths of a step away its end may be: the plane across the tangent may meet other paths far away.
+/// Largest distance of the new point, in lengths of the step: the plane across the tangent may meet other paths far
+/// away.
 const FARTHEST: f64 = 2.0;
-/// A correction of this many lengths of the step has lost the path.
+/// Largest correction, in lengths of the step, beyond which the path counts as lost.
 const LONGEST_CORRECTION: f64 = 4.0;
 
-/// A direction along the path: displacement of all vertices per arc, and change of the factor.
+/// Unit tangent of the path: displacement of all vertices per arc, and change of the factor.
 #[derive(Clone)]
 struct Tangent {
     moves: Vec<Vec3>,
@@ -46,9 +49,9 @@ impl Tangent {
         moved + self.factor * factor
     }
 
-    /// Its displacements alone, as a tangent; `None` where there are none. What is met turns the path by up to a right angle
-    /// and more where the load was falling: no plane across the tangent before has the path after, which goes on in
-    /// displacements.
+    /// Displacements alone, normalized as a tangent; `None` without displacements. New contact turns the path by up to
+    /// a right angle, and by more if the load was falling: no plane across the old tangent meets the path after the
+    /// corner, which continues in displacements.
     fn at_corner(&self) -> Option<Self> {
         let size = (1.0 - self.factor * self.factor).max(0.0).sqrt();
         (size > 0.0).then(|| Self {
@@ -58,24 +61,24 @@ impl Tangent {
     }
 }
 
-/// The plane across a tangent, a length away from where it touches the path.
+/// Plane normal to a tangent, at a distance from its point of contact with the path.
 #[derive(Clone)]
 struct Plane<'a> {
     tangent: &'a Tangent,
     length: f64,
-    /// The length that displacements count in, m.
+    /// Unit of length of displacements, m.
     unit: f64,
-    /// Where the tangent touches the path.
+    /// Start of the step, where the tangent touches the path.
     start: &'a [Vec3],
     factor: f64,
 }
 
 impl Plane<'_> {
-    /// How far a state is from where the tangent touches the path; at a corner of the path, in displacements alone.
+    /// Distance of a state from the start of the step; at a corner of the path, in displacements alone.
     fn distance(&self, positions: &[Vec3], factor: f64) -> f64 {
         let pairs = positions.iter().zip(self.start);
         let free = pairs.zip(&self.tangent.moves);
-        // What the tangent does not move is held, or moves with the load.
+        // Vertices without a tangent are held, or move with the load.
         let free = free.filter(|(_, tangent)| **tangent != [0.0; 3]);
         let moved: f64 = free
             .map(|((x, start), _)| sub(*x, *start))
@@ -134,18 +137,18 @@ pub(crate) fn follow_arc(path: &mut Path<'_, '_>, settings: &Settings, steps: u3
     Ending::new(status, limit, path.point.pressure)
 }
 
-/// A walk along a path.
+/// Continuation along a path.
 struct Walk {
-    /// Displacements are measured against the size of the body, times the root of the number of
-    /// coordinates: an arc of one is about a body length of motion.
+    /// Unit of displacements: a fraction of the size of the body times the root of the number of coordinates, so that
+    /// an arc of one is about a twentieth of the body size of motion.
     unit: f64,
     length: f64,
-    /// The largest change of the load in a step.
+    /// Largest change of the load in a step.
     longest: f64,
-    /// Steps that took no more iterations than this let the next one grow.
+    /// Most iterations of a step after which the next one may grow.
     easy: u32,
     highest: f64,
-    /// The largest factor of a path that turned back.
+    /// Largest factor of a path that turned back: its limit load.
     limit: Option<f64>,
 }
 
@@ -168,7 +171,7 @@ impl Walk {
         }
     }
 
-    /// Walks until the full load is reached; the largest factor seen if the path turned back.
+    /// Follows the path until the full load is reached; returns the largest factor if the path turned back.
     fn walk(
         &mut self,
         path: &mut Path<'_, '_>,
@@ -190,7 +193,7 @@ impl Walk {
                 path.with_contact(|contact| contact.go_back());
                 outcome = self.step(path, &corner, length, settings);
                 if outcome.is_ok() {
-                    // Cuts came of the corner, not of what follows.
+                    // The cuts were due to the corner, not to the path after it.
                     (tangent, length) = (corner, f64::max(length, settings.first_step));
                 }
             }
@@ -226,7 +229,7 @@ impl Walk {
         Ok(self.limit)
     }
 
-    /// One step along `tangent`, or the last one to the full load where it passes that; the iterations that it took.
+    /// One step along `tangent`, or the last one to the full load if it passes that; returns its iterations.
     fn step(
         &self,
         path: &mut Path<'_, '_>,
@@ -258,7 +261,7 @@ impl Walk {
             return Err(Failure::Lost);
         }
         if point.pressure > 1.0 && !path.looking {
-            // Contact may depend on the way, which does not lead past the full load and back.
+            // Contact may be path-dependent, and the path does not lead past the full load and back.
             if path.touches() {
                 path.with_contact(|contact| contact.go_back());
                 trial = start.clone();
@@ -279,7 +282,7 @@ impl Walk {
         Ok(found.iterations)
     }
 
-    /// Sees where a new point of the path is.
+    /// Updates the limit and the stability with a new point of the path.
     fn see(&mut self, path: &mut Path<'_, '_>) {
         let now = path.point.pressure;
         if now < self.highest - 1e-9 && self.limit.is_none() {
@@ -291,7 +294,7 @@ impl Walk {
         self.highest = self.highest.max(now);
     }
 
-    /// The direction of the path at the present point, with the sign that goes on along `before`.
+    /// Tangent of the path at the present point, with the sign that continues along `before`.
     fn tangent_at(
         &self,
         path: &mut Path<'_, '_>,
@@ -328,8 +331,8 @@ impl Walk {
     }
 }
 
-/// From the last equilibrium of a load path that got stuck: is there a limit just ahead? The state
-/// stays at the last stable equilibrium.
+/// Searches a limit just ahead of the last equilibrium of a load path that failed to continue. The state stays at the
+/// last stable equilibrium.
 pub(crate) fn look_for_limit(path: &mut Path<'_, '_>, settings: &Settings) -> Option<f64> {
     let kept = (path.positions.clone(), path.point, path.points.len());
     path.looking = true;

@@ -1,5 +1,5 @@
-//! A tangent with what joins all of a chamber's wall, whose pressure follows its volume: `K + G C Gᵀ` with a column of `G` for
-//! each chamber.
+//! Tangent with dense coupling of the whole wall of a chamber, whose pressure depends on its volume: `K + G C Gᵀ` with
+//! a column of `G` for each chamber.
 //!
 //! The sum is dense, but solved with the factor of `K` alone (Woodbury's formula):
 //!
@@ -7,9 +7,9 @@
 //! (K + G C Gᵀ)⁻¹ s = y − W (1 + C H)⁻¹ C Gᵀ y,   y = K⁻¹ s,   W = K⁻¹ G,   H = Gᵀ W.
 //! ```
 //!
-//! Past the limit of a balloon `K` is indefinite, and the sum is positive where the amount of gas holds the balloon. With
-//! `C = L Lᵀ` of the rank `r`, as many eigenvalues of the sum are negative as of `K` and of `−1 − Lᵀ H L` together, less `r`
-//! (Haynsworth 1968, doi 10.1016/0024-3795(68)90050-5).
+//! Past the limit of a balloon `K` is indefinite, and the sum is positive definite if the amount of gas holds the
+//! balloon. With `C = L Lᵀ` of the rank `r`, as many eigenvalues of the sum are negative as of `K` and of `−1 − Lᵀ H L`
+//! together, less `r` (Haynsworth 1968, doi 10.1016/0024-3795(68)90050-5).
 
 use voxsoft_solid::fluid::{Coupling, solve_small};
 use voxsoft_solid::vector::Vec3;
@@ -17,16 +17,16 @@ use voxsoft_solid::vector::Vec3;
 use crate::bordered::product;
 use crate::system::FactorError;
 
-/// Pivots of `C` below this part of its largest entry are rounding.
+/// Relative size of the pivots of `C` below which they are rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// `G` and `C` on free coordinates.
+/// Matrices `G` and `C` on free coordinates.
 pub(crate) struct Coupled {
     gradients: Vec<Vec<f64>>,
     stiffness: Vec<f64>,
 }
 
-/// `W`, and what it is for the transposed tangent where that is another one.
+/// Solutions `W`, and those with the transposed tangent.
 pub(crate) struct Answers {
     own: Vec<Vec<f64>>,
     transposed: Vec<Vec<f64>>,
@@ -44,7 +44,7 @@ impl Coupled {
         }
     }
 
-    /// What `solve`, which may be asked for the transposed tangent, says of the gradients.
+    /// Solves for `W` by `solve`, which takes a right-hand side and a flag for the transposed tangent.
     pub fn answers(&self, solve: &dyn Fn(&mut [f64], bool)) -> Answers {
         let all = |transposed: bool| {
             let mut answers = self.gradients.clone();
@@ -57,7 +57,7 @@ impl Coupled {
         }
     }
 
-    /// Makes a solution with the tangent alone one with the sum.
+    /// Corrects a solution with the tangent alone into one with the sum.
     pub fn correct(
         &self,
         answers: &Answers,
@@ -105,7 +105,8 @@ impl Coupled {
         Ok(())
     }
 
-    /// Whether the sum is positive definite, where so many eigenvalues of the tangent alone are negative; both are symmetric.
+    /// Tests whether the sum is positive definite, given the number of negative eigenvalues of the tangent alone; both
+    /// are symmetric.
     pub fn is_positive_with(&self, answers: &Answers, negative: usize) -> bool {
         let roots = self.roots();
         let n = self.gradients.len();
@@ -122,12 +123,12 @@ impl Coupled {
                 matrix[row][column] = sum;
             }
         }
-        // As many eigenvalues of −M are negative as of M are positive.
+        // The matrix −M has as many negative eigenvalues as M has positive ones.
         let positive = positive_pivots(matrix);
         negative + positive == roots.len()
     }
 
-    /// The columns of `G L`, whose products with themselves sum up to `G C Gᵀ`, which is symmetric.
+    /// Columns of `G L`, whose outer products sum up to `G C Gᵀ`, which is symmetric.
     pub fn columns(&self) -> Vec<Vec<f64>> {
         let column = |root: &Vec<f64>| {
             let mut sum = vec![0.0; self.gradients[0].len()];
@@ -165,7 +166,7 @@ impl Coupled {
     }
 }
 
-/// How many eigenvalues of a symmetric matrix are positive: as many as pivots of an elimination.
+/// Number of positive eigenvalues of a symmetric matrix: that of positive pivots of an elimination.
 fn positive_pivots(mut matrix: Vec<Vec<f64>>) -> usize {
     let n = matrix.len();
     for column in 0..n {

@@ -1,4 +1,4 @@
-//! The sparse tangent, factorized: numbering of free coordinates, assembly, Cholesky or LU.
+//! Direct sparse solver: numbering of free coordinates, assembly of the tangent, Cholesky or LU factors.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
@@ -20,19 +20,19 @@ use crate::ordering::nested_dissection;
 use crate::rank::rank;
 use crate::system::{FactorError, Means};
 
-/// Marks a coordinate that is held.
+/// Row of a held coordinate.
 const HELD: u32 = u32::MAX;
 
-/// The tangent of a problem on its free coordinates, kept with its pattern for many assemblies.
+/// Tangent of a problem on its free coordinates, kept with its sparsity pattern for many assemblies.
 ///
 /// Everything runs on one thread, so that the same input gives the same bits.
 pub(crate) struct DirectSystem {
-    /// For each coordinate `3 vertex + axis` its row, or [`HELD`].
+    /// Row of each coordinate `3 vertex + axis`, or [`HELD`].
     rows: Vec<u32>,
     size: usize,
     column_starts: Vec<usize>,
     row_indices: Vec<usize>,
-    /// For each vertex its neighbors in rising order, and where their rows start in a column.
+    /// Neighbors of each vertex in rising order, and the offsets of their rows in a column.
     neighbors: Vec<Vec<u32>>,
     offsets: Vec<Vec<u32>>,
     values: Vec<f64>,
@@ -41,7 +41,7 @@ pub(crate) struct DirectSystem {
     symmetric: bool,
 }
 
-/// A factorized tangent.
+/// Factorized tangent.
 pub(crate) enum DirectFactor {
     /// Positive definite: the state is stable.
     Cholesky(Vec<f64>),
@@ -52,12 +52,12 @@ pub(crate) enum DirectFactor {
 }
 
 impl DirectSystem {
-    /// The pattern for a problem whose coordinates `held` do not move.
+    /// Sparsity pattern of a problem whose coordinates `held` do not move.
     pub fn new(problem: &Problem, held: &[[bool; 3]], means: Means) -> Result<Self, FactorError> {
         Self::with_symmetry(problem, held, means, problem.is_conservative())
     }
 
-    /// The same for a tangent that the caller says is symmetric, or not.
+    /// Sparsity pattern for a tangent that the caller declares as symmetric or not.
     pub fn with_symmetry(
         problem: &Problem,
         held: &[[bool; 3]],
@@ -110,7 +110,7 @@ impl DirectSystem {
                 column_starts[column as usize + 1] = row_indices.len();
             }
         }
-        // Look up by number from here on.
+        // Neighbors are looked up by number from here on.
         for (list, offsets) in neighbors.iter_mut().zip(&mut offsets) {
             let mut both: Vec<(u32, u32)> =
                 list.iter().copied().zip(offsets.iter().copied()).collect();
@@ -131,15 +131,15 @@ impl DirectSystem {
             symmetric,
         };
         if system.symmetric {
-            // Rows are numbered in the order of elimination already. `SymmetricOrdering::Identity` would
-            // want one triangle only; a permutation makes faer pick it out.
+            // Rows are numbered in the order of elimination already. `SymmetricOrdering::Identity` would require one
+            // triangle only; a permutation makes faer select it.
             let identity: Vec<usize> = (0..size).collect();
             let symbolic = factorize_symbolic_cholesky(
                 system.pattern(),
                 Side::Lower,
                 SymmetricOrdering::Custom(PermRef::new_checked(&identity, &identity, size)),
-                // Dense blocks pay for voxels even where faer would go column by column: a third less
-                // time for a beam of 80.
+                // Dense blocks pay off for voxels even where faer would go column by column: a third less time for a
+                // beam of 80.
                 CholeskySymbolicParams {
                     supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
                     ..Default::default()
@@ -156,7 +156,7 @@ impl DirectSystem {
         Ok(system)
     }
 
-    /// The number of free coordinates.
+    /// Number of free coordinates.
     pub fn size(&self) -> usize {
         self.size
     }
@@ -175,9 +175,9 @@ impl DirectSystem {
         SparseColMatRef::new(self.pattern(), values)
     }
 
-    /// Assembles the tangent at `positions` with a factor for each load, and with `strains` in place of
-    /// those at `positions` where they are given; where the held coordinates
-    /// are about to move by `jump`, subtracts the force of that from `residual`.
+    /// Assembles the tangent at `positions` with a factor for each load, and with `strains`, if given, in place of
+    /// those at `positions`; if the held coordinates are about to move by `jump`, subtracts the resulting force from
+    /// `residual`.
     pub fn assemble(
         &mut self,
         problem: &Problem,
@@ -202,7 +202,7 @@ impl DirectSystem {
         });
     }
 
-    /// The same for pieces of stiffness that `visit` hands over, as [`elastic::visit_stiffness`] does.
+    /// Assembles element matrices that `visit` passes on, see [`elastic::visit_stiffness`].
     pub fn assemble_pieces(
         &mut self,
         jump: Option<&[Vec3]>,
@@ -271,8 +271,7 @@ impl DirectSystem {
         visit(&mut add);
     }
 
-    /// A Cholesky factor of the assembled tangent plus a diagonal, on free coordinates, if the sum is
-    /// positive definite.
+    /// Cholesky factor of the assembled tangent plus a diagonal, on free coordinates, if the sum is positive definite.
     pub fn factor_lifted(&self, diagonal: &[f64]) -> Result<DirectFactor, FactorError> {
         let mut values = self.values.clone();
         for (column, lift) in diagonal.iter().enumerate() {
@@ -310,12 +309,12 @@ impl DirectSystem {
         Ok(DirectFactor::Cholesky(entries))
     }
 
-    /// How many entries a Cholesky factor has; zero where there is none.
+    /// Number of entries of a Cholesky factor; zero for an unsymmetric tangent.
     pub fn factor_entries(&self) -> usize {
         self.symbolic.as_ref().map_or(0, SymbolicCholesky::len_val)
     }
 
-    /// The row of a coordinate, if it is free.
+    /// Row of a coordinate, if it is free.
     pub fn row_of(&self, vertex: usize, axis: usize) -> Option<usize> {
         let row = self.rows[3 * vertex + axis];
         (row != HELD).then_some(row as usize)
@@ -361,8 +360,8 @@ impl DirectSystem {
         Ok(DirectFactor::Indefinite(entries))
     }
 
-    /// How many negative eigenvalues the factorized matrix has: as many as negative pivots (Sylvester's
-    /// law of inertia). Unknown where it is not symmetric.
+    /// Number of negative eigenvalues of the factorized matrix, equal to that of negative pivots (Sylvester's law of
+    /// inertia). `None` if it is not symmetric.
     pub fn negative_pivots(&self, factor: &DirectFactor) -> Option<usize> {
         let entries = match factor {
             DirectFactor::Cholesky(_) => return Some(0),
@@ -377,7 +376,7 @@ impl DirectSystem {
                 negative += pivots.filter(|pivot| *pivot < 0.0).count();
             }
             SymbolicCholeskyRaw::Supernodal(symbolic) => {
-                // Each block of columns is dense, with its pivots on the diagonal.
+                // Each supernode is dense, with its pivots on the diagonal.
                 for block in 0..symbolic.n_supernodes() {
                     let columns =
                         symbolic.supernode_end()[block] - symbolic.supernode_begin()[block];
@@ -403,7 +402,7 @@ impl DirectSystem {
         values
     }
 
-    /// Solves for a right-hand side in place, with the transposed tangent where `transposed`.
+    /// Solves for a right-hand side in place, with the transposed tangent if `transposed`.
     pub fn solve(&self, factor: &DirectFactor, side: &mut [f64], transposed: bool) {
         let par = Par::Seq;
         let mut rhs = MatMut::from_column_major_slice_mut(side, self.size, 1);
@@ -429,7 +428,7 @@ impl DirectSystem {
         }
     }
 
-    /// The free coordinates of vectors on vertices.
+    /// Restricts vectors on vertices to free coordinates.
     pub fn gather(&self, vectors: &[Vec3]) -> Vec<f64> {
         let mut free = vec![0.0; self.size];
         for (coordinate, &row) in self.rows.iter().enumerate() {
@@ -440,7 +439,7 @@ impl DirectSystem {
         free
     }
 
-    /// Free coordinates as vectors on vertices, zero where held.
+    /// Expands free coordinates into vectors on vertices, zero where held.
     pub fn spread(&self, free: &[f64]) -> Vec<Vec3> {
         let mut vectors = vec![[0.0; 3]; self.rows.len() / 3];
         for (coordinate, &row) in self.rows.iter().enumerate() {
@@ -452,7 +451,7 @@ impl DirectSystem {
     }
 }
 
-/// The vertices that carry only what is attached to them: objects, springs.
+/// Marks vertices without voxels or tetrahedra: those of objects and springs.
 fn of_no_element(body: &Body) -> Vec<bool> {
     let mut marks = vec![true; body.rest().len()];
     let bricks = body.bricks().iter().flat_map(|brick| brick.vertices);
@@ -463,7 +462,7 @@ fn of_no_element(body: &Body) -> Vec<bool> {
     marks
 }
 
-/// For each vertex the vertices that share a piece of stiffness with it, itself included.
+/// Vertices that share an element with each vertex, itself included.
 fn adjacency(problem: &Problem, count: usize) -> Vec<Vec<u32>> {
     let mut neighbors: Vec<Vec<u32>> = (0..count as u32).map(|v| vec![v]).collect();
     let mut join = |vertices: &[u32]| {

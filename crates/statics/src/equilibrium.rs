@@ -1,5 +1,5 @@
-//! Newton's method at one point of the load path. Long because its two ways share the opening, the
-//! question where a step is only rounding, and the change from iterative to direct solutions.
+//! Newton's method at one point of the load path. The file is long because its two variants share the first iteration,
+//! the test for a standstill, and the change from iterative to direct solutions.
 
 use std::ops::ControlFlow;
 
@@ -14,20 +14,20 @@ use crate::point::Point;
 use crate::settings::{LinearSolver, Settings};
 use crate::system::{Factor, FactorError, Means, System};
 
-/// Why Newton's method stopped without an equilibrium.
+/// Reasons why Newton's method stopped without an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Failure {
-    /// It went nowhere, or too slowly.
+    /// It diverged, or converged too slowly.
     Lost,
     /// The tangent stays singular.
     Singular,
-    /// It takes more memory than there is, in bytes.
+    /// The tangent takes more memory than available, in bytes.
     Memory(u64),
     /// The observer asked to stop.
     Cancelled,
-    /// A linear system was not solved iteratively.
+    /// The conjugate gradients of a linear system stalled.
     Stalled,
-    /// The linear answer turns a voxel by this angle (rad), more than was allowed.
+    /// The linear prediction turns a voxel by this angle (rad), more than allowed.
     Turned(f64),
 }
 
@@ -42,31 +42,31 @@ impl From<FactorError> for Failure {
     }
 }
 
-/// How Newton's method goes.
+/// Variant of Newton's method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Way {
-    /// With strains that are carried along ([`voxsoft_solid::mixed`]).
+    /// Mixed, with strains as unknowns ([`voxsoft_solid::mixed`]).
     Quick,
-    /// The same, then, where that goes astray, with a line search.
+    /// Mixed, then, if that diverges, with a line search.
     Safe,
-    /// With a line search first: from an equilibrium under multipliers of contact that were corrected since. It is
-    /// near, but friction may let go there, and iterations without a line search overshoot.
+    /// Line search first: from an equilibrium with contact multipliers that were corrected since. It is near, but
+    /// friction may begin to slip there, and iterations without a line search overshoot.
     Again,
 }
 
-/// An equilibrium.
+/// Result of a converged Newton iteration.
 pub(crate) struct Found {
     pub iterations: u32,
     pub residual: f64,
 }
 
-/// The forces at some positions.
+/// Net forces at some positions.
 pub(crate) struct Forces {
-    /// On free coordinates.
+    /// Residual on free coordinates.
     pub free: Vec<f64>,
-    /// Their norm.
+    /// Norm of the residual.
     pub residual: f64,
-    /// The norm against which it counts.
+    /// Norm of the forces to which the residual is relative.
     pub scale: f64,
 }
 
@@ -76,72 +76,73 @@ impl Forces {
     }
 }
 
-/// A problem with its tangent, and the vertices that rest on the floor for now.
+/// Problem with its tangent, and the active set of vertices on the floor.
 pub(crate) struct Equilibrium<'a> {
-    /// A copy of its own, with the memory of where it has come to.
+    /// Copy of the problem, with its own memory of the current state.
     pub problem: Problem,
     pub system: System,
-    /// How linear systems may be solved.
+    /// Solver and memory limit of linear systems.
     pub means: Means,
-    /// Held by clamps or carried by the floor.
+    /// Coordinates held by clamps or carried by the floor.
     pub held: Vec<[bool; 3]>,
     pub iterations: u32,
     pub back_offs: u32,
-    /// How far the linear answer may turn a voxel from rest (rad), as long as only that is known of the
-    /// body.
+    /// Largest rotation of a voxel (rad) from rest in the linear prediction, as long as only that is known of the body.
     pub largest_turn: Option<f64>,
-    /// Pressures in the hyperelastic voxels in Pa that the first iteration takes for those of its positions.
+    /// Initial pressures in the hyperelastic voxels in Pa, used by the first iteration in place of those of its
+    /// positions.
     pub opening: Option<Vec<f64>>,
-    /// What the forces of a body in motion count against as well.
+    /// Inertia of a body in motion, whose forces enter the scale of the residual.
     pub inertia: Option<&'a Inertia>,
-    /// Forces in N that do not matter.
+    /// Forces in N that are negligible.
     pub negligible: f64,
-    /// The part of what contact may be off by default that is asked for.
+    /// Requested precision of contact, relative to its default tolerances.
     pub precision: f64,
-    /// The farthest that a clamp carries a vertex.
+    /// Farthest motion of a vertex by a clamp, m.
     pub largest_motion: f64,
-    /// The displacements by the unknown load factor that were found last, near which the next ones are.
+    /// Last solution for the displacements by the unknown load factor, a guess for the next one.
     pub by_load: Option<Vec<f64>>,
-    /// Whether rigid objects move freely: how far they go says nothing of what is rounding in their stiff springs.
+    /// True if rigid objects move freely: the distance of their motion then gives no measure of rounding in their stiff
+    /// springs.
     pub has_loose: bool,
 }
 
-/// Iterations with strains carried along: most steps take less than ten.
+/// Most mixed iterations: most steps take less than ten.
 pub(crate) const MIXED_ITERATIONS: u32 = 25;
-/// Such iterations without the residual halving, after which they count as lost, unless it just has halved: what hardly can
-/// be compressed has a residual on the way that is thousands of times the load.
+/// Mixed iterations without halving the residual, after which they count as diverged, unless it was just halved: nearly
+/// incompressible bodies have intermediate residuals of thousands of times the load.
 pub(crate) const PATIENCE: u32 = 8;
-/// Iterations with contact without one that halves the residual, once it was that near, after which a line search goes on from
-/// there: near the answer, samples that press and let go in turn lead full steps around in a circle.
+/// Iterations with contact without halving the residual, once it was below [`NEARBY`], after which a line search
+/// continues from there: near the solution, samples that open and close in turn make full steps cycle.
 const TO_AND_FRO: u32 = 3;
 const NEARBY: f64 = 0.01;
-/// How far a vertex may move in an iteration, in sizes of the body; beyond it that is lost.
+/// Largest move of a vertex in an iteration, in sizes of the body; beyond it the iteration counts as diverged.
 const FARTHEST: f64 = 20.0;
-/// The same with contact. What may meet on such a way would be listed, and is of no use.
+/// Largest move with contact. Candidates on a longer way would be listed without any use.
 const FARTHEST_WITH_CONTACT: f64 = 0.5;
-/// The largest shift of the diagonal: beyond it a step is a step of steepest descent.
+/// Largest relative shift of the diagonal: beyond it a step is a step of steepest descent.
 const LARGEST_SHIFT: f64 = 10.0;
-/// Armijo's condition: the part of the predicted gain that a step must bring.
+/// Armijo's condition: the fraction of the predicted decrease that a step must achieve.
 const SUFFICIENT: f64 = 1e-4;
-/// What an iterative solution of a step leaves of its error, in energy. Slender bodies, whose first
-/// steps go far, take twice the steps with 1e-3, and none fewer with 1e-5.
+/// Relative tolerance of iterative solutions of a step, in the energy norm. Slender bodies, whose first steps go far,
+/// take twice the steps with 1e-3, and none fewer with 1e-5.
 const LINEAR_TOLERANCE: f64 = 1e-4;
-/// The same with contact, whose penalties take most of that energy.
+/// Tolerance with contact, whose penalties take most of that energy.
 const LINEAR_TOLERANCE_WITH_CONTACT: f64 = 1e-6;
-/// The last step need leave no less than this part of what may be left: energies and residuals fall alike, but not together.
-/// It is the last where solutions to such an error are nearly as cheap as all others.
+/// Fraction of the final residual that the last linear solution may leave: energies and residuals decrease alike, but
+/// not together. A step is the last if solutions to such a tolerance ([`AT_ONCE`]) are nearly as cheap as all others.
 const LAST_PART: f64 = 0.1;
 const AT_ONCE: f64 = 1e-6;
 const LOOSEST: f64 = 0.1;
-/// How often a step may be halved.
+/// Most halvings of a step.
 const HALVINGS: u32 = 12;
-/// Potentials are sums of many terms and known to about this part of their size.
+/// Relative rounding of potentials, which are sums of many terms.
 const ROUNDING: f64 = 1e-12;
-/// A Newton step this small against the body, or against how far it has moved, is rounding: Newton's
-/// method squares its error, so that what is left of the residual cannot fall any more.
+/// Newton step, relative to the body or to its motion so far, that counts as rounding: Newton's method squares its
+/// error, so that the residual cannot decrease any more.
 const STANDSTILL: f64 = 1e-13;
 const STANDSTILL_OF_MOTION: f64 = 1e-9;
-/// What a residual may be at a standstill: rounding of stiff parts, over a small load.
+/// Largest relative residual at a standstill: rounding of stiff parts, over a small load.
 const STANDSTILL_RESIDUAL: f64 = 1e-4;
 
 impl<'a> Equilibrium<'a> {
@@ -170,7 +171,7 @@ impl<'a> Equilibrium<'a> {
         })
     }
 
-    /// Makes room in the tangent for what touches at `positions`, and gives back what is no longer needed.
+    /// Updates the contact pattern of the tangent for the pairs at `positions`.
     pub fn follow_contact(&mut self, positions: &[Vec3]) -> Result<(), FactorError> {
         let contact = self.problem.contact_mut();
         if contact.is_some_and(|contact| contact.follow(positions)) {
@@ -179,7 +180,7 @@ impl<'a> Equilibrium<'a> {
         Ok(())
     }
 
-    /// Net forces at `positions`.
+    /// Net forces at `positions`, with their norm and scale.
     pub fn forces(&self, positions: &[Vec3], point: Point) -> Forces {
         let mut external = vec![[0.0; 3]; positions.len()];
         self.problem
@@ -205,7 +206,7 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
-    /// Net forces on free coordinates with the elastic ones that `strains` predict.
+    /// Net forces on free coordinates with the elastic forces that `strains` predict.
     pub fn predicted_forces(
         &self,
         strains: &Strains,
@@ -225,7 +226,7 @@ impl<'a> Equilibrium<'a> {
         (elastic + loads, elastic.abs() + loads.abs())
     }
 
-    /// How far held coordinates still are from where they belong.
+    /// Prescribed displacement increments that remain on held coordinates.
     fn jump(&self, positions: &[Vec3], point: Point) -> Option<Vec<Vec3>> {
         let mut target = positions.to_vec();
         self.problem
@@ -267,7 +268,7 @@ impl<'a> Equilibrium<'a> {
         outcome
     }
 
-    /// From here on solves directly, if that fits in memory.
+    /// Switches to the direct solver, if that fits in memory.
     pub fn go_on_directly(&mut self) -> Result<(), FactorError> {
         self.means.solver = LinearSolver::Direct;
         self.system = System::new(&self.problem, &self.held, self.means)?;
@@ -298,8 +299,8 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
-    /// Carries pressures of a fluid along for the rest of an iteration: its forces and stiffness are theirs, while a state is
-    /// judged by its own.
+    /// Sets the pressures of a fluid as unknowns for the rest of an iteration: they determine its forces and stiffness,
+    /// while a state is judged by its own.
     fn carry(&mut self, pressures: Option<Vec<f64>>) {
         if let Some(fluid) = self.problem.fluid_mut() {
             fluid.carry(pressures);
@@ -423,8 +424,8 @@ impl<'a> Equilibrium<'a> {
         Err(Failure::Lost)
     }
 
-    /// The forces at the start of an iteration and what the clamps still have to move, told to the
-    /// observer.
+    /// Evaluates the forces at the start of an iteration and the remaining displacement increments of clamps, and
+    /// notifies the observer.
     pub fn look(
         &self,
         positions: &[Vec3],
@@ -440,8 +441,8 @@ impl<'a> Equilibrium<'a> {
         Ok((forces, self.jump(positions, point)))
     }
 
-    /// Takes the step at a standstill too, if it still helps: stiff parts balance by moves far below
-    /// what can be told from the motion of a slender body.
+    /// Takes the step at a standstill too, if it still reduces the residual: stiff parts balance by moves far below the
+    /// resolution of the motion of a slender body.
     fn take_last(
         &self,
         positions: &mut [Vec3],
@@ -470,7 +471,7 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
-    /// Whether a step of the size `largest` (m) is nothing but rounding.
+    /// Tests whether a step of the size `largest` (m) is nothing but rounding.
     pub fn stands_still(&self, positions: &[Vec3], largest: f64, relative: f64) -> bool {
         let body = self.problem.body();
         let moved = if self.has_loose {
@@ -567,8 +568,8 @@ impl<'a> Equilibrium<'a> {
         Err(Failure::Lost)
     }
 
-    /// What an iterative solution may leave of its error, where the residual is `relative` to the loads: no less than what is
-    /// asked for in the end, and that at once where it is near.
+    /// Tolerance of an iterative solution, at a residual `relative` to the loads: not below that of the final residual,
+    /// which is used at once when it is near.
     pub fn linear_tolerance(&self, relative: f64, settings: &Settings) -> f64 {
         let enough = LAST_PART * settings.tolerance / relative;
         match self.problem.contact() {
@@ -578,8 +579,8 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
-    /// A factor for an iteration with strains carried along. Far from equilibrium the tangent may be indefinite, and
-    /// this way does not go downhill anyway; but with contact it goes astray from there and does not come back.
+    /// Factorizes the tangent for a mixed iteration. Far from equilibrium the tangent may be indefinite, and mixed
+    /// iterations are no descent method anyway; but with contact they diverge from there.
     fn carried(&mut self) -> Result<Factor, Failure> {
         if self.problem.contact().is_none() || !self.problem.is_conservative() {
             return Ok(self.system.factor(0.0)?);
@@ -590,7 +591,7 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
-    /// A factor whose step goes downhill: where loads have a potential, the diagonal is lifted until
+    /// Factorizes a tangent whose step is a descent direction: if loads have a potential, the diagonal is shifted until
     /// the tangent is positive definite.
     fn descending(&mut self, shift: &mut f64) -> Result<Factor, Failure> {
         if !self.problem.is_conservative() {
@@ -611,8 +612,8 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
-    /// Goes along `moves`, halving the way until the potential falls (or, without a potential, the
-    /// residual does). Steps that carry clamps along may raise it and need only be sound.
+    /// Line search along `moves`, halving the step until the potential decreases (or, without a potential, the
+    /// residual). Steps that move clamps may raise it and need only be sound.
     fn advance(
         &self,
         positions: &mut Vec<Vec3>,
@@ -650,7 +651,7 @@ impl<'a> Equilibrium<'a> {
         Err(Failure::Lost)
     }
 
-    /// No voxel is inside out or nearly so.
+    /// Tests that no voxel is inverted or nearly so.
     pub fn is_sound(&self, positions: &[Vec3]) -> bool {
         let body = self.problem.body();
         let ratio = |brick: &Brick| {
@@ -661,7 +662,7 @@ impl<'a> Equilibrium<'a> {
             && positions.iter().flatten().all(|x| x.is_finite())
     }
 
-    /// Whether the equilibrium at the assembled state is stable.
+    /// Tests whether the equilibrium at `positions` is stable.
     pub fn is_stable(&mut self, positions: &[Vec3], point: Point) -> bool {
         if self.follow_contact(positions).is_err() {
             return false;
@@ -678,7 +679,8 @@ impl<'a> Equilibrium<'a> {
         !self.problem.is_conservative() || self.system.is_positive_definite()
     }
 
-    /// Lets the floor catch what fell below it and let go what it pulls; whether anything changed.
+    /// Updates the active set of the floor: catches vertices below it and releases those that it pulls; returns true if
+    /// any changed.
     pub fn update_floor(&mut self, positions: &[Vec3], point: Point) -> Result<bool, FactorError> {
         let Some(floor) = self.problem.floor() else {
             return Ok(false);
@@ -705,14 +707,14 @@ impl<'a> Equilibrium<'a> {
     }
 }
 
-/// Whether a step of the size `largest` of a body of some size that has moved by `moved` (all m), with the
+/// Tests whether a step of the size `largest` of a body of some size that has moved by `moved` (all m), with the
 /// `relative` residual before it, is nothing but rounding.
 pub(crate) fn is_standstill(relative: f64, largest: f64, size: f64, moved: f64) -> bool {
     let rounding = f64::max(STANDSTILL * size, STANDSTILL_OF_MOTION * moved);
     relative <= STANDSTILL_RESIDUAL && largest < rounding
 }
 
-/// The largest angle (rad) by which displacements from rest turn a voxel, to first order.
+/// Largest angle (rad) by which displacements from rest turn a voxel, to first order.
 fn largest_turn(body: &Body, positions: &[Vec3], moves: &[Vec3]) -> f64 {
     let moved: Vec<Vec3> = positions
         .iter()
@@ -724,7 +726,7 @@ fn largest_turn(body: &Body, positions: &[Vec3], moves: &[Vec3]) -> f64 {
     body.bricks().iter().map(turn).fold(0.0, f64::max)
 }
 
-/// The farthest that a clamp carries a vertex.
+/// Farthest motion of a vertex by a clamp, m.
 fn largest_motion(problem: &Problem) -> f64 {
     let rest = problem.body().rest();
     let far = |vertex: u32, clamp: &voxsoft_solid::Clamp| {

@@ -1,4 +1,4 @@
-//! Inertia over one step, as a term of the body.
+//! Inertia over one time step, as an energy term of the body.
 
 use std::sync::{RwLock, RwLockReadGuard};
 
@@ -6,20 +6,20 @@ use voxsoft_solid::Term;
 use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::vector::{Vec3, dot, norm, scale, sub};
 
-/// `κ/2 Σ m |x − y|²`: where a step ends is the equilibrium of a body that springs pull to where it would be without
-/// forces.
+/// Incremental potential of inertia, `κ/2 Σ m |x − y|²`: a step ends at the equilibrium of a body that springs pull to
+/// its force-free position `y`.
 #[derive(Debug)]
 pub(crate) struct Inertia {
-    /// In kg.
+    /// Masses of the vertices, kg.
     masses: Vec<f64>,
     goal: RwLock<Goal>,
 }
 
 #[derive(Debug, Default)]
 struct Goal {
-    /// `κ` in 1/s².
+    /// Stiffness per mass `κ`, 1/s².
     rate: f64,
-    /// `y` in m.
+    /// Force-free positions `y`, m.
     free: Vec<Vec3>,
 }
 
@@ -32,7 +32,7 @@ impl Inertia {
         }
     }
 
-    /// Takes the `κ` (1/s²) and the `y` (m) of another step.
+    /// Sets the `κ` (1/s²) and the `y` (m) of another step.
     pub fn set(&self, rate: f64, free: Vec<Vec3>) {
         *self.goal.write().expect("no holder of the lock panics") = Goal { rate, free };
     }
@@ -49,7 +49,7 @@ impl Inertia {
         }
     }
 
-    /// The norm of its forces in N.
+    /// Norm of the inertial forces in N.
     pub fn size(&self, positions: &[Vec3]) -> f64 {
         let mut sum = 0.0;
         self.each(positions, |_, k, away| sum += (k * norm(away)).powi(2));
@@ -101,7 +101,7 @@ mod tests {
     use voxsoft_solid::conformance::check_term;
 
     #[test]
-    fn inertia_keeps_the_laws_of_terms() {
+    fn inertia_obeys_the_laws_of_terms() {
         let inertia = Inertia::new(&[0.1, 0.2]);
         inertia.set(40.0, vec![[0.1, 0.0, 0.2], [0.3, -0.1, 0.0]]);
         let rest = [[0.0; 3], [0.2, 0.1, 0.0]];

@@ -1,7 +1,7 @@
-//! The sparse tangent of a large voxel body: conjugate gradients with a multigrid preconditioner.
+//! Iterative solver of a large voxel body: conjugate gradients with a multigrid preconditioner.
 //!
-//! The memory and the work of one iteration grow with the number of voxels, where those of a direct
-//! factor in three dimensions grow with its powers 4/3 and 2.
+//! The memory and the work of one iteration grow with the number of voxels, while those of a direct factor in three
+//! dimensions grow with its powers 4/3 and 2.
 
 use voxsoft_solid::assembly::Elements;
 use voxsoft_solid::mixed::Strains;
@@ -16,70 +16,70 @@ use crate::rank::rank;
 use crate::row_pattern::pattern;
 use crate::system::{FactorError, Means};
 
-/// What a vertex takes: 27 blocks of 76 bytes, an eighth more for coarser levels, and patterns, strains and
-/// vectors. 3.9 kB were measured on a cube of 10⁵ voxels, the mesh included.
+/// Memory per vertex: 27 blocks of 76 bytes, an eighth more for coarser levels, and patterns, strains and vectors. 3.9
+/// kB were measured on a cube of 10⁵ voxels, the mesh included.
 const BYTES_PER_VERTEX: u64 = 4_000;
 /// Iterations after which a solution counts as stalled.
 const MAX_ITERATIONS: usize = 400;
-/// How many times what is just enough is added across a direction.
+/// Factor on the smallest sufficient rank-one stiffness that is added across a direction.
 const BEYOND: f64 = 10.0;
-/// Elements from which on parts of the rows are worth a task each, and into how many the rows are parted.
+/// Number of elements from which parts of the rows are worth a task each, and number of these parts.
 const MANY: usize = 64;
 const PARTS: usize = 8;
-/// An error of this part is of use to Newton's method even so.
+/// Relative error that is still of use to Newton's method.
 const USEFUL: f64 = 0.1;
-/// Iterations between two questions whether to stop.
+/// Iterations between two polls of `stop`.
 const LOOK: usize = 5;
-/// How well the look for negative curvature solves.
+/// Tolerance of solutions that search for negative curvature.
 const DEFINITE_TOLERANCE: f64 = 1e-4;
 
-/// The tangent as 3 × 3 blocks by vertices, with rows and columns of held coordinates zero.
+/// Tangent as 3 × 3 blocks by vertices, with rows and columns of held coordinates zero.
 pub(crate) struct IterativeSystem {
-    /// For each vertex its row.
+    /// Row of each vertex.
     places: Vec<u32>,
     held: Vec<[bool; 3]>,
     matrix: BlockMatrix,
-    /// By what part of itself the diagonal has been lifted.
+    /// Relative shift of the diagonal.
     lifted: f64,
     hierarchy: Hierarchy,
-    /// Vectors by rows whose products with themselves are added to the tangent, which its preconditioner does not know: each
-    /// costs an iteration or two.
+    /// Vectors by rows whose outer products are added to the tangent but not to its preconditioner: each costs an
+    /// iteration or two.
     coupled: Vec<Vec<Vec3>>,
 }
 
-/// What is to be solved with the tangent.
+/// Linear system to be solved with the tangent.
 struct Equation<'a> {
     side: &'a [f64],
-    /// Where the answer may be.
+    /// Initial guess of the solution.
     guess: Option<&'a [f64]>,
     border: Option<Border<'a>>,
 }
 
-/// `factor` times the product of a vector with itself, which is added to the tangent.
+/// Rank-one term added to the tangent: `factor` times the outer product of a vector.
 struct Border<'a> {
     vector: &'a [Vec3],
     factor: f64,
 }
 
-/// A preconditioner, and whether solutions must go downhill.
+/// Preconditioner, and true if solutions must be descent directions.
 pub(crate) struct IterativeFactor {
     coarsest: Coarsest,
     downhill: bool,
 }
 
-/// How an iteration ended.
+/// End of an iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum End {
     Converged,
-    /// A direction along which the tangent is not positive; the answer is the one before.
+    /// Direction along which the tangent is not positive; the solution is the one before.
     NegativeCurvature,
     Stalled,
     Cancelled,
 }
 
 impl IterativeSystem {
-    /// The pattern and its hierarchy; `None` where a component of the body is not made of equal voxels only, or the
-    /// tangent not symmetric.
+    /// Sparsity pattern and hierarchy; `None` if a component of the body is not made of equal voxels only, or the
+    /// tangent is not symmetric.
     pub fn new(
         problem: &Problem,
         held: &[[bool; 3]],
@@ -96,7 +96,7 @@ impl IterativeSystem {
         let Some(mut cells) = cells_of(body) else {
             return Ok(None);
         };
-        // Coarser levels know nothing of vertices that are no corners, as free objects have.
+        // Coarser levels do not represent vertices that are no corners of cells, such as those of free objects.
         let mut known: Vec<bool> = held.iter().map(|held| held.iter().all(|h| *h)).collect();
         for node in cells.iter().flat_map(|cell| cell.nodes) {
             known[node as usize] = true;
@@ -122,7 +122,7 @@ impl IterativeSystem {
         }))
     }
 
-    /// The length of vectors of free coordinates: all, of which the held ones are zero.
+    /// Length of vectors of free coordinates: all coordinates, of which the held ones are zero.
     pub fn size(&self) -> usize {
         3 * self.places.len()
     }
@@ -164,12 +164,12 @@ impl IterativeSystem {
         });
     }
 
-    /// Adds the products of vectors of free coordinates with themselves to the assembled tangent.
+    /// Adds the outer products of vectors of free coordinates to the assembled tangent.
     pub fn couple(&mut self, vectors: &[Vec<f64>]) {
         self.coupled = vectors.iter().map(|vector| self.by_rows(vector)).collect();
     }
 
-    /// The product with the tangent and what is coupled to it.
+    /// Product with the tangent and its coupled rank-one terms.
     fn multiply(&self, vector: &[Vec3], image: &mut [Vec3]) {
         self.matrix.multiply(vector, image);
         for coupled in &self.coupled {
@@ -178,7 +178,7 @@ impl IterativeSystem {
         }
     }
 
-    /// Makes the diagonal of the assembled tangent `1 + shift` times what it was, where it is positive.
+    /// Scales the diagonal of the assembled tangent to `1 + shift` times its original value, where it is positive.
     pub fn lift(&mut self, shift: f64) {
         let by = (1.0 + shift) / (1.0 + self.lifted);
         self.lifted = shift;
@@ -194,7 +194,7 @@ impl IterativeSystem {
         }
     }
 
-    /// A preconditioner for the assembled tangent.
+    /// Preconditioner for the assembled tangent.
     pub fn factor(&mut self, downhill: bool) -> Result<IterativeFactor, FactorError> {
         if !self.matrix.values.are_finite() {
             return Err(FactorError::Singular);
@@ -205,9 +205,9 @@ impl IterativeSystem {
         })
     }
 
-    /// Solves in place. Where the tangent turns out not to be positive definite and the solution must
-    /// go downhill, it ends with what it has by then (Steihaug 1983, doi 10.1137/0720042). Else it goes
-    /// on, which nearly always works for the few negative eigenvalues of a tangent far from equilibrium.
+    /// Solves in place. If the tangent turns out not to be positive definite and the solution must be a descent
+    /// direction, it ends with the current iterate (Steihaug 1983, doi 10.1137/0720042). Otherwise it continues, which
+    /// nearly always works for the few negative eigenvalues of a tangent far from equilibrium.
     pub fn solve(
         &self,
         factor: &IterativeFactor,
@@ -218,7 +218,7 @@ impl IterativeSystem {
         self.solve_from(factor, side, None, tolerance, stop)
     }
 
-    /// The same from a guess at the answer.
+    /// Solves from an initial guess of the solution.
     pub fn solve_from(
         &self,
         factor: &IterativeFactor,
@@ -243,14 +243,15 @@ impl IterativeSystem {
         }
     }
 
-    /// See [`crate::system::System::is_held_across`]: the tangent plus `ρ g ⊗ g` is positive definite then for all ρ beyond
-    /// one over that compliance.
+    /// See [`crate::system::System::is_held_across`]: the tangent plus `ρ g ⊗ g` is then positive definite for all ρ
+    /// beyond one over that compliance.
     pub fn is_held_across(&mut self, gradient: &[f64], compliance: f64) -> bool {
         self.is_positive_definite(Some((gradient, BEYOND / compliance.abs())))
     }
 
-    /// Conjugate gradients from zero look along every direction that the preconditioned side has a part
-    /// in, which one without any order has in all. A vector and a factor may stand for what is added to the tangent.
+    /// Tests definiteness by conjugate gradients from zero, which explore every direction in which the preconditioned
+    /// right-hand side has a component; a pseudo-random one has components in all. `border` is a vector with the factor
+    /// of its outer product, which is added to the tangent.
     pub fn is_positive_definite(&mut self, border: Option<(&[f64], f64)>) -> bool {
         let Ok(factor) = self.factor(true) else {
             return false;
@@ -279,7 +280,7 @@ impl IterativeSystem {
         end != End::NegativeCurvature
     }
 
-    /// A vector of free coordinates by rows.
+    /// Converts a vector of free coordinates into rows.
     fn by_rows(&self, side: &[f64]) -> Vec<Vec3> {
         let mut rows = vec![[0.0; 3]; self.places.len()];
         for (vertex, &place) in self.places.iter().enumerate() {
@@ -288,7 +289,7 @@ impl IterativeSystem {
         rows
     }
 
-    /// The answer by rows.
+    /// Preconditioned conjugate gradients; returns the solution by rows.
     fn iterate(
         &self,
         factor: &IterativeFactor,
@@ -306,8 +307,8 @@ impl IterativeSystem {
             .hierarchy
             .preconditioner(&self.matrix, &factor.coarsest);
         preconditioner.apply(&residual, &mut work);
-        // The energy of the error, as the preconditioner sees it: residual forces would say little about
-        // soft bending modes, which carry most of a slender body's displacement.
+        // Energy of the error in the norm of the preconditioner: residual forces would hardly measure soft bending
+        // modes, which carry most of a slender body's displacement.
         let goal = tolerance * tolerance * sum(count, |row| dot(residual[row], work.answer(row)));
         if let Some(guess) = equation.guess {
             answer = self.by_rows(guess);
@@ -359,7 +360,7 @@ impl IterativeSystem {
         (answer, if useful { End::Converged } else { End::Stalled })
     }
 
-    /// All coordinates of vectors on vertices, zero where held.
+    /// Flattens vectors on vertices into all coordinates, zero where held.
     pub fn gather(&self, vectors: &[Vec3]) -> Vec<f64> {
         let mut free = vectors.as_flattened().to_vec();
         for (coordinate, value) in free.iter_mut().enumerate() {
@@ -370,13 +371,13 @@ impl IterativeSystem {
         free
     }
 
-    /// Vectors on vertices, zero where held.
+    /// Expands coordinates into vectors on vertices, zero where held.
     pub fn spread(&self, free: &[f64]) -> Vec<Vec3> {
         free.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect()
     }
 }
 
-/// Where element matrices go.
+/// Matrix into which elements are assembled.
 struct Target<'a> {
     places: &'a [u32],
     held: &'a [[bool; 3]],
@@ -403,7 +404,7 @@ impl Target<'_> {
         }
     }
 
-    /// Adds to the matrix: many elements by parts of its rows, so that each row gets them in their order.
+    /// Adds to the matrix: many elements by parts of its rows, so that each row sums them in their order.
     fn add(&mut self, elements: Elements<'_>) {
         let Self {
             places,
@@ -422,7 +423,7 @@ impl Target<'_> {
             values,
             ..
         } = &mut **matrix;
-        // Rows are numbered by colors, of which a voxel has each once: equal parts are equal work.
+        // Rows are numbered by colors, each of which occurs once in a voxel: equal parts are equal work.
         let ranges = (0..count).map(|part| rows * part / count..rows * (part + 1) / count);
         let sizes = ranges
             .clone()
@@ -467,7 +468,7 @@ impl Target<'_> {
     }
 }
 
-/// Some rows of a matrix.
+/// Range of rows of a matrix.
 struct Rows<'a> {
     range: std::ops::Range<usize>,
     values: Part<'a>,

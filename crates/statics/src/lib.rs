@@ -1,13 +1,13 @@
-//! The equilibrium of a [`voxsoft_solid::Problem`].
+//! Static equilibrium and implicit dynamics of a [`voxsoft_solid::Problem`].
 //!
-//! - [`solve`] follows a load path to the equilibrium under all loads: Newton's method on the exact
-//!   tangent (pressure included) with a line search on the potential, load steps that grow and back
-//!   off, and arc length or volume control where a load has a limit.
-//! - [`adjoint()`] gives the derivative of a number that depends on the equilibrium, without solving for
-//!   it again.
-//! - [`Implicit`] moves a problem through time by implicit steps, while someone pulls at it.
-//! - [`Ensemble`] finds the equilibria of many variants of one lattice body at a time, one in each lane of
-//!   the processor.
+//! - [`solve`] follows a load path to the equilibrium under all loads: Newton's method on the exact tangent (pressure
+//!   included) with a line search on the potential, load steps that grow and are cut back, and arc length or volume
+//!   control where a load has a limit.
+//! - [`adjoint()`] gives the derivative of a number that depends on the equilibrium, without another nonlinear
+//!   solution.
+//! - [`Implicit`] moves a problem through time by implicit steps, while a user pulls at it.
+//! - [`Ensemble`] finds the equilibria of many variants of one lattice body at a time, one in each SIMD lane of the
+//!   processor.
 //!
 //! # Example
 //!

@@ -1,10 +1,11 @@
-//! What only contact holds: rigid objects that are free, and bodies without clamps.
+//! Bodies held by contact alone: free rigid objects, and bodies without clamps.
 //!
 //! Their tangent is singular until they touch, and stays so along neutral motions: a ball may roll. So each of their
 //! vertices has a damper, `w/2 |x − y|²` with the place `y` of the last point of the path: the backward Euler step of
-//! `w ẋ = f(x)`, which goes downhill to an equilibrium. Along the load path it keeps what is not gripped yet where it is.
-//! At the full load its rate falls as the motion dies out, and the equilibrium counts once the force of the dampers is below the
-//! tolerance of the forces (pseudo-transient continuation: Kelley and Keyes 1998, doi 10.1137/S0036142996304796).
+//! `w ẋ = f(x)`, which descends to an equilibrium. Along the load path it holds loose bodies in place until contact
+//! grips them. At the full load its rate decreases as the motion dies out, and the equilibrium counts once the force of
+//! the dampers is below the tolerance of the forces (pseudo-transient continuation: Kelley and Keyes 1998, doi
+//! 10.1137/S0036142996304796).
 
 use std::sync::Arc;
 
@@ -19,43 +20,42 @@ use crate::point::Point;
 use crate::settings::Settings;
 use crate::settle::Search;
 
-/// How far the load of a loose component takes it in one step of the path, in lengths of contact: a path of twenty steps
-/// under a load that grows evenly takes what nothing touches half a length away.
+/// Motion of a loose component under its load in one step of the path, in lengths of contact: a path of twenty steps
+/// under a load that grows evenly moves a component without contact by half a length.
 const SAG: f64 = 0.05;
-/// The step of a path for which that is.
+/// Step of a path for which [`SAG`] holds.
 const USUAL: f64 = 0.05;
-/// The stiffness of dampers where no load says one, in forces of a unit strain over a length of contact.
+/// Smallest stiffness of dampers, in forces of a unit strain over a length of contact, for components without a load.
 const SOFTEST: f64 = 1e-5;
-/// The least rate. What an equilibrium leaves out of balance, 10⁻⁸ of the load, moves a neutral component by less
-/// than 10⁻⁴ lengths of contact in a step.
+/// Smallest damping rate. The residual of an equilibrium, 10⁻⁸ of the load, moves a neutral component by less than 10⁻⁴
+/// lengths of contact in a step.
 const LEAST_RATE: f64 = 1e-5;
-/// By how much the rate falls at most from one step to the next, and grows where none is found.
+/// Smallest ratio of the damping rates of consecutive steps; a step that fails multiplies the rate by its inverse.
 const FALL: f64 = 0.1;
-/// The rate beyond which a step is given up.
+/// Damping rate beyond which a step is given up.
 const LARGEST_RATE: f64 = 1e6;
-/// Steps of this many iterations met nothing: the next one may go twice as far.
+/// Most iterations of a step without contact, after which the next one may go twice as far.
 const FLIGHT: u32 = 4;
-/// How often in a row dampers may carry what is left of the search itself, before that counts as rounding of stiff
-/// parts.
+/// Consecutive steps with damper forces as small as the residual, after which these count as rounding of stiff parts.
 const ROUNDED: u32 = 4;
 /// Steps after which a motion that has not died out is given up.
 const STEPS: usize = 200;
-/// What goes farther than this many sizes of all there is, objects included, does not come back.
+/// Distance, in sizes of the whole scene with its objects, beyond which a component counts as lost.
 const GONE: f64 = 2.0;
-/// Pivots below this part of the largest count as none: squares of the ratios of lengths that supports have.
+/// Relative size of pivots that count as zero: squares of the ratios of lengths of supports.
 const NO_PIVOT: f64 = 1e-12;
 
-/// Dampers on all that nothing but contact holds.
+/// Dampers on loose components, which only contact holds.
 pub(crate) struct Loose {
     pub dampers: Arc<Inertia>,
-    /// A length of contact, m.
+    /// Length of contact, m.
     length: f64,
-    /// How far a vertex may go, m.
+    /// Largest motion of a vertex, m.
     farthest: f64,
 }
 
 impl Loose {
-    /// What is loose in a problem with contact; `None` where clamps hold everything.
+    /// Finds the loose components of a problem with contact; `None` if clamps hold everything.
     pub fn find(problem: &Problem) -> Option<Self> {
         let length = problem.contact()?.length();
         let rest = problem.body().rest();
@@ -67,7 +67,7 @@ impl Loose {
             let each = || component.iter().map(|vertex| *vertex as usize);
             let masses = problem.body().masses();
             let mass: f64 = each().map(|vertex| masses[vertex]).sum();
-            // What has no mass is the frame of an object that is held.
+            // A component without mass is the frame of a held object.
             if mass == 0.0 || is_held(problem, &component) {
                 continue;
             }
@@ -86,7 +86,8 @@ impl Loose {
         })
     }
 
-    /// Dampers on all that has mass, each about as stiff as the body is there at first, for motions of the size of a `length` (m).
+    /// Dampers on all vertices with mass, each about as stiff as the body is there at first, for motions of the size of
+    /// a `length` (m).
     pub fn of_everything(problem: &Problem, length: f64) -> Self {
         let rest = problem.body().rest();
         let masses = problem.body().masses();
@@ -100,31 +101,31 @@ impl Loose {
         }
     }
 
-    /// Holds everything loose to where it is for a step of the load path, a part of the load: as a viscosity does whose time is the
-    /// load, so that shorter steps move it less far.
+    /// Holds loose components in place during a step of the load path, a fraction of the load: like a viscosity with
+    /// the load as time, so that shorter steps move them less far.
     pub fn hold(&self, positions: &[Vec3], step: f64) {
         let rate = f64::max(USUAL / step, 1.0);
         self.dampers.set(rate, positions.to_vec());
     }
 
-    /// Takes all forces of dampers away.
+    /// Removes all damper forces.
     pub fn let_go(&self, positions: &[Vec3]) {
         self.dampers.set(0.0, positions.to_vec());
     }
 
-    /// Whether something has gone for good.
+    /// Tests whether a component has moved away for good.
     fn is_gone(&self, problem: &Problem, positions: &[Vec3]) -> bool {
         farthest(positions, problem.body().rest()) > self.farthest
     }
 }
 
-/// How far any point has moved.
+/// Largest motion of any point.
 fn farthest(positions: &[Vec3], from: &[Vec3]) -> f64 {
     let moved = positions.iter().zip(from).map(|(x, y)| norm(sub(*x, *y)));
     moved.fold(0.0, f64::max)
 }
 
-/// The diagonal of the box around points.
+/// Diagonal of the bounding box of points.
 fn extent(points: &[Vec3]) -> f64 {
     let side = |axis: usize| {
         let along = points.iter().map(|x| x[axis]);
@@ -134,7 +135,7 @@ fn extent(points: &[Vec3]) -> f64 {
     norm([side(0), side(1), side(2)])
 }
 
-/// The vertices of each component that elements join; contact joins nothing.
+/// Vertices of each component connected by elements; contact connects none.
 fn components(problem: &Problem) -> Vec<Vec<u32>> {
     let count = problem.body().rest().len();
     let mut parent: Vec<u32> = (0..count as u32).collect();
@@ -168,8 +169,8 @@ fn components(problem: &Problem) -> Vec<Vec<u32>> {
     members
 }
 
-/// Whether clamps stop all rigid motions of a component: the coordinates that they hold, each a linear function of the six
-/// of a rigid motion, have rank six.
+/// Tests whether clamps stop all rigid motions of a component: the coordinates that they hold, each a linear function
+/// of the six of a rigid motion, have rank six.
 fn is_held(problem: &Problem, component: &[u32]) -> bool {
     let rest = problem.body().rest();
     let each = || component.iter().map(|vertex| *vertex as usize);
@@ -200,7 +201,7 @@ fn is_held(problem: &Problem, component: &[u32]) -> bool {
     rank(gram) == 6
 }
 
-/// The rank of a positive semidefinite matrix, by elimination with the largest pivot first.
+/// Rank of a positive semidefinite matrix, by elimination with the largest pivot first.
 fn rank(mut matrix: [[f64; 6]; 6]) -> usize {
     let largest = (0..6).map(|i| matrix[i][i]).fold(0.0, f64::max);
     let mut left: Vec<usize> = (0..6).collect();
@@ -225,7 +226,7 @@ fn rank(mut matrix: [[f64; 6]; 6]) -> usize {
 }
 
 impl Path<'_, '_> {
-    /// Lets what is loose go to where it is in equilibrium, as the `search` finds it.
+    /// Releases loose components into equilibrium, with the `search` at each step.
     pub fn release(
         &mut self,
         loose: &Loose,
@@ -280,7 +281,7 @@ impl Path<'_, '_> {
         self.lost(Status::NotAtRest)
     }
 
-    /// The force of the dampers, as a part of the load.
+    /// Force of the dampers relative to the load.
     fn left_to_dampers(&self, loose: &Loose, positions: &[Vec3], point: Point) -> f64 {
         loose.dampers.size(positions) / self.equilibrium.forces(positions, point).scale
     }
@@ -294,7 +295,8 @@ impl Path<'_, '_> {
         found: &Found,
         known: usize,
     ) -> Ending {
-        // Neutral motions leave the tangent singular; what is unstable has it indefinite by more than this rate makes up.
+        // Neutral motions leave the tangent singular; an unstable equilibrium has negative eigenvalues larger than this
+        // rate.
         loose.dampers.set(LEAST_RATE, positions.clone());
         let stable = self.equilibrium.is_stable(&positions, at);
         self.looking = false;

@@ -1,8 +1,8 @@
 //! Natural frequencies and modes of small vibrations about an equilibrium: `K φ = ω² M φ`.
 //!
-//! By subspace iteration (Bathe and Wilson 1972, doi 10.1016/0045-7949(73)90040-6): `Y = K⁻¹ M X`, and the
-//! small eigenproblem `Yᵀ K Y a = ω² Yᵀ M Y a` in its span, whose first matrix is `Yᵀ M X`. A mode
-//! converges by the ratio of its `ω²` and that of the first one left out of the subspace, a step.
+//! Subspace iteration (Bathe and Wilson 1972, doi 10.1016/0045-7949(73)90040-6): `Y = K⁻¹ M X`, and the small
+//! eigenproblem `Yᵀ K Y a = ω² Yᵀ M Y a` in its span, whose first matrix is `Yᵀ M X`. A mode converges in each step by
+//! the ratio of its `ω²` and that of the first one left out of the subspace.
 
 use faer::linalg::solvers::Llt;
 use faer::{Mat, Side};
@@ -11,24 +11,24 @@ use voxsoft_solid::vector::Vec3;
 
 use crate::adjoint::{AdjointError, with_tangent};
 
-/// The relative change of `ω²` in a step at which a mode has converged.
+/// Relative change of `ω²` in a step at which a mode has converged.
 const CONVERGED: f64 = 1e-9;
-/// Steps until that is given up; ten do for frequencies that are apart.
+/// Most steps; ten suffice for well-separated frequencies.
 const MOST_STEPS: usize = 200;
-/// Of the residual of iterative solutions.
+/// Relative tolerance of iterative solutions.
 const TOLERANCE: f64 = 1e-11;
 
-/// A natural vibration.
+/// Natural mode of vibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mode {
-    /// The angular frequency squared in 1/s².
+    /// Square of the angular frequency in 1/s².
     pub square: f64,
-    /// How each vertex moves; `φᵀ M φ` is one, so that these are in kg^-1/2.
+    /// Mode shape on the vertices, normalized to `φᵀ M φ = 1`, so that it is in kg^-1/2.
     pub shape: Vec<Vec3>,
 }
 
-/// The `count` slowest vibrations about an equilibrium under all loads, the slowest first. The tangent may take `memory`
-/// bytes; `stop` is asked between the steps of the work.
+/// Computes the `count` slowest modes about an equilibrium under all loads, the slowest first. The tangent may take
+/// `memory` bytes; `stop` is polled between the steps of the work.
 pub fn modes(
     problem: &Problem,
     positions: &[Vec3],
@@ -75,7 +75,7 @@ pub fn modes(
     Err(AdjointError::Unsettled)
 }
 
-/// Vectors that no mode is orthogonal to, the same each time: the low bits of a linear congruential generator (Knuth's).
+/// Start vectors that no mode is orthogonal to, the same each time: a linear congruential generator (Knuth's).
 fn first_vectors(size: usize, width: usize) -> Mat<f64> {
     let mut state = 1_u64;
     Mat::from_fn(size, width, |_, _| {

@@ -6,13 +6,13 @@
 
 use voxsoft_solid::vector::Vec3;
 
-/// Pieces of this many vertices are not cut any more: their fill is small in any order.
+/// Number of vertices below which a part is not cut any more: its fill is small in any order.
 const SMALL: usize = 24;
 
-/// Vertices in the order of elimination; `neighbors[v]` lists those that share a piece with `v`.
+/// Vertices in the order of elimination; `neighbors[v]` lists those that share an element with `v`.
 ///
-/// Vertices that `is_last` marks come last of all. Some join much of the whole, as the four that carry a rigid object
-/// join all that it touches: anywhere else they would bring that into the separators.
+/// Vertices that `is_last` marks come last of all. Some couple large regions, such as the four that carry a rigid
+/// object, which couple everything that it touches: anywhere else they would enlarge the separators.
 pub(crate) fn nested_dissection(
     points: &[Vec3],
     neighbors: &[Vec<u32>],

@@ -1,4 +1,4 @@
-//! The load path: steps that grow and back off, and what to say when there is no way on.
+//! Load path: adaptive steps that grow and are cut back, and the diagnosis of a path that cannot continue.
 
 use std::sync::Arc;
 
@@ -16,25 +16,25 @@ use crate::step_length::StepLength;
 use crate::system::{FactorError, Means};
 use crate::volume;
 
-/// A step that took no more iterations than this lets the next one grow.
+/// Most iterations of a step after which the next one may grow.
 pub(crate) const EASY: u32 = 6;
-/// The same where every correction of contact takes some of them.
+/// Most iterations of an easy step with contact, every correction of which takes some of them.
 const EASY_WITH_CONTACT: u32 = 15;
-/// Steps up to this part of the load are tried again with a line search before they are cut: a quick
-/// way that fails is mostly helped by a shorter step.
+/// Largest step, as a part of the load, that is repeated with a line search before it is cut: a mixed iteration that
+/// fails is mostly helped by a shorter step.
 const SAFE_STEP: f64 = 0.05;
-/// A first step whose linear answer turns a voxel by more than this (rad) seldom converges, and finds
-/// that out in some ten iterations.
+/// Rotation of a voxel (rad) in the linear prediction beyond which a first step seldom converges, at a cost of some ten
+/// iterations.
 const LARGEST_TURN: f64 = 1.0;
-/// The turn of the step that is taken instead.
+/// Rotation of the step that is taken instead, rad.
 const GOOD_TURN: f64 = 0.5;
-/// The longest step along a path on which the answer depends: with friction, or bonds that may break.
+/// Longest step of a path-dependent problem: with friction, or bonds that may break.
 const LONGEST_OF_WAY: f64 = 0.05;
-/// The same where only loads know the way: what a tendon slides over is found from one state to the next, and slides on in
-/// the same sense under loads that grow together.
+/// Longest step if only loads are path-dependent: the contact of a tendon is found from one state to the next, and
+/// slides on in the same sense under loads that grow together.
 const LONGEST_OF_LOADS: f64 = 0.25;
 
-/// The longest step along the path of a problem, as a part of all of it.
+/// Longest step along the path of a problem, as a part of all of it.
 pub(crate) fn longest_step(problem: &Problem) -> f64 {
     match problem.contact() {
         Some(contact) if contact.depends_on_way() => LONGEST_OF_WAY,
@@ -42,18 +42,19 @@ pub(crate) fn longest_step(problem: &Problem) -> f64 {
         _ => 1.0,
     }
 }
-/// The longest step where fluids do work, which is added up by the trapezoidal rule: it is good to some parts in a thousand then.
+/// Longest step with fluids, whose work is integrated by the trapezoidal rule: it is then accurate to some parts in a
+/// thousand.
 const LONGEST_OF_WORK: f64 = 0.125;
-/// How much of the load, or of the growth of a volume, comes on while the body snaps.
+/// Step of the load, or of the growth of a volume, across a snap.
 pub(crate) const SNAP: f64 = 0.0125;
-/// A step that would leave less than a tenth of itself goes to the end.
+/// Largest remaining path, in steps, that is taken as one last step.
 const LAST: f64 = 1.1;
 
-/// How often on a path a step to a state that is not stable is cut before such a state is taken: one that
-/// is left after that lies past a bifurcation, not beside the path.
+/// Most cuts on a path of steps to unstable states, before such a state is accepted: one that remains after that lies
+/// past a bifurcation, not beside the path.
 pub(crate) const UNSTABLE_CUTS: u32 = 5;
 
-/// How a path ended.
+/// End of a path.
 pub(crate) struct Ending {
     status: Status,
     limit: Option<f64>,
@@ -75,26 +76,26 @@ impl Ending {
     }
 }
 
-/// A path under way.
+/// Load path in progress.
 pub(crate) struct Path<'a, 'b> {
     pub equilibrium: Equilibrium<'a>,
     pub positions: Vec<Vec3>,
     pub point: Point,
     pub points: Vec<PathPoint>,
-    /// The load factors at which it snapped ([`crate::snap`]).
+    /// Load factors at which it snapped ([`crate::snap`]).
     pub snaps: Vec<f64>,
     pub observer: &'a mut Observer<'b>,
-    /// Whether the points are only a look ahead, not to be recorded.
+    /// True while the points are only a look ahead, not to be recorded.
     pub looking: bool,
 }
 
-/// Where the search for an equilibrium begins.
+/// Starting guess of an equilibrium.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Start {
     /// Positions in m.
     pub positions: Vec<Vec3>,
-    /// Pressures in the hyperelastic voxels in Pa, positive in tension, in the order of [`voxsoft_solid::Bricks`]; `None` for
-    /// those of the positions.
+    /// Pressures in the hyperelastic voxels in Pa, positive in tension, in the order of [`voxsoft_solid::Bricks`];
+    /// `None` for those of the positions.
     pub pressures: Option<Vec<f64>>,
 }
 
@@ -107,7 +108,7 @@ pub fn solve(
 ) -> Answer {
     let loose = match settings.control {
         Control::Load | Control::Time { .. } | Control::Volume { .. } => Loose::find(problem),
-        // What is loose goes to rest under a load, which past a limit nothing is stable under.
+        // Loose components come to rest under a fixed load, and past a limit no equilibrium is stable under one.
         Control::ArcLength { .. } => None,
     };
     let Some(loose) = loose else {
@@ -119,7 +120,7 @@ pub fn solve(
     follow(&damped, start, settings, observer, Some(&loose))
 }
 
-/// Follows the path of a problem, in which dampers hold what is loose.
+/// Follows the path of a problem, in which dampers hold loose components.
 fn follow(
     problem: &Problem,
     start: Option<&Start>,
@@ -132,7 +133,7 @@ fn follow(
     let positions = start.map_or(&rest, |start| &start.positions).clone();
     let solver = match settings.control {
         Control::Load | Control::Time { .. } => settings.linear,
-        // Where contact goes astray is told from the signs of pivots.
+        // Divergence of contact is detected by the signs of pivots.
         Control::Volume { .. } if problem.contact().is_none() => settings.linear,
         Control::ArcLength { .. } | Control::Volume { .. } => LinearSolver::Direct,
     };
@@ -220,26 +221,26 @@ pub(crate) fn status_of(failure: Failure) -> Status {
 }
 
 impl Path<'_, '_> {
-    /// Whether surfaces touch.
+    /// Tests whether the problem has contact.
     pub fn touches(&self) -> bool {
         self.equilibrium.problem.contact().is_some()
     }
 
-    /// Lets contact change its memory.
+    /// Changes the memory of contact.
     pub fn with_contact(&mut self, act: impl FnOnce(&mut dyn Contact)) {
         if let Some(contact) = self.equilibrium.problem.contact_mut() {
             act(contact);
         }
     }
 
-    /// Whether a snap may be looked for: where surfaces touch, and the path is not recorded.
+    /// Tests whether snaps are allowed: with contact, if the path is not recorded.
     pub fn may_snap(&self) -> bool {
         let contact = self.equilibrium.problem.contact();
         contact.is_some_and(|contact| !contact.is_recorded())
     }
 
     fn answer(mut self, ending: Ending, settings: &Settings) -> Answer {
-        // Load and volume control have asked at each point; a point of an arc knows only whether the load has turned.
+        // Load and volume control have tested each point; arc length knows only if the load has turned.
         let stable = match (self.points.last(), settings.control) {
             (Some(last), Control::Load | Control::Time { .. } | Control::Volume { .. }) => {
                 last.stable
@@ -286,7 +287,7 @@ impl Path<'_, '_> {
             residual,
             stable: true,
         });
-        // A converged point is worth telling; whether to stop is asked at the next iteration.
+        // The observer sees each converged point; a request to stop is handled at the next iteration.
         let _ = (self.observer)(&Progress {
             problem: &self.equilibrium.problem,
             steps: u64::from(self.equilibrium.iterations),
@@ -298,8 +299,7 @@ impl Path<'_, '_> {
         });
     }
 
-    /// The limit just ahead, if there is one. Beyond it the tangent is indefinite, which takes a direct
-    /// factor.
+    /// Limit just ahead, if there is one. Beyond it the tangent is indefinite, which takes a direct factor.
     fn look_ahead(&mut self, settings: &Settings) -> Option<f64> {
         let equilibrium = &mut self.equilibrium;
         if equilibrium.system.is_iterative() {
@@ -388,7 +388,7 @@ impl Path<'_, '_> {
                         length.succeeded(found.iterations <= easy);
                         continue;
                     }
-                    // A long step may come upon a branch that the path does not lead to.
+                    // A long step may reach a branch that the path does not lead to.
                     cuts += 1;
                     Failure::Lost
                 }
@@ -429,8 +429,8 @@ impl Path<'_, '_> {
                     }
                     return self.end(along, loose, limit, settings);
                 }
-                // Contact makes corners in the path, which no tangent foresees; and what fills chambers is not proportional to the
-                // load, so that no direction leads ahead.
+                // Contact makes corners in the path, which no tangent predicts; and the pressure of chambers is not
+                // proportional to the load, so that no direction leads ahead.
                 let fluid = self.equilibrium.problem.fluid();
                 let plain = !self.touches() && fluid.is_none();
                 let limit = if plain && along.has_factor() {
@@ -438,7 +438,7 @@ impl Path<'_, '_> {
                 } else {
                     None
                 };
-                // What was held at an equilibrium before does not move freely: contact lost its way.
+                // A body that was held at an earlier equilibrium does not move freely: contact diverged.
                 let failure = match failure {
                     Failure::Singular if self.touches() && now > 0.0 => Failure::Lost,
                     other => other,
@@ -449,7 +449,7 @@ impl Path<'_, '_> {
         }
     }
 
-    /// The end of load control, where all that grows is there.
+    /// End of load control, at the full load.
     fn end(
         &mut self,
         along: Along,

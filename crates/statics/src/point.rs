@@ -1,11 +1,11 @@
 use voxsoft_solid::Load;
 
-/// Where on the path: factors on pressures and on everything else, and the time of all histories.
+/// Point of a load path: factors on pressures and on everything else, and the time of all histories.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Point {
     pub dead: f64,
     pub pressure: f64,
-    /// In s; without end for equilibria.
+    /// Time in s; infinite for equilibria.
     pub time: f64,
 }
 
@@ -29,7 +29,7 @@ impl Point {
         }
     }
 
-    /// How far the path has come: the time, or for equilibria, which know none, the factor.
+    /// Progress along the path: the time, or without one the factor.
     pub fn progress(self) -> f64 {
         if self.time.is_finite() {
             self.time

@@ -1,9 +1,9 @@
-//! Where a vertex is in a short list.
+//! Position of a vertex in a short sorted list.
 
-/// Lists up to this length are counted through, which takes no branches; longer ones are searched.
+/// Longest list that is counted through without branches; longer ones use binary search.
 const SHORT: usize = 64;
 
-/// How many of a rising list are less than `vertex`: the place of a vertex that it has.
+/// Number of entries of a rising list below `vertex`: its position if it is in the list.
 #[inline(always)]
 pub(crate) fn rank(list: &[u32], vertex: u32) -> usize {
     if list.len() > SHORT {
@@ -19,7 +19,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_vertex_has_its_place_in_short_and_long_lists() {
+    fn rank_in_short_and_long_lists() {
         for length in [1, 8, 27, SHORT, SHORT + 1, 200] {
             let list: Vec<u32> = (0..length as u32).map(|n| 3 * n + 1).collect();
             for (place, &vertex) in list.iter().enumerate() {

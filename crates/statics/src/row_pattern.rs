@@ -1,10 +1,10 @@
-//! Which blocks the tangent of a large body has.
+//! Block sparsity pattern of the tangent of a large body.
 
 use voxsoft_solid::{Problem, Term};
 
 use crate::multigrid::BlockMatrix;
 
-/// The vertices of elements, one after the other.
+/// Vertices of elements, one after the other.
 #[derive(Default)]
 struct Pieces {
     vertices: Vec<u32>,
@@ -23,7 +23,7 @@ impl Pieces {
     }
 }
 
-/// The columns of each vertex: the corners of its voxels, and what membranes and pressures join.
+/// Columns of each vertex: the corners of its voxels, and the vertices coupled by membranes and pressures.
 pub(crate) fn pattern(problem: &Problem) -> BlockMatrix {
     let body = problem.body();
     let count = body.rest().len();
@@ -38,7 +38,7 @@ pub(crate) fn pattern(problem: &Problem) -> BlockMatrix {
         term.visit_pattern(&mut |vertices| elements.push(vertices));
     }
     problem.visit_load_pattern(&mut |vertices| elements.push(vertices));
-    // The elements at each vertex, then the vertices of those elements.
+    // Elements at each vertex, then the vertices of those elements.
     let mut starts = vec![0u32; count + 1];
     for &vertex in &elements.vertices {
         starts[vertex as usize + 1] += 1;

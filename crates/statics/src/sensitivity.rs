@@ -1,16 +1,17 @@
-//! Derivatives along a load path, where the answer depends on the way to it.
+//! Derivatives along the load path of path-dependent problems.
 //!
-//! Contact with friction remembers: multipliers, bounds and anchors `M` at each equilibrium come from the one before. With
-//! the equilibria `r_j(x_j, M_j, p) = 0` of a path and what a correction makes of them, `M_{j+1} = C(x_j, M_j, p)`,
+//! Contact with friction has memory: multipliers, bounds and anchors `M` at each equilibrium come from the one before.
+//! With the equilibria `r_j(x_j, M_j, p) = 0` of a path and the corrections `M_{j+1} = C(x_j, M_j, p)`,
 //!
 //! ```text
 //! K_j dx_j/dp = ∂r_j/∂p + ∂r_j/∂M dM_j/dp ,   dM_{j+1}/dp = ∂C/∂p + ∂C/∂x dx_j/dp + ∂C/∂M dM_j/dp ,   K_j = −∂r_j/∂x .
 //! ```
 //!
-//! Each tangent is factorized once for all parameters. All else takes no solution and is differenced: for each parameter
-//! some problems follow the path with a value of it that is a little off. They hold their own `M`, and their vertices are
-//! where the derivative puts them, so that the differences of their forces, over those of their values, are the right-hand
-//! side above. That is the derivative of what the path computes, with multipliers as good as its corrections have made them.
+//! Each tangent is factorized once for all parameters. All other derivatives take no solution and are finite
+//! differences: for each parameter some problems follow the path with a slightly perturbed value of it. They hold their
+//! own `M`, and their vertices are at the positions given by the derivative, so that the differences of their forces,
+//! over those of their values, are the right-hand side above. This is the derivative of the computed path, with
+//! multipliers as accurate as its corrections.
 
 use voxsoft_solid::vector::{Vec3, axpy, norm, sub};
 use voxsoft_solid::{Moment, Problem, RecordedContact, elastic};
@@ -21,31 +22,31 @@ use crate::point::Point;
 use crate::settings::LinearSolver;
 use crate::system::{Means, System};
 
-/// What an iterative solution leaves of a derivative, in energy.
+/// Relative tolerance of iterative solutions for derivatives, in the energy norm.
 const TOLERANCE: f64 = 1e-8;
 
-/// Corrections of derivatives at the end of a step, with the factor that is there: as many as bring them to so small a part
-/// of their size, but no more than so many; beyond such a change they do not converge.
+/// Corrections of derivatives at the end of a step, with its factor: until their relative change is below [`SETTLED`],
+/// but at most [`ROUNDS`]; above [`LARGEST_CHANGE`] they count as diverged.
 const SETTLED: f64 = 1e-7;
 const ROUNDS: u32 = 30;
 const LARGEST_CHANGE: f64 = 1e-5;
 
-/// A problem with a value of a parameter that is a little off.
+/// Problem with a slightly perturbed value of a parameter.
 #[derive(Debug, Clone)]
 pub struct Varied {
     /// The problem.
     pub problem: Problem,
-    /// By how much the value is off.
+    /// Perturbation of the value.
     pub offset: f64,
-    /// The weight of a number at this value in its derivative.
+    /// Finite-difference weight of a number at this value in its derivative.
     pub weight: f64,
 }
 
-/// Where the vertices of varied problems are at the end of a path, to the first order, for each parameter and each of its
-/// varied problems. Their contact is then in the state that belongs to it.
+/// Positions of the vertices of perturbed problems at the end of a path, to first order, for each parameter and each of
+/// its perturbed problems. Their contact then has the corresponding state.
 ///
-/// `moments` are those of a path of load control that [`RecordedContact`] recorded, and `factors` the load factors of its steps.
-/// The tangent may take `memory` bytes; `stop` is asked between the steps of the work.
+/// The `moments` are those of a path of load control that [`RecordedContact`] recorded, and `factors` the load factors
+/// of its steps. The tangent may take `memory` bytes; `stop` is polled between the steps of the work.
 pub fn sensitivities<C: RecordedContact>(
     problem: &Problem,
     moments: &[Moment<C::Memory>],
@@ -153,14 +154,14 @@ pub fn sensitivities<C: RecordedContact>(
     Ok(ends)
 }
 
-/// Contact of a problem, of the kind that was recorded.
+/// Contact of a problem, of the recorded kind.
 fn contact_of<C: RecordedContact>(problem: &mut Problem) -> Result<&mut C, AdjointError> {
     let contact = problem.contact_mut().ok_or(AdjointError::Unsettled)?;
     let found = contact.found_by_mut().downcast_mut();
     found.ok_or(AdjointError::Unsettled)
 }
 
-/// The contacts of varied problems.
+/// Contacts of perturbed problems.
 fn contacts<C: RecordedContact>(group: &mut [Varied]) -> Result<Vec<&mut C>, AdjointError> {
     group
         .iter_mut()
@@ -168,8 +169,8 @@ fn contacts<C: RecordedContact>(group: &mut [Varied]) -> Result<Vec<&mut C>, Adj
         .collect()
 }
 
-/// The largest change of slopes, as a part of the largest one or of how far clamps and objects are `carried`, beside which
-/// the slopes of the body may be nothing but rounding; infinite where there were none.
+/// Largest change of derivatives, relative to the largest one or to the motion of clamps and objects (`carried`),
+/// beside which the derivatives of the body may be nothing but rounding; infinite without a previous value.
 fn change(before: &[Vec3], now: &[Vec3], carried: f64) -> f64 {
     let largest = |all: &[f64]| all.iter().fold(0.0f64, |most, x| most.max(x.abs()));
     if before.is_empty() {

@@ -4,68 +4,67 @@ use voxsoft_solid::{Load, Memory, Observer, Problem, Solution, Solver, State, St
 use crate::path::{Start, solve};
 use crate::point::Point;
 
-/// How a load path is followed.
+/// Control of a load path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Control {
     /// All loads and motions grow together to their full values.
     Load,
-    /// Loads and motions are those that their histories have at an instant, as if nothing had mass.
+    /// Loads and motions are those of their histories at an instant, as if all were massless (quasi-static).
     Time {
-        /// The instant in s of the equilibrium that it starts from; without one, loads and motions grow together to
-        /// those of the end.
+        /// Instant in s of the equilibrium from which it starts; without one, loads and motions grow together to those
+        /// of the end.
         from: Option<f64>,
-        /// The instant in s at the end.
+        /// Instant in s at the end.
         to: f64,
-        /// The longest step, as a part of the way, where the answer depends on the way.
+        /// Longest step, as a part of the path, of path-dependent problems.
         longest: f64,
     },
-    /// Loads and motions grow as with [`Control::Load`], but steps are measured along the path in displacements and loads, so that it is
-    /// followed through snaps, where the load falls. Ends at the full load, or after `steps`.
+    /// Loads and motions grow like with [`Control::Load`], but steps are measured along the path in displacements and
+    /// loads, so that it is followed through snaps, where the load falls. Ends at the full load, or after `steps`.
     ArcLength {
-        /// The most steps to take.
+        /// Most steps.
         steps: u32,
     },
-    /// Dead loads first, then the volume that pressures work on grows to `ratio` times what it is
-    /// without pressure, and the pressure is an unknown: balloons are followed past their limit.
+    /// Dead loads first, then the volume on which pressures work grows to `ratio` times its value without pressure, and
+    /// the pressure is an unknown: balloons are followed past their limit.
     Volume {
-        /// The volume at the end over that at the start.
+        /// Ratio of the volume at the end to that at the start.
         ratio: f64,
-        /// The number of steps.
+        /// Number of steps.
         steps: u32,
     },
 }
 
-/// How the linear systems of Newton's method are solved.
+/// Solver of the linear systems of Newton's method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinearSolver {
-    /// By the number of vertices: directly where that is quicker.
+    /// Choice by the number of vertices: direct if that is quicker.
     Auto,
-    /// With a sparse factor.
+    /// Sparse direct factorization.
     Direct,
-    /// By conjugate gradients with a multigrid preconditioner, where the body is made of equal voxels
-    /// and its loads have a potential; else directly.
+    /// Conjugate gradients with a multigrid preconditioner, if the body is made of equal voxels and its loads have a
+    /// potential; otherwise direct.
     Iterative,
 }
 
 /// Settings of [`crate::solve`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Equilibrium is where the residual force over the loads (or, without loads, over the reactions)
-    /// is below this.
+    /// Relative tolerance of equilibrium: residual force over the loads (or, without loads, over the reactions).
     pub tolerance: f64,
-    /// Newton iterations for one step of the path; more than this and the step is cut.
+    /// Most Newton iterations of one step of the path; beyond that the step is cut.
     pub max_iterations: u32,
-    /// The first step, as a part of the full load, of which one tries all at once; with
-    /// [`Control::ArcLength`] the first arc, in twentieths of the body's size.
+    /// First step, as a part of the full load; 1 tries all at once. With [`Control::ArcLength`] the first arc, in
+    /// twentieths of the body's size.
     pub first_step: f64,
-    /// Steps below this part of the full load are not tried.
+    /// Smallest step, as a part of the full load.
     pub least_step: f64,
-    /// How the path is followed.
+    /// Control of the path.
     pub control: Control,
-    /// How linear systems are solved. Arc length, and volume control with contact, take the direct way: past a limit the
-    /// tangent is indefinite, and where contact goes astray is told from the signs of its pivots.
+    /// Linear solver. Arc length, and volume control with contact, use the direct solver: past a limit the tangent is
+    /// indefinite, and divergence of contact is detected by the signs of its pivots.
     pub linear: LinearSolver,
-    /// The bytes that the tangent may take.
+    /// Most bytes of the tangent.
     pub memory: u64,
 }
 
@@ -114,36 +113,36 @@ impl Solver for Settings {
     }
 }
 
-/// A converged point of the load path.
+/// Converged point of the load path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathPoint {
-    /// The factor on loads and motions (on pressures only, for [`Control::Volume`]).
+    /// Factor on loads and motions (on pressures only, for [`Control::Volume`]).
     pub factor: f64,
-    /// Newton iterations it took.
+    /// Newton iterations of the point.
     pub iterations: u32,
-    /// The relative residual.
+    /// Relative residual.
     pub residual: f64,
-    /// Whether the equilibrium is stable: its tangent is positive definite.
+    /// True if the equilibrium is stable: its tangent is positive definite.
     pub stable: bool,
 }
 
-/// The equilibrium, or the last one that was found.
+/// Equilibrium, or the last one that was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
     /// Positions in m.
     pub positions: Vec<Vec3>,
-    /// How it ended.
+    /// Status at the end.
     pub status: Status,
-    /// The factor on loads at `positions`: one if all of the load is carried.
+    /// Factor on loads at `positions`: one if all of the load is carried.
     pub factor: f64,
-    /// The same on loads that are no pressure, which [`Control::Volume`] holds while pressures vary.
+    /// Factor on loads other than pressures, which [`Control::Volume`] holds while pressures vary.
     pub dead_factor: f64,
-    /// The instant of all histories in s; without end where they are over.
+    /// Instant of all histories in s; infinite after their end.
     pub time: f64,
-    /// How much of the way that was asked for lies behind: of the load, or with [`Control::Volume`] of
-    /// the growth in volume. One at the end of it.
+    /// Fraction of the requested path that was reached: of the load, or with [`Control::Volume`] of the growth in
+    /// volume. One at the end of it.
     pub reached: f64,
-    /// The relative residual.
+    /// Relative residual.
     pub residual: f64,
     /// Newton iterations in all.
     pub iterations: u32,
@@ -151,18 +150,18 @@ pub struct Answer {
     pub back_offs: u32,
     /// All converged points.
     pub path: Vec<PathPoint>,
-    /// The load factors at which the body snapped to another equilibrium, with contact.
+    /// Load factors at which the body snapped to another equilibrium.
     pub snaps: Vec<f64>,
-    /// The largest load factor of a path that turned back, if it did.
+    /// Limit load factor, the largest one of a path that turned back, if it did.
     pub limit: Option<f64>,
-    /// Whether the equilibrium at `positions` is stable.
+    /// True if the equilibrium at `positions` is stable.
     pub stable: bool,
-    /// The memory of the problem at `positions`, besides contact.
+    /// Memory of the problem at `positions`.
     pub memory: Memory,
 }
 
 impl Answer {
-    /// The factor on a load at the positions that were reached.
+    /// Factor on a load at the positions that were reached.
     pub fn factor_of(&self, load: &Load) -> f64 {
         let point = Point {
             time: self.time,

@@ -1,5 +1,5 @@
-//! Equilibria in which the floor and contact have settled, whatever is kept while they are found: the loads, a volume, or a
-//! distance along the path.
+//! Augmented-Lagrange loop: equilibria in which the active set of the floor and contact have converged, with fixed
+//! loads, a fixed volume, or a fixed arc length.
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Contact, Fluid, Observer, Problem};
@@ -8,30 +8,31 @@ use crate::equilibrium::{Equilibrium, Failure, Found, Way};
 use crate::point::Point;
 use crate::settings::Settings;
 
-/// How often the floor or contact may change their minds at one point.
+/// Most corrections of floor and contact at one point of the path.
 const ROUNDS: usize = 100;
-/// How often in a row without having changed less than ever before: what goes to and fro takes a shorter step, where there is one.
+/// Consecutive corrections without a new smallest change, after which the step is cut if possible: active sets that
+/// alternate need a shorter step.
 const STALE: usize = 20;
-/// How good an equilibrium must be for contact to be corrected by it, and how much of what the last correction has changed
-/// may be left; at the end corrections are checked at the tolerance that was asked for.
+/// Tolerance of equilibria at which contact is corrected, and the fraction of the residual after the last correction
+/// that may remain; at the end corrections are checked at the requested tolerance.
 const LOOSE: f64 = 1e-3;
 const LEFT: f64 = 0.05;
-/// The precision of contact under the whole load, where forces are read: on the way bounds of friction may be off by 0.3 % of the
-/// largest one at each vertex, which adds up, and what the loads lack of a counterforce there is told from 0.1 % on.
+/// Precision of contact under the whole load, where forces are read: on the path, bounds of friction may be off by 0.3
+/// % of the largest one at each vertex, which adds up, and missing reactions to the loads are reported from 0.1 % on.
 const AT_THE_END: f64 = 0.1;
 
-/// A search for an equilibrium under what contact holds for now.
+/// Search for an equilibrium with fixed multipliers of contact.
 pub(crate) trait Search: Clone {
-    /// Where on the path its equilibrium is, or begins to be looked for.
+    /// Point of the path of its equilibrium, or of its start.
     fn point(&self) -> Point;
 
-    /// Whether a shorter step can be taken where this one does not settle soon.
+    /// Tests whether a shorter step is possible if this one does not settle soon.
     fn can_be_cut(&self) -> bool {
         false
     }
 
-    /// Finds the equilibrium from `positions`, which it changes. In a `round` after the first it begins at one under what
-    /// contact held before a correction.
+    /// Finds the equilibrium from `positions`, which it changes. In a `round` after the first it begins at one with the
+    /// multipliers before a correction.
     fn find(
         &mut self,
         equilibrium: &mut Equilibrium<'_>,
@@ -42,13 +43,13 @@ pub(crate) trait Search: Clone {
     ) -> Result<Found, Failure>;
 }
 
-/// The search for the equilibrium under given loads.
+/// Search for the equilibrium under given loads.
 #[derive(Clone, Copy)]
 pub(crate) struct AtLoad {
     pub point: Point,
-    /// Whether a line search follows where the quick way is lost.
+    /// True if a line search follows when mixed iterations diverge.
     pub safe: bool,
-    /// As [`Search::can_be_cut`].
+    /// Possibility of a shorter step, see [`Search::can_be_cut`].
     pub can_be_cut: bool,
 }
 
@@ -84,7 +85,7 @@ impl Equilibrium<'_> {
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let mut iterations = 0;
-        // Where more precision is asked for, anchors of friction must not depend on what an iteration has left.
+        // With a higher precision, anchors of friction must not depend on the residual of an iteration.
         let mut loose = self.problem.contact().is_some() && self.precision == 1.0;
         let mut round = 0;
         let (mut least, mut stale) = (f64::INFINITY, 0);
@@ -123,13 +124,13 @@ impl Equilibrium<'_> {
         Err(Failure::Lost)
     }
 
-    /// Lets bonds go that an equilibrium, whose contact has settled, pulls too hard; whether any did.
+    /// Breaks bonds that an equilibrium with settled contact loads beyond their strength; returns true if any broke.
     fn lets_go(&mut self, positions: &[Vec3]) -> bool {
         let contact = self.problem.contact_mut();
         contact.is_some_and(|contact| contact.let_go(positions))
     }
 
-    /// Corrects the forces of contact by an equilibrium; whether they have settled.
+    /// Corrects the multipliers of contact by an equilibrium; returns true if they have settled.
     fn is_contact_settled(&mut self, positions: &[Vec3], point: Point) -> bool {
         let precision = if (point.dead, point.pressure) == (1.0, 1.0) {
             self.precision.min(AT_THE_END)
@@ -142,11 +143,11 @@ impl Equilibrium<'_> {
     }
 }
 
-/// How Newton's method goes in a round, the first of which has number 0.
+/// Variant of Newton's method in a round, the first of which has number 0.
 fn way_of(round: usize, problem: &Problem, safe: bool) -> Way {
     let is_stiff = problem.fluid().is_some_and(Fluid::is_stiff);
     match (problem.contact(), safe) {
-        // A line search that feels a liquid goes by steps that hardly change its volume.
+        // A line search with a liquid advances by steps that hardly change its volume.
         (Some(_), _) if round > 0 && !is_stiff => Way::Again,
         (_, true) => Way::Safe,
         (_, false) => Way::Quick,

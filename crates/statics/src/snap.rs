@@ -1,11 +1,11 @@
-//! Snaps of a load path. Without contact a step may cross a limit and end on the far side; that is looked at afterwards.
+//! Snaps of a load path. Without contact a step may cross a limit and end on the far side; that is checked afterward.
 //!
-//! With contact, where a wall buckles or what is pressed slides off an edge there is no equilibrium
-//! near the last one, however short the step.
+//! With contact, where a wall buckles or a pressed body slides off an edge, there is no equilibrium near the last one,
+//! however short the step.
 //!
-//! The body moves on to another equilibrium under the same load then. It is found as that of what is loose is
-//! ([`crate::loose`]): every vertex has a damper, so that the motion goes downhill, and the dampers get weaker until they carry
-//! less than the tolerance of the forces. Nothing is left of them in the answer.
+//! The body then moves on to another equilibrium under the same load. It is found by the method for loose components
+//! ([`crate::loose`]): every vertex has a damper, so that the motion descends in energy, and the dampers get weaker
+//! until they carry less than the tolerance of the forces. The result contains no damping.
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Status, Term};
@@ -22,14 +22,14 @@ use crate::settings::{LinearSolver, Settings};
 use crate::settle::Search;
 use crate::system::{Means, System};
 
-/// The part of the work of the loads that a step may set free before it is looked whether it has crossed a limit: half of it
-/// where the answer is linear, less where the body gets stiffer, all of it where it gives way at once.
+/// Fraction of the work of the loads that a step may release before it is checked for a limit: a linear response
+/// releases half of it, a stiffening one less, a snap all of it.
 const SET_FREE: f64 = 0.6;
 
 impl Path<'_, '_> {
-    /// The limit that the step from the last equilibrium to another one has crossed, if there is one: the loads drop there, and the
-    /// body snaps. A step that sets free no more than ordinary ones do is not looked at, nor is a path whose look ahead
-    /// would change what the loads remember.
+    /// Limit that the step from the last equilibrium to another one has crossed, if there is one: the loads drop there,
+    /// and the body snaps. A step that releases no more energy than ordinary ones is not checked, nor is a path whose
+    /// look ahead would change the memory of the loads.
     pub fn crossed_limit(
         &mut self,
         trial: &[Vec3],
@@ -54,8 +54,8 @@ impl Path<'_, '_> {
         control::look_for_limit(self, settings).filter(|limit| *limit < point.pressure)
     }
 
-    /// Moves on to an equilibrium that the `search` finds, to which no short step leads; whether one was found. If not, nothing has
-    /// changed.
+    /// Moves on to an equilibrium that the `search` finds, to which no short step leads; returns true if one was found.
+    /// If not, nothing has changed.
     pub fn snap(&mut self, search: &mut impl Search, settings: &Settings) -> bool {
         let problem = &self.equilibrium.problem;
         let Some(contact) = problem.contact() else {
@@ -97,7 +97,7 @@ impl Path<'_, '_> {
         let memory = equilibrium.problem.memory();
         self.equilibrium.iterations += equilibrium.iterations;
         self.equilibrium.back_offs += equilibrium.back_offs;
-        // What touches now has no room in the tangent of before.
+        // The old tangent has no pattern for the new contact.
         let problem = &self.equilibrium.problem;
         let system = System::new(problem, &self.equilibrium.held, self.equilibrium.means);
         let (Status::AtRest, Ok(system)) = (ending.status(), system) else {

@@ -1,15 +1,15 @@
-//! How much of the load a step of the path brings on.
+//! Adaptive length of the load steps of a path.
 
-/// How many steps in a row must succeed at the length of a ceiling before it rises again.
+/// Consecutive successful steps at the ceiling before it rises again.
 const RISES_AFTER: u32 = 4;
-/// By what a failed step is divided, and what the ceiling leaves of it.
+/// Divisors of the length of a failed step, for the next step and for the ceiling.
 const CUT: f64 = 4.0;
 const CEILING: f64 = 2.0;
 
-/// The length of the next step: it doubles after easy ones and falls to a quarter after a failure.
+/// Length of the next step: it doubles after easy ones and falls to a quarter after a failure.
 ///
-/// A step of the length that has failed mostly fails again right after, and costs as much as the one that succeeds. So what
-/// failed sets a ceiling at half of it, which rises after some steps.
+/// A step of the length that has failed mostly fails again right after, and costs as much as the one that succeeds. So
+/// a failed length sets a ceiling at half of it, which rises after some steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StepLength {
     now: f64,
@@ -19,7 +19,7 @@ pub(crate) struct StepLength {
 }
 
 impl StepLength {
-    /// A first step, and what no step exceeds.
+    /// Starts with a first and a longest step.
     pub fn new(first: f64, longest: f64) -> Self {
         Self {
             now: first.min(longest),
@@ -33,12 +33,12 @@ impl StepLength {
         self.now
     }
 
-    /// Takes a length from elsewhere.
+    /// Sets the length from elsewhere.
     pub fn set(&mut self, length: f64) {
         self.now = length;
     }
 
-    /// After a step that succeeded; only easy ones lead to longer ones.
+    /// Updates after a step that succeeded; only easy ones lead to longer ones.
     pub fn succeeded(&mut self, easy: bool) {
         if !easy {
             return;
@@ -52,7 +52,7 @@ impl StepLength {
         self.now = (2.0 * self.now).min(self.longest).min(self.ceiling);
     }
 
-    /// After a step of a length that failed.
+    /// Updates after a step of a length that failed.
     pub fn failed(&mut self, length: f64) {
         self.now = length / CUT;
         (self.ceiling, self.at_ceiling) = (length / CEILING, 0);
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_length_that_failed_is_tried_again_only_after_some_steps() {
+    fn failed_length_is_retried_after_some_steps() {
         let mut step = StepLength::new(1.0, 1.0);
         step.failed(1.0);
         let mut lengths = Vec::new();

@@ -1,4 +1,4 @@
-//! The tangent of a problem on its free coordinates: which way to solve with it.
+//! Tangent of a problem on its free coordinates: choice between direct and iterative solver.
 
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::Vec3;
@@ -9,13 +9,13 @@ use crate::direct::{DirectFactor, DirectSystem};
 use crate::iterative::{IterativeFactor, IterativeSystem};
 use crate::settings::LinearSolver;
 
-/// Vertices from which a body is solved iteratively: measured with `benchmarks/statics.py`.
+/// Number of vertices from which a body is solved iteratively: measured with `benchmarks/statics.py`.
 const LARGE: usize = 4_000;
 
-/// The tangent of a problem, kept with its pattern for many assemblies.
+/// Tangent of a problem, kept with its sparsity pattern for many assemblies.
 ///
-/// The direct way runs on one thread; the iterative one on all, with the same bits for any number. What joins all of a
-/// chamber's wall is kept apart ([`crate::coupled`]).
+/// The direct solver runs on one thread; the iterative one on all, with the same bits for any number. The dense
+/// coupling of the whole wall of a chamber is kept apart ([`crate::coupled`]).
 pub(crate) struct System {
     tangent: Tangent,
     coupled: Option<Coupled>,
@@ -27,10 +27,10 @@ enum Tangent {
     Iterative(Box<IterativeSystem>),
 }
 
-/// A tangent made ready for solutions.
+/// Factorized tangent.
 pub(crate) struct Factor {
     tangent: TangentFactor,
-    /// Those of the tangent to what is coupled to it.
+    /// Solutions of the tangent for its coupled gradients.
     answers: Option<Answers>,
 }
 
@@ -39,14 +39,14 @@ enum TangentFactor {
     Iterative(IterativeFactor),
 }
 
-/// Why there is no solution with a tangent.
+/// Reasons for a missing solution with a tangent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum FactorError {
-    /// Not positive definite, where that was asked.
+    /// Not positive definite, although required.
     NotPositive,
     /// Singular, or not a number.
     Singular,
-    /// It takes more memory than there is, in bytes.
+    /// More memory needed than available, in bytes.
     Memory(u64),
     /// The iteration does not converge; a direct factor may.
     Stalled,
@@ -54,16 +54,16 @@ pub(crate) enum FactorError {
     Cancelled,
 }
 
-/// What a solution may use.
+/// Solver and memory limit of linear systems.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Means {
     pub solver: LinearSolver,
-    /// Bytes.
+    /// Limit in bytes.
     pub memory: u64,
 }
 
 impl Means {
-    /// Passes an estimate that there is room for.
+    /// Checks a memory estimate against the limit.
     pub fn allow(self, bytes: u64) -> Result<(), FactorError> {
         if bytes <= self.memory {
             Ok(())
@@ -74,7 +74,7 @@ impl Means {
 }
 
 impl System {
-    /// The pattern for a problem whose coordinates `held` do not move.
+    /// Sparsity pattern of a problem whose coordinates `held` do not move.
     pub fn new(problem: &Problem, held: &[[bool; 3]], means: Means) -> Result<Self, FactorError> {
         let large = problem.body().rest().len() >= LARGE;
         let iterative = match means.solver {
@@ -95,12 +95,12 @@ impl System {
         })
     }
 
-    /// Whether solutions come from an iteration.
+    /// Tests whether the solver is iterative.
     pub fn is_iterative(&self) -> bool {
         matches!(self.tangent, Tangent::Iterative(_))
     }
 
-    /// The length of vectors of free coordinates.
+    /// Length of vectors of free coordinates.
     pub fn size(&self) -> usize {
         match &self.tangent {
             Tangent::Direct(system) => system.size(),
@@ -108,9 +108,9 @@ impl System {
         }
     }
 
-    /// Assembles the tangent at `positions` with a factor for each load, and with `strains` in place of
-    /// those at `positions` where they are given; where the held coordinates are about to move by
-    /// `jump`, subtracts the force of that from `residual`.
+    /// Assembles the tangent at `positions` with a factor for each load, and with `strains`, if given, in place of
+    /// those at `positions`; if the held coordinates are about to move by `jump`, subtracts the resulting force from
+    /// `residual`.
     pub fn assemble(
         &mut self,
         problem: &Problem,
@@ -145,7 +145,7 @@ impl System {
         }
     }
 
-    /// Factorizes the assembled tangent plus `shift` times its diagonal, whatever its signs.
+    /// Factorizes the assembled tangent plus `shift` times its diagonal, definite or not.
     pub fn factor(&mut self, shift: f64) -> Result<Factor, FactorError> {
         let tangent = match &mut self.tangent {
             Tangent::Direct(system) => match system.factor(shift, true) {
@@ -164,11 +164,11 @@ impl System {
         })
     }
 
-    /// Factorizes the assembled tangent, which is symmetric, plus `shift` times its diagonal, if that is
-    /// positive definite. An iteration needs no shift: its solutions go downhill anyway.
+    /// Factorizes the assembled tangent, which is symmetric, plus `shift` times its diagonal, if the sum is positive
+    /// definite. The iterative solver needs no shift: its solutions are descent directions anyway.
     pub fn factor_positive(&mut self, shift: f64) -> Result<Factor, FactorError> {
         if self.coupled.is_some() {
-            // What is coupled to it may hold what the tangent alone does not.
+            // The coupling may stabilize an indefinite tangent.
             let factor = self.factor(shift)?;
             return if self.is_positive(&factor) {
                 Ok(factor)
@@ -186,7 +186,7 @@ impl System {
         })
     }
 
-    /// The solutions of a factor to the gradients that are coupled to it.
+    /// Solutions with a factor for the coupled gradients.
     fn answers(&self, factor: &TangentFactor) -> Option<Answers> {
         let (coupled, Tangent::Direct(system), TangentFactor::Direct(factor)) =
             (self.coupled.as_ref()?, &self.tangent, factor)
@@ -207,8 +207,8 @@ impl System {
         }
     }
 
-    /// How many negative eigenvalues the factorized matrix has, what is coupled to it left out; unknown where it is not
-    /// symmetric, or solved iteratively.
+    /// Number of negative eigenvalues of the factorized matrix, without the coupling; `None` if it is not symmetric, or
+    /// solved iteratively.
     pub fn negative_pivots(&self, factor: &Factor) -> Option<usize> {
         match (&self.tangent, &factor.tangent) {
             (Tangent::Direct(system), TangentFactor::Direct(factor)) => {
@@ -218,10 +218,10 @@ impl System {
         }
     }
 
-    /// Solves for a right-hand side in place, with the transposed tangent where `transposed`.
+    /// Solves for a right-hand side in place, with the transposed tangent if `transposed`.
     ///
-    /// An iteration leaves a residual of `tolerance` times the side, and asks `stop` now and then; a
-    /// direct factor is as accurate as can be.
+    /// The iterative solver stops at the relative error `tolerance` in the norm of its preconditioner, and polls `stop`
+    /// now and then; a direct factor is accurate to rounding.
     pub fn solve(
         &self,
         factor: &Factor,
@@ -246,7 +246,7 @@ impl System {
         }
     }
 
-    /// The same from a guess at the answer, which only an iteration takes.
+    /// Solves from an initial guess of the solution, which only the iterative solver uses.
     pub fn solve_from(
         &self,
         factor: &Factor,
@@ -263,8 +263,8 @@ impl System {
         }
     }
 
-    /// Whether the tangent is positive among all directions across `gradient`, where its inverse gives `gradient` a negative
-    /// `compliance` by itself: it has one negative eigenvalue then.
+    /// Tests whether the tangent is positive definite on all directions across `gradient`, if its inverse gives
+    /// `gradient` a negative `compliance`: it has exactly one negative eigenvalue then.
     pub fn is_held_across(&mut self, factor: &Factor, gradient: &[f64], compliance: f64) -> bool {
         match &mut self.tangent {
             Tangent::Direct(_) => self.negative_pivots(factor) == Some(1),
@@ -272,7 +272,7 @@ impl System {
         }
     }
 
-    /// Whether the assembled tangent, which is symmetric, is positive definite.
+    /// Tests whether the assembled tangent, which is symmetric, is positive definite.
     pub fn is_positive_definite(&mut self) -> bool {
         match &mut self.tangent {
             Tangent::Direct(_) => self.factor_positive(0.0).is_ok(),
@@ -280,7 +280,8 @@ impl System {
         }
     }
 
-    /// The free coordinates of forces or slopes on vertices; those of tied vertices go to what they hang on.
+    /// Restricts forces or gradients on vertices to free coordinates; those of tied vertices go to the vertices that
+    /// carry them.
     pub fn gather(&self, vectors: &[Vec3]) -> Vec<f64> {
         if self.ties.is_empty() {
             return self.gather_free(vectors);
@@ -297,7 +298,7 @@ impl System {
         }
     }
 
-    /// Free coordinates as moves of vertices: zero where held, and tied vertices follow.
+    /// Expands free coordinates into moves of vertices: zero where held, and tied vertices follow.
     pub fn spread(&self, free: &[f64]) -> Vec<Vec3> {
         let mut vectors = match &self.tangent {
             Tangent::Direct(system) => system.spread(free),

@@ -1,9 +1,8 @@
-//! Volume control: the volume that pressures work on is prescribed, their factor is an unknown.
+//! Volume control: the volume on which pressures work is prescribed, their factor is an unknown.
 //!
-//! A balloon past its limit pressure is not stable under that pressure, but it is where its volume is
-//! held: the state is a minimum of the energy `Π(x)` (that of dead loads included) among all with
-//! `V(x) = V*`, and the pressure factor `p` is the multiplier: [`crate::bordered`] with `∂r/∂p = ∂V/∂x`. Where that is
-//! lost, the step is cut.
+//! A balloon past its limit pressure is not stable under that pressure, but it is at a fixed volume: the state is a
+//! minimum of the energy `Π(x)` (that of dead loads included) among all with `V(x) = V*`, and the pressure factor `p`
+//! is the Lagrange multiplier: [`crate::bordered`] with `∂r/∂p = ∂V/∂x`. If that diverges, the step is cut.
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Problem, Status};
@@ -18,17 +17,17 @@ use crate::path::{Ending, Path, SNAP, UNSTABLE_CUTS, longest_step, status_of};
 use crate::point::Point;
 use crate::settings::Settings;
 
-/// A step that took no more iterations than this lets the next one grow.
+/// Most iterations of a step after which the next one may grow.
 const EASY: u32 = 10;
-/// After one that took more than this the next is shorter.
+/// Iterations of a step beyond which the next one is shorter.
 const HARD: u32 = 30;
-/// How many times more of them it takes where contact is corrected in between.
+/// Factor on these iterations with contact, which is corrected in between.
 const WITH_CONTACT: u32 = 2;
-/// A lost step is cut to this part, and no step is shorter than the other part of the first.
+/// Factor that cuts a failed step, and the shortest step relative to the first.
 const CUT: f64 = 0.25;
 const SHORTEST: f64 = 1.0 / 4096.0;
 
-/// The volume that pressures work on, weighted with them, is this (J).
+/// Prescribed volume on which pressures work, weighted with them (J).
 #[derive(Clone, Copy)]
 struct Volume(f64);
 
@@ -46,7 +45,7 @@ impl Constraint for Volume {
     }
 
     fn gradient(&self, equilibrium: &Equilibrium<'_>, positions: &[Vec3]) -> (Vec<f64>, f64) {
-        // The gradient of the weighted volume is the load direction itself, whatever the factor.
+        // The gradient of the weighted volume is the load direction itself, for any factor.
         let one = Point::all(1.0);
         (
             load_direction(equilibrium, positions, one, self.unknown()),
@@ -59,7 +58,7 @@ impl Constraint for Volume {
     }
 }
 
-/// Grows the volume that pressures work on; see [`crate::Control::Volume`].
+/// Grows the volume on which pressures work; see [`crate::Control::Volume`].
 pub(crate) fn follow_volume(
     path: &mut Path<'_, '_>,
     settings: &Settings,
@@ -82,22 +81,22 @@ pub(crate) fn follow_volume(
     .follow(path, settings, steps, loose)
 }
 
-/// A path along which the volume grows.
+/// Path along which the volume grows.
 struct Growth {
-    /// The volume without pressure (J), and how many times that it is in the end.
+    /// Volume without pressure (J), and its final ratio.
     first: f64,
     ratio: f64,
-    /// The highest factor so far, and the first that was followed by lower ones.
+    /// Highest factor so far, and the first that was followed by lower ones.
     highest: f64,
     turned: Option<f64>,
-    /// The part of the way that lies behind.
+    /// Fraction of the path that is done.
     done: f64,
-    /// How often a step to a state that volume does not hold was cut.
+    /// Cuts of steps to states that are unstable even at a fixed volume.
     cuts: u32,
 }
 
 impl Growth {
-    /// The search for the equilibrium when a part of the way is done.
+    /// Search for the equilibrium at a fraction of the path.
     fn search(&self, path: &Path<'_, '_>, done: f64) -> Bordered<Volume> {
         Bordered {
             constraint: Volume(self.first * (1.0 + (self.ratio - 1.0) * done)),
@@ -128,7 +127,7 @@ impl Growth {
             let next = (self.done + part).min(1.0);
             path.with_contact(|contact| contact.extrapolate((next - self.done) / last));
             loose.inspect(|loose| loose.hold(&path.positions, next - self.done));
-            // What dampers still hold in the end is let go from there.
+            // Components that dampers still hold in the end are released from there.
             path.looking = loose.is_some() && next == 1.0;
             let outcome = self.step(path, next, settings);
             path.looking = false;
@@ -161,7 +160,7 @@ impl Growth {
                     continue;
                 }
             }
-            // What was held at the start does not move freely later.
+            // A body that was held at the start does not move freely later.
             let failure = if lost && self.done > 0.0 {
                 Failure::Lost
             } else {
@@ -177,7 +176,7 @@ impl Growth {
         Ending::new(ending.status(), self.turned, 1.0)
     }
 
-    /// Finds the next equilibrium; the iterations that it took.
+    /// Finds the next equilibrium; returns its iterations.
     fn step(
         &mut self,
         path: &mut Path<'_, '_>,
@@ -191,7 +190,7 @@ impl Growth {
             .settle(&mut trial, &mut search, settings, path.observer)?;
         let (stable, held) = stability(&mut path.equilibrium, &trial, search.point);
         if !held && self.cuts < UNSTABLE_CUTS {
-            // A long step may come upon a branch that the path does not lead to.
+            // A long step may reach a branch that the path does not lead to.
             self.cuts += 1;
             return Err(Failure::Lost);
         }
@@ -202,7 +201,7 @@ impl Growth {
         Ok(found.iterations)
     }
 
-    /// Sees the factor of a new point of the path.
+    /// Updates the limit with the factor of a new point of the path.
     fn see(&mut self, point: Point) {
         if point.pressure < self.highest - 1e-9 && self.turned.is_none() {
             self.turned = Some(self.highest);
@@ -211,8 +210,8 @@ impl Growth {
     }
 }
 
-/// Whether an equilibrium is stable under its pressures, and whether it is while its volume is held: along
-/// one direction the pressures may let go then, if the volume falls where they rise.
+/// Tests whether an equilibrium is stable under its pressures, and whether it is at a fixed volume: one negative
+/// eigenvalue is allowed then, if the volume falls where the pressures rise.
 fn stability(equilibrium: &mut Equilibrium<'_>, positions: &[Vec3], point: Point) -> (bool, bool) {
     if equilibrium.is_stable(positions, point) {
         return (true, true);
@@ -237,7 +236,7 @@ fn stability(equilibrium: &mut Equilibrium<'_>, positions: &[Vec3], point: Point
     (false, held)
 }
 
-/// The volume that the pressures work on, weighted with them (J).
+/// Volume on which the pressures work, weighted with them (J).
 fn volume(problem: &Problem, positions: &[Vec3]) -> f64 {
     problem.pressure_work(positions, &|load| load.history.at(f64::INFINITY))
 }

@@ -7,7 +7,7 @@ use voxsoft_solid::{Body, Clamp, HyperelasticMaterial, LatticeMaterial, Load, Ma
 use voxsoft_statics::{Settings, Status};
 
 #[test]
-fn a_slender_beam_takes_its_whole_weight_at_once() {
+fn slender_beam_under_its_whole_weight_at_once() {
     for (cells, most) in [([20, 2, 2], 40), ([20, 4, 2], 40), ([10, 2, 4], 8)] {
         let problem = cantilever(cells, 5e-3, rubber());
         let answer = settled(&problem, &Settings::default());
@@ -22,7 +22,7 @@ fn a_slender_beam_takes_its_whole_weight_at_once() {
 }
 
 #[test]
-fn the_lattice_comes_to_the_same_interface() {
+fn lattice_cantilever_comes_to_rest() {
     let lattice = LatticeMaterial::from_moduli(25e3, 100e3, 1070.0).unwrap();
     let problem = cantilever([20, 2, 2], 5e-3, Material::from(lattice));
     let answer = settled(&problem, &Settings::default());
@@ -30,7 +30,7 @@ fn the_lattice_comes_to_the_same_interface() {
 }
 
 #[test]
-fn a_load_near_the_rounding_of_a_stiff_volume_still_has_an_equilibrium() {
+fn light_load_on_a_nearly_incompressible_beam() {
     // K is 5,000 shear moduli, and the strain of 5e-5 leaves a residual of rounding above the tolerance.
     let material = HyperelasticMaterial::neo_hookean(60e3, 0.4999, 1.0).unwrap();
     let mesh = block([20, 2, 2], 5e-3);
@@ -40,6 +40,6 @@ fn a_load_near_the_rounding_of_a_stiff_volume_still_has_an_equilibrium() {
     let problem = Problem::new(body, vec![wall], vec![weight], None).unwrap();
     let answer = settled(&problem, &Settings::default());
     assert_eq!(answer.status, Status::AtRest);
-    // The most that counts as rounding.
+    // Largest residual that counts as rounding.
     assert!(answer.residual < 1e-4, "{}", answer.residual);
 }

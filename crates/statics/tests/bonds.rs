@@ -1,4 +1,4 @@
-//! Bonded surfaces beside closed forms.
+//! Bonded surfaces, compared with closed forms.
 
 mod common;
 
@@ -45,7 +45,7 @@ fn side<'a>(number: u32, surface: &'a Surface, solid: Solid<'a>) -> Side<'a> {
     }
 }
 
-/// A problem of two surfaces that are bonded.
+/// Problem of two bonded surfaces.
 fn bonded(
     mesh: &Mesh,
     clamps: Vec<Clamp>,
@@ -66,13 +66,13 @@ fn bonded(
     problem.with_contact(Box::new(touch)).unwrap()
 }
 
-/// The force of supports on vertices, along z.
+/// Reaction of supports on vertices, along z.
 fn support(problem: &Problem, answer: &Answer, on: &[u32]) -> f64 {
     let balance = balance(problem, &answer.positions, f64::INFINITY);
     on.iter().map(|v| balance.reactions[*v as usize][2]).sum()
 }
 
-/// Clamps of a block of 12 mm, whose sides are free, that stretch it by `way` along z.
+/// Clamps of a block of 12 mm with free sides that stretch it by `way` along z.
 fn stretched(mesh: &Mesh, way: f64) -> (Vec<Clamp>, Vec<u32>) {
     // The next layer is 2 mm below.
     let top = vertices_where(mesh, |x| x[2] > 13e-3);
@@ -110,7 +110,7 @@ fn bonded_faces_do_not_warp() {
     let bond = Bond::new(first, second, 2e-3, f64::INFINITY, &mesh.vertices).unwrap();
     let problem = bonded(&mesh, vec![], vec![], (surfaces, bond), NONE);
     let apart = Body::new(&mesh, &[rubber()]).unwrap();
-    // Voxels in the middle of the bonded faces have no other face without a neighbor.
+    // Voxels in the middle of the bonded faces have no other outer face.
     for corner in [[4e-3; 3], [3e-3, 3e-3, 8e-3]] {
         let middle = |body: &Body| {
             let lowest = |brick: &&Brick| body.rest()[brick.vertices[0] as usize];
@@ -123,13 +123,13 @@ fn bonded_faces_do_not_warp() {
 }
 
 #[test]
-fn bonded_blocks_of_other_voxels_are_one_block() {
+fn bonded_blocks_of_different_voxels_equal_one_block() {
     for way in [1.4e-3, -1.4e-3] {
         for gap in [0.0, 1e-4, -1e-4] {
             let (mesh, low, high) = two_blocks(gap);
             let (clamps, top) = stretched(&mesh, way);
             let surfaces = vec![Surface::of_voxels(&low, 2), Surface::of_voxels(&high, 2)];
-            // The finer one is the first.
+            // The surface with the finer voxels is the first.
             let (fine, coarse) = (Solid::Voxels(&high), Solid::Voxels(&low));
             let (first, second) = (side(1, &surfaces[1], fine), side(0, &surfaces[0], coarse));
             let rest = &mesh.vertices;
@@ -149,9 +149,9 @@ fn bonded_blocks_of_other_voxels_are_one_block() {
             let body = Body::new(&one, &[rubber()]).unwrap();
             let whole = Problem::new(body, clamps, vec![], None).unwrap();
             let expected = support(&whole, &settle(&whole, |_| {}), &one_top);
-            // Integrals over the faces of other voxels are right to some hundred thousandths. What is tied beside its voxel
-            // moves as if that went on, and strains it by more at the same force: together twice the gap over the height, 1.4 %, in
-            // the length, and a tenth more in the force of rubber that stiffens.
+            // Integrals over the faces of other voxels are accurate to some hundred thousandths. Points tied beside
+            // their voxel move with its extrapolation, and strain it by more at the same force: together twice the gap
+            // over the height, 1.4 %, in the length, and a tenth more in the force of stiffening rubber.
             let allowed = if gap == 0.0 { 5e-5 } else { 1.6e-2 };
             assert!(
                 (found / expected - 1.0).abs() < allowed,
@@ -167,8 +167,8 @@ fn bonded_blocks_of_other_voxels_are_one_block() {
     }
 }
 
-/// A block of 12 mm that cannot bulge, and a plate on top of it that moves up by 0.45 mm: rubber
-/// that cannot bulge becomes unstable soon after.
+/// Block of 12 mm that cannot bulge, and a plate on top of it that moves up by 0.45 mm: rubber that cannot bulge
+/// becomes unstable soon after.
 fn pulled_off(strength: f64, see: impl FnMut(&Progress<'_>)) -> (Problem, Answer) {
     let mut mesh = block([4, 4, 4], 3e-3);
     let count = mesh.vertices.len() as u32;
@@ -199,7 +199,7 @@ fn pulled_off(strength: f64, see: impl FnMut(&Progress<'_>)) -> (Problem, Answer
 }
 
 #[test]
-fn a_bond_lets_go_at_its_strength() {
+fn bond_breaks_at_its_strength() {
     let area = 144e-6;
     let forces = |strength: f64| {
         let mut forces = vec![];
@@ -218,7 +218,7 @@ fn a_bond_lets_go_at_its_strength() {
     let strength = 0.6 * end / area;
     let (forces, pairs) = forces(strength);
     let most = forces.iter().copied().fold(0.0, f64::max);
-    // Uniform: all of it goes at once, and a step is a twentieth of the way.
+    // Uniform: the whole bond breaks at once, and a step is a twentieth of the motion.
     assert!(
         most <= strength * area * (1.0 + 1e-9),
         "{most} {}",
@@ -234,7 +234,7 @@ fn a_bond_lets_go_at_its_strength() {
 }
 
 #[test]
-fn what_hangs_on_a_bond_pulls_with_its_weight() {
+fn bond_carries_a_hanging_weight() {
     let mass = 0.02;
     let mut mesh = block([4, 4, 4], 3e-3);
     let first = mesh.vertices.len() as u32;
@@ -272,7 +272,7 @@ fn what_hangs_on_a_bond_pulls_with_its_weight() {
 }
 
 #[test]
-fn ties_keep_the_laws_of_terms() {
+fn ties_obey_the_laws_of_terms() {
     let (mesh, low, high) = two_blocks(1e-4);
     let surfaces = vec![Surface::of_voxels(&low, 2), Surface::of_voxels(&high, 2)];
     let first = side(1, &surfaces[1], Solid::Voxels(&high));
@@ -291,7 +291,7 @@ fn ties_keep_the_laws_of_terms() {
 }
 
 #[test]
-fn what_does_not_meet_is_refused() {
+fn distant_surfaces_are_refused() {
     let (mesh, low, high) = two_blocks(2.1e-3);
     let surfaces = [Surface::of_voxels(&low, 2), Surface::of_voxels(&high, 2)];
     let first = side(1, &surfaces[1], Solid::Voxels(&high));

@@ -1,4 +1,4 @@
-//! Statics and implicit steps keep the laws of solvers and steppers, and the suite catches who breaks one.
+//! Laws of solvers and steppers for statics and implicit steps; deliberate faults are detected.
 
 mod common;
 
@@ -19,7 +19,7 @@ fn lattice() -> LatticeMaterial {
     LatticeMaterial::from_moduli(60e3, 400e3, 1070.0).unwrap()
 }
 
-/// A block that is turned at one end, lies on a floor and is pulled.
+/// Block that is turned at one end, lies on a floor and is pulled.
 fn turned() -> Problem {
     let side = 5e-3;
     let mesh = block([8, 3, 2], side);
@@ -46,7 +46,7 @@ fn turned() -> Problem {
     Problem::new(body, vec![clamp], loads, Some(Floor { z: -2e-4 })).unwrap()
 }
 
-/// A block that nothing loads but a spring between its end and a place beside it.
+/// Block without loads except a spring between its end and a place beside it.
 fn sprung() -> Problem {
     let mut mesh = block([8, 3, 2], 5e-3);
     let vertices = vertices_where(&mesh, |x| x[0] > 40e-3 - 1e-9);
@@ -64,7 +64,7 @@ fn sprung() -> Problem {
 }
 
 #[test]
-fn statics_keeps_the_laws_of_a_solver() {
+fn statics_obeys_the_laws_of_a_solver() {
     for problem in [
         sprung(),
         cantilever([10, 2, 2], 5e-3, rubber()),
@@ -89,7 +89,7 @@ fn statics_keeps_the_laws_of_a_solver() {
 }
 
 #[test]
-fn motion_to_rest_keeps_the_laws_of_a_solver() {
+fn motion_to_rest_obeys_the_laws_of_a_solver() {
     for problem in [
         cantilever([8, 2, 2], 5e-3, rubber()),
         cantilever([8, 2, 2], 5e-3, lattice()),
@@ -103,7 +103,7 @@ fn motion_to_rest_keeps_the_laws_of_a_solver() {
 }
 
 #[test]
-fn implicit_steps_keep_the_laws_of_a_stepper() {
+fn implicit_steps_obey_the_laws_of_a_stepper() {
     for problem in [
         cantilever([8, 2, 2], 5e-3, rubber()),
         cantilever([8, 2, 2], 5e-3, lattice()),
@@ -114,7 +114,7 @@ fn implicit_steps_keep_the_laws_of_a_stepper() {
     }
 }
 
-/// Statics with a deliberate break.
+/// Statics with a deliberate fault.
 struct Faulty(Law, AtomicU32);
 
 impl Solver for Faulty {
@@ -154,7 +154,7 @@ impl Solver for Faulty {
 }
 
 #[test]
-fn the_suite_catches_every_fault_of_a_solver() {
+fn suite_catches_faults_of_a_solver() {
     let problem = cantilever([6, 1, 1], 5e-3, rubber());
     for law in [
         Law::Equilibrium,
@@ -177,7 +177,7 @@ fn the_suite_catches_every_fault_of_a_solver() {
     assert!(broken.how.contains(Status::NotConverged.name()), "{broken}");
 }
 
-/// Implicit steps with a deliberate break.
+/// Implicit steps with a deliberate fault.
 struct FaultyStepper(Implicit, Law, f64);
 
 impl Stepper for FaultyStepper {
@@ -240,7 +240,7 @@ impl Stepper for FaultyStepper {
 }
 
 #[test]
-fn the_suite_catches_every_fault_of_a_stepper() {
+fn suite_catches_faults_of_a_stepper() {
     let problem = cantilever([6, 1, 1], 5e-3, rubber());
     let settings = ImplicitSettings::default();
     let check = |law, tolerance| {
@@ -250,7 +250,7 @@ fn the_suite_catches_every_fault_of_a_stepper() {
         };
         check_stepper(&make, tolerance).map_err(|broken| broken.law)
     };
-    // No fault at all: the law is none of steppers.
+    // No fault: this law does not apply to steppers.
     assert_eq!(check(Law::Gradient, settings.tolerance), Ok(()));
     for law in [
         Law::Repetition,

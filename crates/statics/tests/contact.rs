@@ -1,4 +1,4 @@
-//! Contact in equilibrium: closed forms, and what must not depend on how it is computed.
+//! Contact in equilibrium, compared with closed forms and with equivalent models without contact.
 
 mod common;
 
@@ -31,7 +31,7 @@ fn settle(problem: &Problem) -> Answer {
     answer
 }
 
-/// The force of supports on some vertices.
+/// Reaction of supports on some vertices.
 fn reaction(problem: &Problem, positions: &[Vec3], on: &[u32]) -> Vec3 {
     let balance = balance(problem, positions, f64::INFINITY);
     let mut sum = [0.0; 3];
@@ -43,9 +43,9 @@ fn reaction(problem: &Problem, positions: &[Vec3], on: &[u32]) -> Vec3 {
     sum
 }
 
-/// Blocks of voxels of 4 and of 3 mm, held against bulging and pressed by a tenth: the stress is uniform.
+/// Blocks of voxels of 4 and of 3 mm, held against bulging and compressed by a tenth: the stress is uniform.
 #[test]
-fn a_uniform_pressure_passes_between_voxels_of_different_sizes() {
+fn uniform_pressure_between_voxels_of_different_sizes() {
     let mut mesh = block([3, 3, 2], 4e-3);
     let upper = join(&mut mesh, block([4, 4, 2], 3e-3), [0.0, 0.0, 8e-3]);
     let press = -1.4e-3;
@@ -78,7 +78,7 @@ fn a_uniform_pressure_passes_between_voxels_of_different_sizes() {
     }
     let [pair] = pairs_at(&problem, &answer).try_into().unwrap();
     assert!((pair.area - 144e-6).abs() < 1e-12, "{pair:?}");
-    // One block without contact in between, which needs no other voxels for a uniform state.
+    // One block without contact in between, whose voxels may be of any size for a uniform state.
     let one = block([6, 6, 7], 2e-3);
     let (clamps, one_top) = hold(&one);
     let body = Body::new(&one, &[rubber()]).unwrap();
@@ -91,11 +91,11 @@ fn a_uniform_pressure_passes_between_voxels_of_different_sizes() {
     assert!((pair.force[2] / expected - 1.0).abs() < 5e-3, "{pair:?}");
 }
 
-/// The way of the plate to the block, m.
+/// Initial gap between the plate and the block, m.
 const GAP: f64 = 0.1e-3;
 
-/// A block of 12 mm, some layers of 4 mm high, under a rigid plate that moves by `way`; what touches, and the problem
-/// with its answer.
+/// Block of 12 mm, some layers of 4 mm high, under a rigid plate that moves by `way`; returns its contact, and the
+/// problem with its solution.
 fn plate(layers: usize, way: Vec3, friction: f64) -> (PairReport, Problem, Answer) {
     let mut mesh = block([3, 3, layers], 4e-3);
     let low = 4e-3 * layers as f64 + GAP;
@@ -118,7 +118,7 @@ fn plate(layers: usize, way: Vec3, friction: f64) -> (PairReport, Problem, Answe
 }
 
 #[test]
-fn a_smooth_plate_presses_as_a_clamp_across_does() {
+fn smooth_plate_equals_a_sliding_clamp() {
     let (pair, problem, answer) = plate(3, [0.0, 0.0, -GAP - 2e-3], 0.0);
     let mesh = block([3, 3, 3], 4e-3);
     let top = vertices_where(&mesh, |x| x[2] > 12e-3 - 1e-9);
@@ -135,7 +135,7 @@ fn a_smooth_plate_presses_as_a_clamp_across_does() {
         "{pair:?} {expected}"
     );
     assert!(pair.gap > 0.0 && pair.gap < 1e-3 * 4e-3, "{pair:?}");
-    // What the plate feels is what its support carries.
+    // The contact force on the plate equals the reaction of its support.
     let count = answer.positions.len() as u32;
     let carried = reaction(
         &problem,
@@ -149,15 +149,15 @@ fn a_smooth_plate_presses_as_a_clamp_across_does() {
 }
 
 #[test]
-fn friction_holds_below_its_bound_and_slips_at_it() {
+fn friction_sticks_below_its_bound_and_slips_at_it() {
     let (press, drag) = (-GAP - 0.24e-3, 2e-3);
     let (slipping, ..) = plate(3, [drag, 0.0, press], 0.3);
     let across = slipping.force[0];
-    // Bounds are right to 0.3 % of the largest.
+    // Friction bounds are accurate to 0.3 % of the largest.
     let ratio = across / slipping.force[2].abs();
     assert!((ratio / 0.3 - 1.0).abs() < 0.01, "{slipping:?}");
     assert!(slipping.slipping > 0.9, "{slipping:?}");
-    // Far below the bound the surface follows the plate: as much force as if it were held there.
+    // Far below the bound the surface follows the plate: with the same force as if it were held there.
     let (sticking, ..) = plate(3, [5e-5, 0.0, press], 5.0);
     assert!(sticking.slipping < 1e-3, "{sticking:?}");
     let (rough, ..) = plate(3, [5e-5, 0.0, press], 50.0);
@@ -168,9 +168,9 @@ fn friction_holds_below_its_bound_and_slips_at_it() {
     assert!(sticking.force[0] > 0.0);
 }
 
-/// A slit of one voxel between two lips is pressed shut.
+/// Slit of one voxel between two lips that is pressed shut.
 #[test]
-fn the_lips_of_a_slit_meet() {
+fn lips_of_a_slit_meet() {
     let side = 2e-3;
     let mut grid = Grid::empty([10, 2, 5], [0.0; 3], side, u64::MAX).unwrap();
     let n = |i: usize| i as f64 * side;

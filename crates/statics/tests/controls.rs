@@ -1,8 +1,8 @@
-//! Paths past a limit on which something is met, by arc length and by volume, beside closed forms.
+//! Paths past a limit that end in contact, by arc length and by volume, compared with closed forms.
 //!
-//! A block of one voxel is guided along z and hangs in four springs, a shallow truss that snaps through: with the springs at rest at
-//! a height `h` beside their anchors, at a distance `a`, its force at a displacement `w` is
-//! `4 k (L₀/L − 1) (h − w)`, `L² = a² + (h − w)²`. On the falling part of that it meets a plate.
+//! A block of one voxel is guided along z and hangs in four springs, a shallow truss that snaps through: with the
+//! springs at rest at a height `h` beside their anchors, at a distance `a`, its force at a displacement `w` is
+//! `4 k (L₀/L − 1) (h − w)`, `L² = a² + (h − w)²`. On the falling part of this curve the block meets a plate.
 
 mod common;
 
@@ -16,42 +16,42 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Clamp, History, Load, Mesh, Pressure, Problem, Spring, Springs, Status};
 use voxsoft_statics::{Answer, Control, Settings, Start, solve};
 
-/// The side of the block, its height over the anchors, their distance, m; a spring, N/m.
+/// Side of the block, its height over the anchors, their distance, m; stiffness of a spring, N/m.
 const SIDE: f64 = 10e-3;
 const HEIGHT: f64 = 3e-3;
 const ASIDE: f64 = 20e-3;
 const STIFFNESS: f64 = 2e3;
-/// Where it meets the plate, m: the truss has let go by a half there.
+/// Displacement at which it meets the plate, m: the force of the truss is half of its largest there.
 const FREE: f64 = 0.8 * HEIGHT;
-/// The depth of the chamber, m, and the pressure of all of the load, Pa.
+/// Depth of the chamber, m, and the pressure of the full load, Pa.
 const DEPTH: f64 = 5e-3;
 const PRESSURE: f64 = 1e4;
 
-/// The force of the truss against a displacement.
+/// Force of the truss against a displacement.
 fn truss(way: f64) -> f64 {
     let up = HEIGHT - way;
     let natural = f64::hypot(ASIDE, HEIGHT);
     4.0 * STIFFNESS * (natural / f64::hypot(ASIDE, up) - 1.0) * up
 }
 
-/// The largest of these forces, N: where its derivative is zero, `L³ = L₀ a²`.
+/// Largest of these forces, N: where its derivative is zero, `L³ = L₀ a²`.
 fn largest() -> f64 {
     let length = (f64::hypot(ASIDE, HEIGHT) * ASIDE * ASIDE).cbrt();
     truss(HEIGHT - (length * length - ASIDE * ASIDE).sqrt())
 }
 
-/// What pushes the block: its weight down (N), at once or over time, a clamp that goes down by a way (m) and pulls by a spring, or a chamber below it
-/// up.
+/// Load on the block: its weight downward (N), at once or over time, a clamp that moves down by a distance (m) and
+/// pulls by a spring, or a chamber below it that pushes upward.
 enum Push {
     Weight(f64),
     Slowly(f64, History),
     Clamp(f64),
     Chamber,
 }
-/// That spring, N/m: softer than the truss is where it snaps through, so that its end goes back there.
+/// Stiffness of that spring, N/m: softer than the truss where it snaps through, so that its end moves back there.
 const PULLER: f64 = 30.0;
 
-/// The block on its truss, without the plate: mesh, clamps, loads, springs, and the surface of the plate.
+/// Block on its truss, without the plate: mesh, clamps, loads, springs, and the surface of the plate.
 fn on_a_truss(push: &Push) -> (Mesh, Vec<Clamp>, Vec<Load>, Vec<Spring>, Surface) {
     let sign = match push {
         Push::Weight(_) | Push::Slowly(..) | Push::Clamp(_) => -1.0,
@@ -60,7 +60,7 @@ fn on_a_truss(push: &Push) -> (Mesh, Vec<Clamp>, Vec<Load>, Vec<Spring>, Surface
     let mut mesh = block([1, 1, 1], SIDE);
     let all: Vec<u32> = (0..8).collect();
     let bottom = vertices_where(&mesh, |x| x[2] < 1e-9);
-    // Along x for one pair of corners, along y for the other; to vertices that are held, which no damper needs to.
+    // Springs along x for one pair of corners, along y for the other; to held vertices, which need no damper.
     let anchors = mesh.vertices.len() as u32;
     for &vertex in &bottom {
         let [x, y, z] = mesh.vertices[vertex as usize];
@@ -119,7 +119,7 @@ fn on_a_truss(push: &Push) -> (Mesh, Vec<Clamp>, Vec<Load>, Vec<Spring>, Surface
             ..down(*weight)
         }],
         Push::Clamp(_) => Vec::new(),
-        // Either diagonal of the faces carries half of the pressure, so that all corners get the same.
+        // Each diagonal of the faces carries half of the pressure, so that all corners get the same.
         Push::Chamber => [false, true]
             .map(|other| chamber(&mesh.vertices, &bottom, base, other))
             .to_vec(),
@@ -157,7 +157,7 @@ fn chamber(vertices: &[Vec3], top: &[u32], base: u32, other_diagonal: bool) -> L
         let ((a, below_a), (b, below_b)) = (ring[k], ring[(k + 1) % 4]);
         faces.push([below_a, below_b, b, a]);
     }
-    // Normals out of the solid point into the chamber.
+    // Normals point out of the solid into the chamber.
     let split = |[a, b, c, d]: [u32; 4]| {
         if other_diagonal {
             [[b, a, d], [b, d, c]]
@@ -173,7 +173,7 @@ fn chamber(vertices: &[Vec3], top: &[u32], base: u32, other_diagonal: bool) -> L
     })
 }
 
-/// A point of a path: the factor, and how far the bottom of the block has moved along z.
+/// Point of a path: the factor, and the displacement of the bottom of the block along z.
 type Seen = (f64, f64);
 
 fn follow(problem: &Problem, control: Control) -> (Answer, Vec<Seen>) {
@@ -195,25 +195,25 @@ fn follow(problem: &Problem, control: Control) -> (Answer, Vec<Seen>) {
     (answer, seen)
 }
 
-/// The force on the block.
+/// Contact force on the block.
 fn force(problem: &Problem, answer: &Answer) -> f64 {
     let [pair] = pairs_at(problem, answer).try_into().unwrap();
     pair.force[2]
 }
 
-/// Of the block from its top to its bottom, where contact has not come into it.
+/// Relative tolerance against the closed form.
 const EXACT: f64 = 1e-6;
-/// The clearance of contact and a tenth more, m.
+/// Clearance of contact and a tenth more, m.
 const CLEARANCE: f64 = 2.2e-4 * SIDE;
 
 #[test]
-fn an_arc_leads_past_a_limit_and_onto_a_plate() {
+fn arc_length_past_a_limit_onto_a_plate() {
     let weight = 1.5 * largest();
     let problem = guided(&Push::Weight(weight));
     let (answer, seen) = follow(&problem, Control::ArcLength { steps: 200 });
     assert_eq!(answer.status, Status::AtRest);
     assert!(answer.stable && answer.factor == 1.0, "{answer:?}");
-    // Until it meets the plate, the truss alone carries what there is of the load.
+    // Before contact with the plate, the truss alone carries the load.
     let free: Vec<&Seen> = seen.iter().filter(|(_, z)| -z < FREE - CLEARANCE).collect();
     assert!(free.len() >= 8, "{seen:?}");
     for (factor, z) in &free {
@@ -225,12 +225,12 @@ fn an_arc_leads_past_a_limit_and_onto_a_plate() {
     assert!(limit > 0.98 && limit < 1.0 + EXACT, "{limit}");
     let lowest = free.last().unwrap().0 * weight / largest();
     assert!(lowest < 0.7, "{lowest}");
-    // On the plate it carries the rest.
+    // The plate carries the rest.
     let way = -answer.positions[0][2];
     assert!((way - FREE).abs() < CLEARANCE, "{way}");
     let off = force(&problem, &answer) - (weight - truss(way));
     assert!(off.abs() < EXACT * weight, "{off}");
-    // Load control knows the end only, to which it jumps.
+    // Load control finds only the end, to which it snaps.
     let problem = guided(&Push::Weight(weight));
     let (snapped, jumps) = follow(&problem, Control::Load);
     assert_eq!(snapped.status, Status::AtRest);
@@ -240,10 +240,9 @@ fn an_arc_leads_past_a_limit_and_onto_a_plate() {
     assert!(off.abs() < 1e-4 * weight, "{off}");
 }
 
-/// Over the time of a history, there and back, each stretch begins with the equilibrium of the one before.
 #[test]
-fn load_control_reports_the_limit_that_it_crossed() {
-    // All of it at once, and in steps so long that one of them crosses the limit; below the limit there is none.
+fn load_control_reports_a_crossed_limit() {
+    // The full load at once, and in steps so long that one of them crosses the limit; below the limit there is none.
     for (part, first_step) in [(1.3, 1.0), (2.0, 0.4), (0.8, 1.0), (0.8, 0.4)] {
         let (mesh, clamps, loads, springs, _) = on_a_truss(&Push::Weight(part * largest()));
         let body = Body::new(&mesh, &[common::rubber()]).unwrap();
@@ -264,16 +263,17 @@ fn load_control_reports_the_limit_that_it_crossed() {
             assert_eq!((answer.limit, answer.snaps.len()), (None, 0));
             continue;
         }
-        // The block is a thousand times as stiff as the truss; the largest of the points that a walk stops at is off by the
-        // square of a step.
+        // The block is a thousand times as stiff as the truss; the largest of the points of the arc-length path is off
+        // by the square of a step.
         let limit = answer.limit.unwrap();
         assert!((limit * part - 1.0).abs() < 0.02, "{limit} {part}");
         assert_eq!(answer.snaps, [limit]);
     }
 }
 
+/// Over the time of a history, up and down, each stretch begins with the equilibrium of the one before.
 #[test]
-fn a_path_over_time_follows_the_history_of_its_load() {
+fn time_path_follows_the_load_history() {
     let history = History::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, 0.25]).unwrap();
     let problem = guided(&Push::Slowly(0.9 * largest(), history.clone()));
     let mut start = None;
@@ -302,9 +302,9 @@ fn a_path_over_time_follows_the_history_of_its_load() {
     }
 }
 
-/// The end of the spring has gone by `w + F(w)/k` where the block has gone by `w`: to and fro.
+/// The end of the spring has moved by `w + F(w)/k` when the block has moved by `w`: forward and back.
 #[test]
-fn an_arc_follows_a_clamp_that_has_to_go_back() {
+fn arc_length_with_a_clamp_that_moves_back() {
     let all = 6e-3;
     let problem = guided(&Push::Clamp(all));
     let (answer, seen) = follow(&problem, Control::ArcLength { steps: 200 });
@@ -319,7 +319,7 @@ fn an_arc_follows_a_clamp_that_has_to_go_back() {
     let ways = (0..10_000).map(|k| FREE * f64::from(k) / 1e4);
     let farthest = ways.map(end).fold(0.0, f64::max);
     let limit = answer.limit.unwrap() * all / farthest;
-    // Arcs grow to some hundredths of the square that this is below the limit by.
+    // Arcs grow, so that the highest point is below the limit by some hundredths.
     assert!(limit > 0.95 && limit < 1.0 + EXACT, "{limit}");
     let lowest = free.last().unwrap().0 * all / farthest;
     assert!(lowest < 0.95, "{lowest}");
@@ -330,7 +330,7 @@ fn an_arc_follows_a_clamp_that_has_to_go_back() {
 }
 
 #[test]
-fn a_volume_pushes_past_a_limit_and_against_a_plate() {
+fn volume_control_past_a_limit_onto_a_plate() {
     let problem = guided(&Push::Chamber);
     // A hundredth of the block's height farther than to the plate.
     let way = FREE + 0.01 * SIDE;
@@ -348,13 +348,13 @@ fn a_volume_pushes_past_a_limit_and_against_a_plate() {
     }
     let limit = push(answer.limit.unwrap()) / largest();
     assert!(limit > 0.99 && limit < 1.0 + EXACT, "{limit}");
-    // The volume says where the bottom is, and pressure carries what truss and plate do not.
+    // The volume determines the position of the bottom, and pressure carries the forces of truss and plate.
     let bottom = answer.positions[0][2];
     assert!((bottom - way).abs() < 1e-8 * way, "{bottom}");
     let pressed = -force(&problem, &answer);
     let off = push(answer.factor) - truss(way) - pressed;
     assert!(off.abs() < EXACT * pressed, "{off} {pressed}");
-    // Held at its sides, rubber has the modulus E (1 − ν)/((1 + ν)(1 − 2ν)); to first order in a strain of a hundredth.
+    // Rubber held at its sides has the modulus E (1 − ν)/((1 + ν)(1 − 2ν)); to first order in a strain of a hundredth.
     let top = answer.positions[7][2];
     let strain = (way - (top - SIDE)) / SIDE;
     assert!((strain - 0.01).abs() < CLEARANCE / SIDE, "{strain}");
@@ -362,9 +362,9 @@ fn a_volume_pushes_past_a_limit_and_against_a_plate() {
     assert!((pressed / (modulus * strain * area) - 1.0).abs() < 0.03);
 }
 
-/// Who stops a run, wherever that is, gets the last point that was found, with what contact held there.
+/// A run that is stopped at any iteration returns the last converged point, with the contact there.
 #[test]
-fn a_run_that_is_stopped_ends_at_its_last_point() {
+fn stopped_run_ends_at_its_last_point() {
     let ratio = 1.0 + (FREE + 0.01 * SIDE) / DEPTH;
     let cases = [
         (
@@ -386,7 +386,7 @@ fn a_run_that_is_stopped_ends_at_its_last_point() {
                 if now.record {
                     last = now.positions.to_vec();
                 }
-                // From where the truss has let go by half on.
+                // Counts iterations from 0.7 of the height on, on the falling part of the path.
                 after += u32::from(!now.record && last[0][2].abs() > 0.7 * HEIGHT);
                 if after == stop {
                     ControlFlow::Break(())

@@ -1,4 +1,4 @@
-//! Many candidates at a time: the same answers as one by one, whatever the company.
+//! Many candidates at a time: same results as one by one, independent of the other lanes.
 
 mod common;
 
@@ -24,7 +24,7 @@ fn variant(edge: f64, bulk: f64) -> Variant {
     }
 }
 
-/// From beams that hardly bend to ropes, more than one for each lane of any processor.
+/// Variants from beams that hardly bend to ropes, more than one for each lane of any processor.
 fn variants() -> Vec<Variant> {
     let edges = [40.0, 11.0, 3.0, 1.0, 0.4, 0.2, 0.08, 0.05];
     let bulks = [9.0, 1.0, 0.02];
@@ -33,7 +33,7 @@ fn variants() -> Vec<Variant> {
 }
 
 #[test]
-fn all_lanes_come_to_the_rest_of_the_single_solver() {
+fn lanes_agree_with_the_single_solver() {
     let problem = cantilever([20, 2, 2], 5e-3, lattice(EDGE, BULK));
     let ensemble = Ensemble::of(&problem).unwrap();
     let variants = variants();
@@ -58,7 +58,7 @@ fn all_lanes_come_to_the_rest_of_the_single_solver() {
 }
 
 #[test]
-fn neither_company_nor_threads_change_a_bit() {
+fn bits_are_independent_of_lanes_and_threads() {
     let problem = cantilever([12, 2, 1], 5e-3, lattice(EDGE, BULK));
     let ensemble = Ensemble::of(&problem).unwrap();
     let variants = variants();
@@ -81,9 +81,9 @@ fn neither_company_nor_threads_change_a_bit() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// Clamps that hold some axes only, forces on vertices, other densities: against a problem of its own.
+    /// Clamps that hold some axes only, forces on vertices, other densities: compared with separate problems.
     #[test]
-    fn loads_and_clamps_are_those_of_the_problem(
+    fn loads_and_clamps_agree_with_separate_problems(
         held in prop::array::uniform3(any::<bool>()),
         (edge, bulk, weight, forces) in (0.5..2.0, 0.5..2.0, 0.5..2.0, -2.0..2.0),
         pull in prop::array::uniform3(-2e-3..2e-3),
@@ -110,14 +110,14 @@ proptest! {
         let alone = settled(&problem(edge, bulk, weight, forces), &Settings::default());
         prop_assert_eq!(found.status, alone.status);
         for (a, b) in found.positions.iter().zip(&alone.positions) {
-            // Of a body of 30 mm; forces left over are a millionth of what moves it by a micrometer.
+            // Positions of a body of 30 mm; residual forces are a millionth of those that move it by a micrometer.
             prop_assert!(norm(sub(*a, *b)) < 1e-9, "{:?} {:?}", a, b);
         }
     }
 }
 
 #[test]
-fn what_cannot_be_laid_out_is_refused() {
+fn unsupported_problems_are_refused() {
     let mesh = block([2, 1, 1], 5e-3);
     let wall = Clamp::fixed(vertices_where(&mesh, |x| x[0] < 1e-9));
     let body = || Body::new(&mesh, &[lattice(EDGE, BULK)]).unwrap();
@@ -137,7 +137,7 @@ fn what_cannot_be_laid_out_is_refused() {
 }
 
 #[test]
-fn a_stop_leaves_the_rest_cancelled() {
+fn stop_cancels_remaining_candidates() {
     let problem = cantilever([6, 1, 1], 5e-3, lattice(EDGE, BULK));
     let ensemble = Ensemble::of(&problem).unwrap();
     let found = ensemble.settle(&variants(), 1e-6, &|| true);
@@ -146,8 +146,8 @@ fn a_stop_leaves_the_rest_cancelled() {
 }
 
 #[test]
-fn a_material_that_cannot_carry_its_load_is_left_to_the_single_solver() {
-    // One vertex of a single voxel is held: a mechanism.
+fn mechanism_is_left_to_the_single_solver() {
+    // A single voxel held at one vertex is a mechanism.
     let mesh = block([1, 1, 1], 5e-3);
     let body = Body::new(&mesh, &[lattice(EDGE, BULK)]).unwrap();
     let loads = vec![Load::gravity([0.0, 0.0, -9.81])];

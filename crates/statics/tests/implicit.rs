@@ -1,5 +1,5 @@
-//! Implicit steps: the rest of statics, the closed form of a motion, momentum, falls, hands and sudden loads. Long because each of
-//! these is a closed form with its derivation beside it.
+//! Implicit steps: agreement with statics, closed forms of vibrations, momentum, free fall, hands and sudden loads. The
+//! file is long because each of these is a closed form with its derivation beside it.
 
 mod common;
 
@@ -16,8 +16,8 @@ use voxsoft_solid::{
 use voxsoft_statics::{Implicit, ImplicitSettings, Settings};
 use voxsoft_voxel::Grid;
 
-/// Rest is where the residual is below 1e-4 of the load; slender bodies turn that into about as much of the
-/// displacement, and some ten times as much where the load changes with it.
+/// Relative tolerance of positions. At rest the residual is below 1e-4 of the load; slender bodies turn that into about
+/// as much of the displacement, and some ten times as much if the load changes with it.
 const SAME: f64 = 2e-3;
 
 const SWING: ImplicitSettings = ImplicitSettings {
@@ -37,7 +37,7 @@ fn settle(run: &mut Implicit) -> Look {
     look
 }
 
-/// The largest distance between two sets of positions over the largest motion from rest.
+/// Largest distance between two sets of positions over the largest motion from rest.
 fn apart(problem: &Problem, a: &[Vec3], b: &[Vec3]) -> f64 {
     let largest = |a: &[Vec3], b: &[Vec3]| {
         let pairs = a.iter().zip(b);
@@ -47,12 +47,12 @@ fn apart(problem: &Problem, a: &[Vec3], b: &[Vec3]) -> f64 {
 }
 
 fn yeoh() -> HyperelasticMaterial {
-    // The card ecoflex-00-30-tensile.
+    // Constants of the card ecoflex-00-30-tensile.
     let c = [8107.74, 82.3095, -0.0336932];
     HyperelasticMaterial::new(Model::Yeoh { c }, 8.1e6, 1070.0).unwrap()
 }
 
-/// A closed chamber with walls of one voxel, held at one end, on a firmer layer.
+/// Closed chamber with walls of one voxel, held at one end, on a firmer layer.
 fn chamber(soft: impl Into<Material>, firm: impl Into<Material>, pressure: f64) -> Problem {
     let side = 2.5e-3;
     let cells = [8, 4, 5];
@@ -77,7 +77,7 @@ fn chamber(soft: impl Into<Material>, firm: impl Into<Material>, pressure: f64) 
     Problem::new(body, vec![Clamp::fixed(wall)], vec![load], None).unwrap()
 }
 
-/// The faces of the cells of a cavity, their normals out of the solid, into it.
+/// Faces of the cells of a cavity, their normals out of the solid, into it.
 fn inner_faces(grid: &Grid, vertices: &[Vec3], side: f64) -> Vec<[u32; 3]> {
     let key = |x: Vec3| x.map(|c| (c / side).round() as i64);
     let number: std::collections::HashMap<[i64; 3], u32> = vertices
@@ -124,7 +124,7 @@ fn inner_faces(grid: &Grid, vertices: &[Vec3], side: f64) -> Vec<[u32; 3]> {
 }
 
 #[test]
-fn comes_to_the_rest_of_statics() {
+fn rest_agrees_with_statics() {
     let firm = HyperelasticMaterial::neo_hookean(300e3, 0.49, 1070.0).unwrap();
     let lattice = LatticeMaterial::from_moduli(200e3, 1e6, 1070.0).unwrap();
     for (name, problem) in [
@@ -142,7 +142,7 @@ fn comes_to_the_rest_of_statics() {
 }
 
 #[test]
-fn an_open_pressure_that_turns_with_the_surface_comes_to_rest_too() {
+fn open_follower_pressure_comes_to_rest() {
     let mesh = block([12, 2, 2], 5e-3);
     let body = Body::new(&mesh, &[rubber()]).unwrap();
     let wall = vertices_where(&mesh, |x| x[0] < 1e-9);
@@ -171,7 +171,7 @@ fn an_open_pressure_that_turns_with_the_surface_comes_to_rest_too() {
     assert!(off < SAME, "{off:.1e}");
 }
 
-/// A bar along x that slides on its symmetry planes, so that it stays uniaxial.
+/// Bar along x that slides on its symmetry planes, so that it stays uniaxial.
 fn bar(material: HyperelasticMaterial) -> Problem {
     let mesh = block([10, 1, 1], 0.02);
     let slide = |axis: usize| Clamp {
@@ -183,7 +183,7 @@ fn bar(material: HyperelasticMaterial) -> Problem {
     Problem::new(body, (0..3).map(slide).collect(), vec![], None).unwrap()
 }
 
-/// The size of the lowest mode of the bar after each step, let go from it.
+/// Amplitude of the lowest mode of the bar after each step, released from it.
 fn swing(material: HyperelasticMaterial, settings: ImplicitSettings, steps: usize) -> Vec<f64> {
     let problem = bar(material);
     let rest = problem.body().rest().to_vec();
@@ -205,12 +205,12 @@ fn swing(material: HyperelasticMaterial, settings: ImplicitSettings, steps: usiz
         .collect()
 }
 
-/// The same of an oscillator of one mass with `omega` times its frequency, by the formula alone.
+/// Amplitude of an oscillator of one mass with `omega` times its frequency, by the formula alone.
 fn oscillator(z: f64, omega: f64, steps: usize) -> Vec<f64> {
     let (mut x, mut v) = (vec![1e-4, 1e-4], vec![0.0, 0.0]);
     let part = 1.0 - 0.5f64.sqrt();
     for step in 0..=steps {
-        // The two stages of the first step first: nothing is known of what was before.
+        // The two stages of the first step come first: there is no previous state.
         let (rate, first, second) = match step {
             0 => (1.0 / (part * z), 1.0, 0.0),
             1 => (1.0 / (part * z), 1.0 / part - 1.0, 2.0 - 1.0 / part),
@@ -222,7 +222,7 @@ fn oscillator(z: f64, omega: f64, steps: usize) -> Vec<f64> {
         v.push(rate * (next - from));
         x.push(next);
         if step == 1 {
-            // Between its stages there is no state of a step.
+            // A state between its stages does not count as a step.
             x.remove(x.len() - 2);
             v.remove(v.len() - 2);
         }
@@ -230,7 +230,7 @@ fn oscillator(z: f64, omega: f64, steps: usize) -> Vec<f64> {
     x.split_off(2)
 }
 
-/// The size of the last extremum, between steps, over the start.
+/// Amplitude of the last extremum, between steps, over the start.
 fn last_extremum(seen: &[f64]) -> f64 {
     let extremum = |w: &&[f64; 3]| (w[1] - w[0]) * (w[2] - w[1]) <= 0.0;
     let [a, b, c] = *seen.array_windows::<3>().rfind(extremum).unwrap();
@@ -238,7 +238,7 @@ fn last_extremum(seen: &[f64]) -> f64 {
     (b - slope * slope / (2.0 * curve)).abs() / 1e-4
 }
 
-/// What the formula makes of `exp(iz)`: `ζ = (2 + √(1 + 2iz))/(3 − 2iz)`, as an angle and a size.
+/// Approximation of `exp(iz)` by the formula: `ζ = (2 + √(1 + 2iz))/(3 − 2iz)`, as an angle and a magnitude.
 fn formula(z: f64) -> (f64, f64) {
     let size = (1.0 + 4.0 * z * z).sqrt().sqrt();
     let half = (2.0 * z).atan() / 2.0;
@@ -252,9 +252,9 @@ fn formula(z: f64) -> (f64, f64) {
 }
 
 #[test]
-fn a_bar_swings_as_the_closed_form_and_the_formula_say() {
-    // Masses at the ends of ten elements make the lowest mode (π/20)²/24 = 0.1 % slow, masses at the edges that
-    // thin by ν, r² = a²/2 from the axis, another (πνr/2L)²/2 = 0.12 %.
+fn bar_vibration_agrees_with_closed_form() {
+    // Masses at the ends of ten elements make the lowest mode (π/20)²/24 = 0.1 % slow, masses at the edges that thin by
+    // ν, r² = a²/2 from the axis, another (πνr/2L)²/2 = 0.12 %.
     let slow = 1.0 - 0.0022;
     let young = 60e3;
     let material = HyperelasticMaterial::neo_hookean(young, 0.45, 1000.0).unwrap();
@@ -266,10 +266,10 @@ fn a_bar_swings_as_the_closed_form_and_the_formula_say() {
         let expected = oscillator(z, slow, steps);
         let off = seen.iter().zip(&expected).map(|(a, b)| (a - b).abs());
         let off = off.fold(0.0, f64::max) / 1e-4;
-        // The start leaves out that the bar thins, which takes 0.5 % of its energy elsewhere; a frequency that is
-        // 0.05 % off makes 0.6 % after two periods.
+        // The start neglects that the bar thins, which takes 0.5 % of its energy elsewhere; an error of the frequency
+        // of 0.05 % makes 0.6 % after two periods.
         assert!(off < 0.012, "{z}: {off}");
-        // What the guide says of the formula: the period is longer by z²/3, and z⁴/4 is lost per step.
+        // Errors of the formula in the guide: the period is longer by z²/3, and z⁴/4 is lost per step.
         let (angle, size) = formula(z);
         if z < 0.3 {
             assert!((1.0 - angle / z - z * z / 3.0).abs() < 0.1 * z * z);
@@ -278,8 +278,8 @@ fn a_bar_swings_as_the_closed_form_and_the_formula_say() {
     }
 }
 
-/// The logarithm of what an oscillator of one mass has lost at its fourth extremum, let go from rest with a relaxed branch of so
-/// much stiffness and `ωτ = 1`: by the rule of Runge and Kutta, whose error is the fourth power of a step.
+/// Logarithmic decrement of an oscillator of one mass at its fourth extremum, released from rest with a relaxed branch
+/// of this stiffness and `ωτ = 1`: by the rule of Runge and Kutta, whose error is the fourth power of a step.
 fn released_decay(branch: f64) -> f64 {
     let rate = |y: [f64; 3]| [y[1], -y[0] - branch * y[2], y[1] - y[2]];
     let step = 1e-3;
@@ -301,9 +301,10 @@ fn released_decay(branch: f64) -> f64 {
 }
 
 #[test]
-fn viscous_stress_damps_as_the_closed_form_says() {
+fn viscous_damping_agrees_with_closed_form() {
     let young = 60e3;
-    // A uniaxial stretch at ν near ½ is deviatoric, so that the loss factor is τω: the size falls as exp(−loss ωt/2).
+    // A uniaxial stretch at ν near ½ is deviatoric, so that the loss factor is τω: the amplitude decays as exp(−loss
+    // ωt/2).
     let plain = HyperelasticMaterial::neo_hookean(young, 0.49, 1000.0).unwrap();
     let frequency = PI / 0.4 * (young / 1000.0f64).sqrt();
     let z = 0.1;
@@ -311,7 +312,7 @@ fn viscous_stress_damps_as_the_closed_form_says() {
         step: z / frequency,
         ..SWING
     };
-    // To the fourth extremum, ωt = 4π.
+    // Steps to the fourth extremum, ωt = 4π.
     let steps = (4.2 * PI / z) as usize;
     let own = last_extremum(&swing(plain.clone(), settings, steps)).ln();
     let kelvin = ImplicitSettings {
@@ -324,14 +325,14 @@ fn viscous_stress_damps_as_the_closed_form_says() {
     let branch = 0.1 / 0.9;
     let relaxing = plain.with_prony(vec![(0.1, 1.0 / frequency)]).unwrap();
     let decay = own - last_extremum(&swing(relaxing, settings, steps)).ln();
-    // As much storage as loss at ωτ = 1: what is late by z/2 loses that part of its loss. The rest is of second order, and
-    // the bar 0.2 % slow.
+    // Storage and loss are equal at ωτ = 1: a delay by z/2 loses that fraction of the loss. The rest is of second
+    // order, and the bar 0.2 % slow.
     let expected = released_decay(branch) * (1.0 - z / 2.0);
     assert!((decay / expected - 1.0).abs() < 0.02, "{decay} {expected}");
 }
 
 #[test]
-fn a_free_body_takes_all_of_the_momentum_it_is_given() {
+fn free_body_takes_all_momentum() {
     let mesh = block([6, 2, 2], 5e-3);
     let body = Body::new(&mesh, &[rubber()]).unwrap();
     let push = Load::constant(PointForces {
@@ -346,7 +347,7 @@ fn a_free_body_takes_all_of_the_momentum_it_is_given() {
         let moving = run.state().velocities.iter().zip(masses);
         let momentum = moving.fold([0.0; 3], |sum, (v, m)| add(sum, scale(*m, *v)));
         let expected = scale(look.time, [1e-3, 0.0, 2e-3]);
-        // The first move of a search has no force left in sum, whatever the tangent.
+        // After the first move of a search the sum of the forces is zero, whatever the tangent.
         let off = norm(sub(momentum, expected)) / norm(expected);
         assert!(off < 1e-9, "{off:.1e}");
         assert!(look.kinetic > 0.0 && look.elastic > 0.0);
@@ -354,7 +355,7 @@ fn a_free_body_takes_all_of_the_momentum_it_is_given() {
 }
 
 #[test]
-fn a_free_body_falls_as_far_as_gravity_says_from_the_first_step_on() {
+fn free_fall_is_exact_from_the_first_step() {
     let mesh = block([2, 2, 2], 5e-3);
     let body = Body::new(&mesh, &[rubber()]).unwrap();
     let weight = Load::gravity([0.0, 0.0, -9.81]);
@@ -363,7 +364,7 @@ fn a_free_body_falls_as_far_as_gravity_says_from_the_first_step_on() {
     let step = run.step();
     for count in 1..=6 {
         let look = run.advance(1);
-        // Steps end at multiples of their length, whatever stages the first one has.
+        // Steps end at multiples of their length, for any stages of the first one.
         assert!((look.time - f64::from(count) * step).abs() < 1e-12);
         let masses = run.problem().body().masses();
         let (mut fallen, mut speed) = (0.0, 0.0);
@@ -377,14 +378,14 @@ fn a_free_body_falls_as_far_as_gravity_says_from_the_first_step_on() {
             speed -= m * v[2];
         }
         let mass: f64 = masses.iter().sum();
-        // Both formulas are exact where the acceleration is constant, and momentum is kept to rounding.
+        // Both formulas are exact for a constant acceleration, and momentum is kept to rounding.
         let expected = [9.81 * look.time.powi(2) / 2.0, 9.81 * look.time];
         assert!((fallen / mass / expected[0] - 1.0).abs() < 1e-9, "{fallen}");
         assert!((speed / mass / expected[1] - 1.0).abs() < 1e-9, "{speed}");
     }
 }
 
-/// The least volume ratio among all voxels.
+/// Smallest volume ratio among all voxels.
 fn flattest(run: &Implicit) -> f64 {
     let positions = &run.state().positions;
     let body = run.problem().body();
@@ -395,7 +396,7 @@ fn flattest(run: &Implicit) -> f64 {
 }
 
 #[test]
-fn sudden_loads_and_strong_pulls_do_no_harm() {
+fn sudden_loads_and_strong_pulls_invert_no_voxel() {
     let firm = HyperelasticMaterial::neo_hookean(300e3, 0.49, 1070.0).unwrap();
     let problem = chamber(yeoh(), firm, 1000.0);
     let vertex = problem.body().rest().len() as u32 - 1;
@@ -434,7 +435,7 @@ fn sudden_loads_and_strong_pulls_do_no_harm() {
 }
 
 #[test]
-fn a_hand_is_balanced_and_lets_go() {
+fn hand_is_balanced_and_releases() {
     let problem = cantilever([12, 2, 2], 5e-3, rubber());
     let mut run = run_of(&problem);
     settle(&mut run);
@@ -459,7 +460,7 @@ fn a_hand_is_balanced_and_lets_go() {
 }
 
 #[test]
-fn goes_back_and_elsewhere_the_same_way() {
+fn reset_and_seek_repeat_the_motion() {
     let problem = cantilever([12, 2, 2], 5e-3, rubber());
     let mut run = run_of(&problem);
     run.advance(9);
@@ -477,7 +478,7 @@ fn goes_back_and_elsewhere_the_same_way() {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bits() {
+fn bits_are_independent_of_threads() {
     let problem = cantilever([20, 6, 6], 5e-3, yeoh());
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
@@ -492,7 +493,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 }
 
 #[test]
-fn what_falls_on_the_floor_lies_there() {
+fn falling_block_rests_on_the_floor() {
     let mut mesh = block([4, 4, 2], 5e-3);
     for x in &mut mesh.vertices {
         x[2] += 0.01;
@@ -516,7 +517,7 @@ fn what_falls_on_the_floor_lies_there() {
 }
 
 #[test]
-fn a_step_is_given_up_when_asked_and_taken_later() {
+fn cancelled_step_is_taken_later() {
     let problem = cantilever([12, 2, 2], 5e-3, rubber());
     let mut run = run_of(&problem);
     run.advance(3);
@@ -528,7 +529,7 @@ fn a_step_is_given_up_when_asked_and_taken_later() {
 }
 
 #[test]
-fn steps_are_as_long_as_preferred() {
+fn steps_have_the_preferred_length() {
     let problem = cantilever([12, 2, 2], 5e-3, rubber());
     let mut run = run_of(&problem);
     run.prefer_step(1e-3);

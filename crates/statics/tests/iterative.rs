@@ -1,4 +1,4 @@
-//! The iterative way must find what the direct one finds, with the same bits for any number of threads.
+//! Iterative solver: agreement with the direct one, with the same bits for any number of threads.
 
 mod common;
 
@@ -22,7 +22,7 @@ fn both(problem: &Problem) -> [Answer; 2] {
     [LinearSolver::Direct, LinearSolver::Iterative].map(|way| settled(problem, &with(way)))
 }
 
-/// The largest distance between two answers over the largest displacement.
+/// Largest distance between two solutions over the largest displacement.
 fn difference(problem: &Problem, [a, b]: &[Answer; 2]) -> f64 {
     let largest = |x: &Answer, y: &[[f64; 3]]| {
         let pairs = x.positions.iter().zip(y);
@@ -31,8 +31,7 @@ fn difference(problem: &Problem, [a, b]: &[Answer; 2]) -> f64 {
     largest(a, &b.positions) / largest(a, problem.body().rest())
 }
 
-/// Two chambers with a wall one voxel thick between and around them, blown up; a film covers what lies
-/// below.
+/// Two inflated chambers with a wall one voxel thick between and around them; a film covers the layer below.
 fn chambers(material: impl Into<Material>, film: bool) -> Problem {
     let side = 0.004;
     let mut grid = Grid::empty([12, 7, 7], [0.0; 3], side, u64::MAX).unwrap();
@@ -76,7 +75,7 @@ fn chambers(material: impl Into<Material>, film: bool) -> Problem {
     Problem::new(body, vec![Clamp::fixed(wall)], loads, None).unwrap()
 }
 
-/// A hollow cube with walls one voxel thick.
+/// Hollow cube with walls one voxel thick.
 fn balloon() -> Problem {
     let (side, across) = (0.004, 8);
     let mut grid = Grid::empty([across; 3], [0.0; 3], side, u64::MAX).unwrap();
@@ -100,8 +99,8 @@ fn balloon() -> Problem {
     Problem::new(body, vec![Clamp::fixed(foot)], vec![pressure], None).unwrap()
 }
 
-/// Two leaves on a common foot with a slit of one voxel between them, pulled apart by motions of their
-/// ends: coarse voxels that welded them would never let them part.
+/// Two leaves on a common foot with a slit of one voxel between them, pulled apart by motions of their ends: coarse
+/// voxels that welded them would never let them part.
 fn leaves() -> Problem {
     let side = 0.002;
     let mut grid = Grid::empty([24, 6, 5], [0.0; 3], side, u64::MAX).unwrap();
@@ -131,7 +130,7 @@ fn leaves() -> Problem {
 }
 
 #[test]
-fn it_finds_what_the_direct_way_finds() {
+fn iterative_agrees_with_direct() {
     let lattice = LatticeMaterial::from_moduli(60e3, 20e3, 1070.0).unwrap();
     let tight = HyperelasticMaterial::neo_hookean(60e3, 0.499, 1070.0).unwrap();
     let cases = [
@@ -151,14 +150,14 @@ fn it_finds_what_the_direct_way_finds() {
             assert_eq!(answer.status, Status::AtRest, "{name}");
             assert!(answer.stable, "{name}");
         }
-        // Either way ends where Newton's method stands still: at 1e-9 of the motion at most.
+        // Both solvers end at a standstill of Newton's method: at 1e-9 of the motion at most.
         let difference = difference(&problem, &answers);
         assert!(difference < 1e-8, "{name}: {difference:e}");
     }
 }
 
 #[test]
-fn bits_do_not_depend_on_the_number_of_threads() {
+fn bits_are_independent_of_threads() {
     let problem = chambers(rubber(), true);
     let answer = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
@@ -178,7 +177,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
 
 #[test]
 fn adjoints_agree() {
-    // More vertices than the switch, so that the iteration answers by itself; K⁻¹ is symmetric.
+    // More vertices than the threshold of the iterative solver; K⁻¹ is symmetric.
     let problem = cantilever([24, 13, 13], 0.002, rubber());
     assert!(problem.body().rest().len() > 4000);
     let answer = settled(&problem, &with(LinearSolver::Auto));
@@ -204,9 +203,9 @@ fn adjoints_agree() {
 }
 
 #[test]
-fn an_upright_column_that_buckles_is_seen_to_be_unstable() {
-    // A column clamped below buckles under its own weight q (N/m) from q h³ = 7.84 E I on (Greenhill
-    // 1881): here from g = 0.127 m/s² on. The heavy one stands only because nothing tips it.
+fn heavy_upright_column_is_unstable() {
+    // A column clamped below buckles under its own weight q (N/m) from q h³ = 7.84 E I on (Greenhill 1881): here from g
+    // = 0.127 m/s² on. The heavy one stands only because nothing tips it.
     let mesh = block([3, 3, 36], 0.002);
     let heavy = HyperelasticMaterial::neo_hookean(60e3, 0.3, 30e3).unwrap();
     let body = Body::new(&mesh, &[heavy]).unwrap();
@@ -230,7 +229,7 @@ fn an_upright_column_that_buckles_is_seen_to_be_unstable() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused_with_an_estimate() {
+fn oversized_factor_is_refused_with_an_estimate() {
     let problem = cantilever([8, 4, 4], 0.005, rubber());
     for linear in [LinearSolver::Direct, LinearSolver::Iterative] {
         let settings = Settings {
@@ -240,13 +239,13 @@ fn what_does_not_fit_is_refused_with_an_estimate() {
         let Status::OutOfMemory(bytes) = settled(&problem, &settings).status else {
             panic!("{linear:?} was not refused");
         };
-        // 225 vertices: the factor has about as many entries as the tangent, 27 blocks a vertex at most.
+        // With 225 vertices the factor has about as many entries as the tangent, 27 blocks a vertex at most.
         assert!((100_000..2_000_000).contains(&bytes), "{linear:?}: {bytes}");
     }
 }
 
 #[test]
-fn a_balloon_is_blown_up_past_its_limit_either_way() {
+fn balloon_past_its_limit_with_both_solvers() {
     let problem = balloon();
     let control = Control::Volume {
         ratio: 6.0,

@@ -1,4 +1,4 @@
-//! Contact in live motion: what falls lies, what sticks stays, what is free is carried, and energy does not grow.
+//! Contact in live motion: resting, sticking, pinched bodies, and energy that does not grow.
 
 mod common;
 
@@ -20,7 +20,7 @@ use voxsoft_statics::{Implicit, ImplicitSettings};
 const GRAVITY: f64 = 9.81;
 const SIDE: f64 = 4e-3;
 
-/// What is put together for a test.
+/// Parts of a test problem.
 struct Scene {
     mesh: Mesh,
     clamps: Vec<Clamp>,
@@ -38,7 +38,7 @@ impl Scene {
         }
     }
 
-    /// A rigid box that stays.
+    /// Adds a rigid box that is fixed.
     fn fixed(mut self, low: Vec3, high: Vec3) -> Self {
         let first = self.mesh.vertices.len() as u32;
         self.objects.push(add_box(&mut self.mesh, low, high));
@@ -46,7 +46,7 @@ impl Scene {
         self
     }
 
-    /// A rigid box that moves freely.
+    /// Adds a rigid box that moves freely.
     fn free(mut self, low: Vec3, high: Vec3, mass: f64) -> Self {
         let first = self.mesh.vertices.len() as u32;
         let corners = corners_of(low, high);
@@ -113,7 +113,7 @@ fn gravity() -> Vec<Load> {
     vec![Load::gravity([0.0, 0.0, -GRAVITY])]
 }
 
-/// A block of so many voxels, its lowest ones at a height.
+/// Block of so many voxels, its lowest ones at a height.
 fn lifted(cells: [usize; 3], height: f64) -> Mesh {
     let mut mesh = block(cells, SIDE);
     for x in &mut mesh.vertices {
@@ -127,13 +127,13 @@ fn mean(vectors: &[Vec3]) -> Vec3 {
     scale(1.0 / vectors.len() as f64, sum)
 }
 
-/// The force on the body, N.
-/// The contact of a run.
+/// Contact of a run.
 fn live(run: &Implicit) -> &LiveTouch {
     let contact = run.problem().contact().unwrap();
     contact.found_by().downcast_ref().unwrap()
 }
 
+/// Contact force on the body, N.
 fn force_on_body(run: &Implicit) -> Vec3 {
     let pairs = live(run).touch().pairs(&run.state().positions);
     pairs
@@ -142,7 +142,7 @@ fn force_on_body(run: &Implicit) -> Vec3 {
 }
 
 #[test]
-fn what_falls_lies_on_an_object_and_gains_no_energy() {
+fn falling_block_rests_on_plate_and_gains_no_energy() {
     // The step in which the block meets the plate would end up to 1.8 mm, nearly half a voxel, within it.
     let heights = (0..8).map(|k| (0.02 + 3e-4 * f64::from(k), 1.0 / 60.0));
     for (height, step) in heights.chain([(0.02, 1.0 / 600.0)]) {
@@ -156,13 +156,13 @@ fn what_falls_lies_on_an_object_and_gains_no_energy() {
             let look = run.advance(1);
             assert_eq!(look.status, LiveStatus::Moving, "{look:?}");
             let positions = &run.state().positions;
-            // What contact is allowed within a step.
+            // Largest depth of contact within a step.
             assert!(live(&run).depth(positions) < 0.05 * SIDE);
             let touching = live(&run).energy(positions);
             let potential = problem.load_potential(positions, &|_| 1.0);
             let stored = elastic::energy(run.problem().body(), positions) - touching;
             let energy = look.kinetic + stored + potential;
-            // A hundredth of the fall.
+            // Tolerance of a hundredth of the fall.
             assert!(
                 energy < least + 1e-2 * weight * height,
                 "{energy:e} {least:e} {look:?} {stored:e} {touching:e} {potential:e}"
@@ -171,7 +171,7 @@ fn what_falls_lies_on_an_object_and_gains_no_energy() {
         }
         let state = run.state();
         let force = force_on_body(&run);
-        // The rest of the shaking after a quarter of a second.
+        // Tolerance of the remaining vibration after a quarter of a second.
         assert!((force[2] / weight - 1.0).abs() < 1e-2, "{force:?} {weight}");
         let lowest = state.positions.iter().take(64).map(|x| x[2]);
         let lowest = lowest.fold(f64::INFINITY, f64::min);
@@ -179,7 +179,7 @@ fn what_falls_lies_on_an_object_and_gains_no_energy() {
     }
 }
 
-/// A block of 12 mm on a plate, gravity being tilted by `tangent`; the mean place along the slope over time.
+/// Block of 12 mm on a plate, with gravity tilted by `tangent`; returns the mean place along the slope over time.
 fn on_a_slope(tangent: f64, friction: f64, step: f64, seconds: f64) -> Vec<(f64, f64)> {
     let angle = tangent.atan();
     let pull = [GRAVITY * angle.sin(), 0.0, -GRAVITY * angle.cos()];
@@ -196,7 +196,7 @@ fn on_a_slope(tangent: f64, friction: f64, step: f64, seconds: f64) -> Vec<(f64,
 }
 
 #[test]
-fn what_sticks_stays_and_what_slips_slides_as_coulomb_says() {
+fn block_on_a_slope_sticks_or_slides_by_coulomb() {
     let places = on_a_slope(0.45, 0.5, 1.0 / 60.0, 3.0);
     let at = |time: f64| places.iter().find(|(t, _)| *t >= time).unwrap().1;
     let crept = at(2.9) - at(1.0);
@@ -211,15 +211,15 @@ fn what_sticks_stays_and_what_slips_slides_as_coulomb_says() {
         let found = (speed(middle, last) - speed(first, middle)) / ((last.0 - first.0) / 2.0);
         found / expected - 1.0
     };
-    // Bounds of friction are those of the step before, and what touches anew, as corners of a block that rocks do, has
-    // none yet: an error of first order, of which the part depends on where the rocking ends.
+    // Bounds of friction are those of the step before, and new contacts, such as corners of a rocking block, have none
+    // yet: an error of first order, whose size depends on the end of the rocking.
     for rate in [60.0, 120.0, 240.0] {
         let error = error(1.0 / rate);
         assert!(error.abs() < 0.15 * 60.0 / rate, "{rate} {error:e}");
     }
 }
 
-/// Two pads whose backs close on a free box, whose weight comes on then.
+/// Two pads whose backs close on a free box, whose weight is applied afterward.
 fn pinched() -> Problem {
     let (pad, width) = (2.0 * SIDE, 0.012);
     let mut mesh = block([2, 3, 3], SIDE);
@@ -251,7 +251,7 @@ fn pinched() -> Problem {
 }
 
 #[test]
-fn what_is_pinched_is_held() {
+fn pinched_box_is_held() {
     let problem = pinched();
     let box_of = |run: &Implicit| mean(&run.state().positions[problem.body().rest().len() - 4..]);
     let mut run = Implicit::new(problem.clone(), undamped(1.0 / 60.0));
@@ -259,13 +259,13 @@ fn what_is_pinched_is_held() {
     let before = box_of(&run);
     let look = run.advance(30);
     assert_eq!(look.status, LiveStatus::Moving);
-    // A thousandth of a voxel in half a second, while multipliers still settle.
+    // Creep of less than a thousandth of a voxel in half a second, while multipliers still settle.
     let crept = norm(sub(box_of(&run), before));
     assert!(crept < 1e-3 * SIDE, "{crept:e}");
     let held = force_on_body(&run)[2];
-    // The box rests on the pads, whose weight is not theirs to carry.
+    // The contact force carries the weight of the box, not that of the pads.
     assert!((-held / (0.02 * GRAVITY) - 1.0).abs() < 1e-2, "{held}");
-    // It stays the box that it is.
+    // The box stays rigid.
     let rigid = problem.rigid()[0];
     let mut again = run.state().positions.clone();
     rigid.restore(problem.body().rest(), &mut again);
@@ -277,7 +277,7 @@ fn what_is_pinched_is_held() {
 }
 
 #[test]
-fn threads_do_not_change_a_bit() {
+fn bits_are_independent_of_threads() {
     let run_on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         pool.build().unwrap().install(|| {

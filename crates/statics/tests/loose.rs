@@ -1,4 +1,4 @@
-//! Equilibria of what only contact holds, beside closed forms.
+//! Equilibria of bodies held by contact alone, compared with closed forms.
 
 mod common;
 
@@ -29,7 +29,7 @@ fn settle(problem: &Problem) -> Answer {
     })
 }
 
-/// Adds a rigid box that is free, with a mass; its surface, its frame and the number of its first vertex.
+/// Adds a free rigid box with a mass; returns its surface, its frame and the number of its first vertex.
 fn add_free_box(mesh: &mut Mesh, low: Vec3, high: Vec3) -> (Surface, Frame, u32) {
     let first = mesh.vertices.len() as u32;
     let radii = sub(high, low).map(|side| side / f64::sqrt(12.0));
@@ -51,7 +51,7 @@ fn middle(answer: &Answer, first: u32) -> Vec3 {
     of.iter().fold([0.0; 3], |sum, x| add(sum, scale(0.25, *x)))
 }
 
-/// A cube of 10 mm that begins 5 mm above a block of 18 mm, 12 mm high.
+/// Cube of 10 mm that begins 5 mm above a block of 18 mm, 12 mm high.
 fn cube_on_block(friction: f64) -> (Problem, u32) {
     let voxel = 6e-3;
     let mut mesh = block([3, 3, 2], voxel);
@@ -77,9 +77,9 @@ fn cube_on_block(friction: f64) -> (Problem, u32) {
 }
 
 #[test]
-fn a_cube_that_starts_above_a_block_comes_to_lie_on_it() {
-    // At its rim the cube slips, under a tenth of the pressure or all of it. Bounds of what slips are settled to a tenth of
-    // 0.3 % under the whole load, and the balance is off by as much at most.
+fn falling_cube_rests_on_a_block() {
+    // The cube slips at its rim, under a tenth of the pressure or all of it. Bounds of slipping samples are settled to
+    // a tenth of 0.3 % under the whole load, and the balance is off by as much at most.
     let off = 3e-4;
     for friction in [0.5, 0.2] {
         let (problem, first) = cube_on_block(friction);
@@ -91,14 +91,15 @@ fn a_cube_that_starts_above_a_block_comes_to_lie_on_it() {
         let weight = MASS * GRAVITY;
         assert!((pair.force[2] / -weight - 1.0).abs() < off, "{pair:?}");
         let at = middle(&answer, first);
-        // Where it was, but for what corners that are pressed into facets slide before friction holds them.
+        // The cube stays above its start, except for the slip of corners pressed into facets before friction holds
+        // them.
         let aside = norm([at[0] - 9.37e-3, at[1] - 8.77e-3, 0.0]);
         assert!(aside < 0.05e-3, "{at:?}");
         assert!(at[2] < 17e-3 && at[2] > 16e-3, "{at:?}");
     }
 }
 
-/// A rigid block between two pads of rubber, each 6 mm thick, that close by 0.4 mm each.
+/// Rigid block between two pads of rubber, each 6 mm thick, that close by 0.4 mm each.
 fn pinched(friction: f64) -> (Problem, u32) {
     let voxel = 6e-3;
     let mut mesh = block([1, 2, 2], voxel);
@@ -120,14 +121,14 @@ fn pinched(friction: f64) -> (Problem, u32) {
 }
 
 #[test]
-fn what_is_pinched_is_held_by_friction_or_falls() {
+fn pinched_bar_is_held_by_friction_or_falls() {
     let weight = MASS * GRAVITY;
     let (problem, first) = pinched(0.8);
     let answer = settle(&problem);
     assert_eq!(answer.status, Status::AtRest, "{}", answer.residual);
     let [pair] = pairs_at(&problem, &answer).try_into().unwrap();
     assert!((pair.force[2] / -weight - 1.0).abs() < 1e-6, "{pair:?}");
-    // It has sunk by what the pads give way, and by half a length of contact while the grip closed.
+    // The bar has sunk by the deflection of the pads, and by half a length of contact while the grip closed.
     let sunk = 6e-3 - middle(&answer, first)[2];
     assert!(sunk > 0.0 && sunk < 3e-3, "{sunk}");
     let (problem, first) = pinched(0.02);
@@ -137,9 +138,9 @@ fn what_is_pinched_is_held_by_friction_or_falls() {
     assert!(norm(sub(middle(&answer, first), [11.1e-3, 6e-3, 6e-3])) > 0.05);
 }
 
-/// A block that nothing holds, a millimeter above a plate.
+/// Block without clamps, a millimeter above a plate.
 #[test]
-fn a_body_without_clamps_comes_to_lie_on_what_is_below() {
+fn body_without_clamps_rests_on_a_plate() {
     for friction in [0.5, 0.0] {
         let mut mesh = block([2, 2, 2], 6e-3);
         let count = mesh.vertices.len() as u32;

@@ -1,4 +1,4 @@
-//! Motion over time with contact: closed forms, and what must be kept.
+//! Implicit dynamics with contact: closed forms, and conservation of momentum and energy.
 
 mod common;
 
@@ -27,7 +27,7 @@ fn undamped(step: f64, end_time: f64) -> Transient {
     }
 }
 
-/// Runs to the end and shows every state on the way.
+/// Runs to the end and calls `see` with every state on the way.
 fn run(
     settings: &Transient,
     problem: &Problem,
@@ -52,7 +52,7 @@ fn mean(vectors: &[Vec3], masses: &[f64]) -> Vec3 {
     pairs.fold([0.0; 3], |sum, (v, m)| add(sum, scale(m / total, *v)))
 }
 
-/// Kinetic energy, and that of the body and its weight, in J.
+/// Kinetic energy plus that of the body and its weight, in J.
 fn energy(problem: &Problem, positions: &[Vec3], velocities: &[Vec3]) -> f64 {
     let state = State {
         positions: positions.to_vec(),
@@ -68,7 +68,7 @@ fn energy(problem: &Problem, positions: &[Vec3], velocities: &[Vec3]) -> f64 {
     state.kinetic_energy(body.masses()) + stored - touching + weight
 }
 
-/// A block of 12 mm that lies on a rigid plate, with gravity tilted by `tangent` times its normal part.
+/// Block of 12 mm on a rigid plate, with gravity tilted by `tangent` times its normal part.
 fn on_a_slope(tangent: f64, friction: f64) -> Problem {
     let mut mesh = block([2, 2, 2], 6e-3);
     let count = mesh.vertices.len() as u32;
@@ -90,7 +90,7 @@ fn on_a_slope(tangent: f64, friction: f64) -> Problem {
 }
 
 #[test]
-fn a_block_slides_down_a_slope_as_coulomb_says() {
+fn block_slides_down_a_slope_by_coulomb() {
     let friction = 0.5;
     for tangent in [0.7, 1.0] {
         let problem = on_a_slope(tangent, friction);
@@ -109,14 +109,14 @@ fn a_block_slides_down_a_slope_as_coulomb_says() {
         let &(late, fast) = velocities.last().unwrap();
         let &(early, slow) = velocities.iter().find(|(t, _)| *t >= 0.05).unwrap();
         let found = (fast - slow) / (late - early);
-        // The block still shakes from its start by what a fall through its own sag of 10 µm brings, 15 mm/s, of which a
-        // few percent are left after 50 ms.
+        // The block still vibrates after a fall through its own sag of 10 µm at the start, with 15 mm/s, of which a few
+        // percent are left after 50 ms.
         assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
     }
 }
 
 #[test]
-fn a_block_stays_where_friction_is_enough() {
+fn block_sticks_on_a_slope() {
     let problem = on_a_slope(0.45, 0.5);
     let settings = Transient {
         damping: Damping::Critical,
@@ -134,12 +134,12 @@ fn a_block_stays_where_friction_is_enough() {
     );
     let &(_, end) = places.last().unwrap();
     let &(_, before) = places.iter().find(|(t, _)| *t >= 0.5).unwrap();
-    // Nothing but what is left of the shaking moves in half a second.
+    // Only the remaining vibration moves the block in half a second.
     assert!((end - before).abs() < 1e-10, "{:e}", end - before);
 }
 
 #[test]
-fn a_rubber_cube_that_bounces_gains_no_energy() {
+fn bouncing_cube_gains_no_energy() {
     let mut mesh = block([2, 2, 2], 6e-3);
     let count = mesh.vertices.len() as u32;
     let height = 10e-3;
@@ -170,7 +170,7 @@ fn a_rubber_cube_that_bounces_gains_no_energy() {
                 heights.push(mean(x, masses)[2]);
             },
         );
-        // What a step may gain is a hundredth of what it turns over, which the check of every step allows.
+        // A step may gain a hundredth of the energy that it converts, which the check of every step allows.
         assert!(grown < 1e-2 * fall, "{step}: {:e}", grown / fall);
         let deepest = heights.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(
@@ -181,7 +181,7 @@ fn a_rubber_cube_that_bounces_gains_no_energy() {
 }
 
 #[test]
-fn two_blocks_that_meet_keep_their_momentum() {
+fn colliding_blocks_keep_momentum() {
     let mut mesh = block([2, 2, 2], 6e-3);
     let second = join(&mut mesh, block([3, 3, 3], 4e-3), [14e-3, 1e-3, 2e-3]);
     let body = Body::new(&mesh, &[rubber()]).unwrap();
@@ -210,7 +210,7 @@ fn two_blocks_that_meet_keep_their_momentum() {
     assert!(mean_of(second as usize..last) > mean_of(0..second as usize));
 }
 
-/// A rigid box without a body that could touch it, and its frame.
+/// Rigid box without a body that could touch it, and its frame.
 fn lonely_box(size: Vec3) -> (Problem, Frame, State) {
     let mut mesh = block([1, 1, 1], 4e-3);
     let count = mesh.vertices.len() as u32;
@@ -236,7 +236,7 @@ fn lonely_box(size: Vec3) -> (Problem, Frame, State) {
 }
 
 #[test]
-fn a_rigid_box_turns_about_its_longest_axis_for_good() {
+fn rigid_box_keeps_its_rotation() {
     let (problem, frame, mut start) = lonely_box([40e-3, 20e-3, 10e-3]);
     let count = start.positions.len() - 4;
     let spin = [10.0, 0.0, 0.0];
@@ -255,7 +255,7 @@ fn a_rigid_box_turns_about_its_longest_axis_for_good() {
 }
 
 #[test]
-fn a_free_body_falls_as_far_as_gravity_says_from_the_first_step_on() {
+fn free_fall_is_exact_from_the_first_step() {
     let mesh = block([2, 2, 2], 5e-3);
     let body = Body::new(&mesh, &[rubber()]).unwrap();
     let weight = Load::gravity([0.0, 0.0, -GRAVITY]);
@@ -275,7 +275,7 @@ fn a_free_body_falls_as_far_as_gravity_says_from_the_first_step_on() {
             if t < 0.01 - 1e-9 {
                 return; // between the two stages of the first step
             }
-            // Both formulas are exact where the acceleration is constant; a step is found to 1e-7 of the weight.
+            // Both formulas are exact for a constant acceleration; a step is found to 1e-7 of the weight.
             let fallen = from - mean(x, masses)[2];
             assert!(
                 (fallen - GRAVITY * t * t / 2.0).abs() < 1e-6 * GRAVITY * 0.01,
@@ -289,7 +289,7 @@ fn a_free_body_falls_as_far_as_gravity_says_from_the_first_step_on() {
 }
 
 #[test]
-fn a_vibration_converges_with_the_square_of_the_step() {
+fn vibration_converges_at_second_order() {
     let mesh: Mesh = block([4, 1, 1], 5e-3);
     let body = Body::new(&mesh, &[rubber()]).unwrap();
     let wall = vertices_where(&mesh, |x| x[0] < 1e-9);
@@ -308,7 +308,7 @@ fn a_vibration_converges_with_the_square_of_the_step() {
     };
     let finest = tip_at(0.25e-3);
     let errors = [2e-3, 1e-3].map(|step| (tip_at(step) - finest).abs());
-    // Four for an exact reference; that of a step four times shorter has a 16th of the error itself.
+    // Ratio of four for an exact reference; that of a step four times shorter has a 16th of the error itself.
     let ratio = errors[0] / errors[1];
     assert!((3.0..6.0).contains(&ratio), "{ratio} of {errors:?}");
 }

@@ -1,4 +1,4 @@
-//! Which voxel carries a point, and by how much of each of its corners.
+//! Interpolation of surface points from the corners of voxels.
 
 use std::collections::BTreeMap;
 
@@ -6,15 +6,15 @@ use voxsoft_solid::vector::{Vec3, dot, sub};
 
 use crate::touch::Carried;
 
-/// How near the face of a voxel or its middle a point counts as on it, in voxels: far less than the clearance of
-/// contact, and fewer vertices carry it then.
+/// Tolerance, in voxels, within which a point counts as on the face of a voxel or on its midplane: far less than the
+/// clearance of contact, and fewer vertices carry it then.
 const ON: f64 = 1e-6;
 
-/// The voxels, ready to carry points.
+/// Voxels that carry points.
 pub(crate) struct Carriers<'a> {
     voxels: &'a [[u32; 8]],
     vertices: &'a [Vec3],
-    /// The voxels around each vertex.
+    /// Voxels around each vertex.
     around: Vec<Vec<u32>>,
 }
 
@@ -33,8 +33,8 @@ impl<'a> Carriers<'a> {
         }
     }
 
-    /// Carries a point by the voxel that it is in or nearest to, of those at all vertices of `share`; by the mean of
-    /// several that are as near.
+    /// Weights of a point on the corners of the voxel that contains it or is nearest, among the voxels at all vertices
+    /// of `share`; the mean of several that are equally near.
     pub(crate) fn carry(&self, share: &Carried, point: Vec3) -> Carried {
         let (first, others) = share.vertices.split_first().expect("a point has vertices");
         let at_all = |voxel: &&u32| {
@@ -67,7 +67,7 @@ impl<'a> Carriers<'a> {
         Carried { vertices, weights }
     }
 
-    /// Where a point is in a voxel, whose corners are at 0 and 1.
+    /// Local coordinates of a point in a voxel, whose corners are at 0 and 1.
     fn local(&self, voxel: u32, point: Vec3) -> Vec3 {
         let corner = |c: usize| self.vertices[self.voxels[voxel as usize][c] as usize];
         let low = corner(0);
@@ -84,7 +84,7 @@ impl<'a> Carriers<'a> {
     }
 }
 
-/// How far outside a voxel a place in it is.
+/// Distance outside a voxel, in its local coordinates (maximum norm).
 fn off(place: Vec3) -> f64 {
     place
         .into_iter()
@@ -92,7 +92,7 @@ fn off(place: Vec3) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The trilinear function of a corner.
+/// Trilinear shape function of a corner.
 fn corner_weight(corner: usize, place: Vec3) -> f64 {
     let along = |i: usize| {
         if corner >> (2 - i) & 1 == 1 {

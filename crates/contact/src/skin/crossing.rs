@@ -1,44 +1,44 @@
-//! Where the surface of a shape passes a face of a voxel.
+//! Crossing of the surface of a shape with a face of a voxel.
 //!
-//! A voxel is filled where its center is in the shape, so that the surface lies between that center and the one
-//! beyond an outer face. Voxels that a surface cuts may be filled with their center outside; what is between them
-//! and the surface then counts as inside as far as the center.
+//! A voxel is filled if its center is in the shape, so that the surface lies between that center and the one beyond an
+//! outer face. Voxels that a surface cuts may be filled with their center outside; the space between their centers and
+//! the surface then counts as inside.
 
 use voxsoft_solid::vector::{Vec3, axpy, norm, scale, sub};
 
-/// Where it is looked for on a line, in voxels outward from a face: between centers, then behind the first.
+/// Search intervals on a line, in voxels outward from a face: between centers, then behind the first.
 const STRETCHES: [[f64; 2]; 2] = [[-0.5, 0.5], [-1.0, -0.5]];
-/// How far inward of a face a crossing may be, in voxels. Those of all faces of a voxel that is full to just beyond its
-/// center would be at one place, and triangles between them without area.
+/// Largest offset of a crossing inward of a face, in voxels. Crossings of all faces of a voxel that is full to just
+/// beyond its center would coincide, and triangles between them would have no area.
 const DEEPEST: f64 = -0.49;
-/// How far inside a place counts as on the surface, in voxels: where sides of shapes go through the centers of voxels,
-/// those are left empty, whatever rounding says.
+/// Depth, in voxels, within which a place counts as on the surface: voxels whose centers lie on a side of a shape are
+/// left empty, whatever rounding says.
 const TIE: f64 = 1e-9;
-/// Halvings of a bracket. What is left of it, a hundred-thousandth of a voxel, is interpolated, which is exact for
-/// flat faces.
+/// Bisection steps of a bracket. The rest, a hundred-thousandth of a voxel, is interpolated, which is exact for flat
+/// faces.
 const HALVINGS: usize = 16;
-/// The step of central differences, in voxels: their rounding and their error are both below a millionth.
+/// Step of central differences, in voxels: their rounding and their truncation error are both below a millionth.
 const DIFFERENCE: f64 = 1e-4;
 
-/// A place where the surface passes, and its outward unit normal there.
+/// Point on the surface, and its outward unit normal there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Crossing {
     pub point: Vec3,
     pub normal: Vec3,
 }
 
-/// The function of a shape, negative inside, at many places.
+/// Level-set function of a shape, negative inside, at many places.
 pub(super) type Function<'a, E> = dyn FnMut(&[Vec3]) -> Result<Vec<f64>, E> + 'a;
 
-/// A shape at the size of voxels.
+/// Level-set function together with the voxel size.
 pub(super) struct Field<'a, E> {
     pub values: &'a mut Function<'a, E>,
-    /// The size of a voxel in m.
+    /// Voxel size in m.
     pub voxel: f64,
 }
 
 impl<E> Field<'_, E> {
-    /// The values at some places; what is on the surface is outside.
+    /// Values at some places; points on the surface count as outside.
     pub(super) fn at(&mut self, places: &[Vec3]) -> Result<Vec<f64>, E> {
         let mut values = (self.values)(places)?;
         for value in &mut values {
@@ -47,7 +47,7 @@ impl<E> Field<'_, E> {
         Ok(values)
     }
 
-    /// The gradients of the function.
+    /// Gradients of the function.
     pub(super) fn gradients(&mut self, places: &[Vec3]) -> Result<Vec<Vec3>, E> {
         let step = DIFFERENCE * self.voxel;
         let around = |place: &Vec3| {
@@ -64,7 +64,7 @@ impl<E> Field<'_, E> {
         Ok(values.chunks_exact(6).map(of).collect())
     }
 
-    /// The crossings on lines through the middles of faces along their normals; where there is none, nothing.
+    /// Crossings on lines through the centers of faces along their normals; `None` for lines without one.
     pub(super) fn crossings(&mut self, faces: &[Crossing]) -> Result<Vec<Option<Crossing>>, E> {
         let voxel = self.voxel;
         let along = |line: usize, t: f64| {
@@ -96,7 +96,7 @@ impl<E> Field<'_, E> {
         Ok(found)
     }
 
-    /// Where on each line the function turns positive outward.
+    /// Bracket on each line in which the function turns positive outward.
     fn brackets(
         &mut self,
         count: usize,
@@ -146,7 +146,7 @@ impl<E> Field<'_, E> {
     }
 }
 
-/// A stretch of a line on which the function turns positive outward.
+/// Interval of a line on which the function turns positive outward.
 #[derive(Debug, Clone, Copy)]
 struct Bracket {
     line: usize,

@@ -1,4 +1,4 @@
-//! The point of a surface that fits the planes at some of its crossings best.
+//! Feature point of dual contouring: the best fit to the tangent planes at some crossings.
 //!
 //! On flat and smooth parts that is a point of the surface near the mean of the crossings, on edges and corners the
 //! edge or the corner itself (Ju, Losasso, Schaefer and Warren 2002, doi 10.1145/566654.566586).
@@ -8,11 +8,11 @@ use voxsoft_solid::vector::{Vec3, add, axpy, dot, sub};
 
 use super::crossing::Crossing;
 
-/// The mean square of how far planes lean along a direction below which they do not say where the point is in it: two
-/// planes make an edge where they meet at more than 37 degrees.
+/// Smallest eigenvalue of the mean of n ⊗ n for which the planes determine the point along its eigenvector: two planes
+/// make an edge if they meet at more than 37 degrees.
 const LEAN: f64 = 0.1;
 
-/// The mean of the places of `crossings`.
+/// Mean of the points of `crossings`.
 pub(super) fn mean(crossings: &[Crossing]) -> Vec3 {
     let mut mean = [0.0; 3];
     for crossing in crossings {
@@ -21,8 +21,8 @@ pub(super) fn mean(crossings: &[Crossing]) -> Vec3 {
     mean
 }
 
-/// The point nearest to the planes at `crossings`, of those the nearest to their mean; it differs from the mean along
-/// the `free` axes alone.
+/// Least-squares point of the planes at `crossings`, the nearest to their mean if there are several; it differs from
+/// the mean along the `free` axes alone.
 pub(super) fn feature(crossings: &[Crossing], free: [bool; 3]) -> Vec3 {
     let each = 1.0 / crossings.len() as f64;
     let mean = mean(crossings);

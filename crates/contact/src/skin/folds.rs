@@ -1,4 +1,4 @@
-//! Triangles that would be folded or without area, and what is done about their points.
+//! Repair of folded triangles and of triangles without area, by moving their points.
 
 use std::collections::BTreeSet;
 
@@ -8,25 +8,25 @@ use super::TRIANGLES;
 use super::crossing::Crossing;
 use crate::touch::gap::doubled;
 
-/// The smallest area of a triangle, doubled, in squares of a voxel (a quarter on flat faces): one of a thousandth of a
+/// Smallest area of a triangle, doubled, in squares of a voxel (a quarter on flat faces): one of a thousandth of a
 /// voxel each way, below which its normal is rounding.
 const SLIVER: f64 = 1e-6;
-/// The least cosine between a triangle and the surface where it passes the triangle's face. Triangles along sharp
-/// edges have planes of their own, within a right angle; what is beyond is folded.
+/// Smallest cosine between the normals of a triangle and of the surface at the crossing of its face. Triangles along
+/// sharp edges have planes of their own, within a right angle; beyond that they are folded.
 const FOLDED: f64 = 0.1;
-/// Into how many steps each leg of the way back is divided.
+/// Steps into which each leg of the way back is divided.
 const STEPS: usize = 4;
 
 /// Triangles of faces whose normals are those of `crossings`.
 pub(super) struct Folds<'a> {
     pub triangles: &'a [[u32; 3]],
     pub crossings: &'a [Crossing],
-    /// The size of a voxel in m.
+    /// Voxel size in m.
     pub voxel: f64,
 }
 
 impl Folds<'_> {
-    /// The triangles that are folded, or without area.
+    /// Triangles that are folded, or without area.
     fn among<'b>(&'b self, points: &'b [Vec3]) -> impl Iterator<Item = [u32; 3]> + 'b {
         let crossings = self.crossings.iter();
         let normals = crossings.flat_map(|crossing| [crossing.normal; TRIANGLES]);
@@ -40,8 +40,8 @@ impl Folds<'_> {
         self.triangles.iter().zip(normals).filter_map(folded)
     }
 
-    /// Points as far along their `ways` as it takes that no triangle is folded, if that helps: from where they belong
-    /// by the mean of their crossings to the faces of their voxels.
+    /// Points moved along their `ways` until no triangle is folded, or to the end: from their targets by the mean of
+    /// their crossings to the faces of their voxels.
     pub(super) fn unfolded(&self, ways: [&[Vec3]; 3]) -> Vec<Vec3> {
         let mut points = ways[0].to_vec();
         let mut steps = vec![0; points.len()];

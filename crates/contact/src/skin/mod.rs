@@ -30,35 +30,35 @@ pub(crate) use carrier::Carriers;
 use crossing::{Crossing, Field};
 use folds::Folds;
 
-/// Into how many parts the edge of a face is divided.
+/// Parts into which the edge of a face is divided.
 const PARTS: u32 = 2;
-/// The triangles of a face.
+/// Triangles per face.
 const TRIANGLES: usize = 2 * (PARTS * PARTS) as usize;
-/// How far a point that fits some planes may be off a curved surface and be brought onto it, in voxels.
+/// Largest move, in voxels, of one step that brings a fitted point onto a curved surface.
 const OFF: f64 = 0.25;
-/// Steps by which it is brought there. Each squares what is left, which at first is a fiftieth of a voxel on a ball of
+/// Newton steps onto the surface. Each squares the remaining distance, at first a fiftieth of a voxel on a ball of
 /// eight voxels radius.
 const APPROACHES: usize = 3;
 
-/// A smooth surface.
+/// Smooth surface of a body of voxels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Skin {
-    /// Its points, carried by vertices of voxels, also inner ones, with weights of both signs; its triangles.
+    /// Points, carried by vertices of voxels, also inner ones, with weights of both signs; and triangles.
     pub surface: Surface,
-    /// For each point the vertices on the outer faces that stand for it, with positive weights.
+    /// Vertices on the outer faces that stand for each point, with positive weights.
     pub shares: Vec<Carried>,
-    /// Where the points are, m.
+    /// Positions of the points, m.
     pub points: Vec<Vec3>,
 }
 
 impl Skin {
-    /// The skin of voxels with the corners `voxels`, among `vertices` (m), that were filled from a shape, whose
+    /// Builds the skin of voxels with the corners `voxels`, among `vertices` (m), that were filled from a shape, whose
     /// function is negative inside. Corner `c` of a voxel is at `(c >> 2 & 1, c >> 1 & 1, c & 1)`; voxels are equal
     /// cubes along the axes.
     ///
     /// # Errors
     ///
-    /// Those of the function.
+    /// Errors of the function.
     pub fn of<E>(
         voxels: &[[u32; 8]],
         vertices: &[Vec3],
@@ -85,7 +85,7 @@ impl Skin {
         let middles = middles(&faces, vertices);
         let found = field.crossings(&middles)?;
         let mut moved = Moved::new(&flat, vertices, &found);
-        // Where the surface does not pass a face, that stays.
+        // A face without a crossing stays in place.
         let either = |(found, middle): (Option<Crossing>, Crossing)| found.unwrap_or(middle);
         let crossings: Vec<Crossing> = found.into_iter().zip(middles).map(either).collect();
         let mut targets = moved.targets(&crossings, voxel);
@@ -112,7 +112,7 @@ impl Skin {
     }
 }
 
-/// The middles of faces, and their normals.
+/// Centers of faces, and their normals.
 fn middles(faces: &[Face], vertices: &[Vec3]) -> Vec<Crossing> {
     let middle = |face: &Face| {
         let [a, b, c, d] = face.corners.map(|v| vertices[v as usize]);
@@ -124,16 +124,16 @@ fn middles(faces: &[Face], vertices: &[Vec3]) -> Vec<Crossing> {
     faces.iter().map(middle).collect()
 }
 
-/// The points of the divided faces on their way to the surface.
+/// Points of the divided faces on their way to the surface.
 struct Moved {
     starts: Vec<Vec3>,
-    /// The faces around each.
+    /// Faces around each point.
     around: Vec<Vec<u32>>,
-    /// The axes along which it may move.
+    /// Axes along which each point may move.
     free: Vec<[bool; 3]>,
-    /// Whether the surface passes all faces around it.
+    /// True if all faces around the point have a crossing.
     known: Vec<bool>,
-    /// The mean of the crossings around it.
+    /// Mean of the crossings around each point.
     means: Vec<Vec3>,
 }
 
@@ -149,7 +149,7 @@ impl Moved {
                 }
             }
         }
-        // The middle of an edge moves across it, and the center of a face is where the surface passes that.
+        // The midpoint of an edge moves across it; the center of a face stays at its crossing.
         let free = |point: &Carried| {
             let at = |v: &u32| vertices[*v as usize];
             let first = at(&point.vertices[0]);
@@ -166,7 +166,7 @@ impl Moved {
         }
     }
 
-    /// Where the points belong.
+    /// Target positions of the points.
     fn targets(&mut self, crossings: &[Crossing], voxel: f64) -> Vec<Vec3> {
         let mut targets = Vec::with_capacity(self.starts.len());
         for (point, faces) in self.around.iter().enumerate() {
@@ -178,7 +178,7 @@ impl Moved {
         targets
     }
 
-    /// Brings what fits some planes onto the surface.
+    /// Brings fitted points onto the surface.
     fn approach<E>(&self, targets: &mut [Vec3], field: &mut Field<'_, E>) -> Result<(), E> {
         let ways = self.free.iter().zip(&self.known);
         let ways: Vec<[bool; 3]> = ways

@@ -1,4 +1,4 @@
-//! Skins of bodies whose surface is known.
+//! Skins of bodies with known surface.
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
@@ -64,7 +64,7 @@ fn ball(radius: f64, center: Vec3) -> impl Fn(Vec3) -> f64 {
     move |p| norm(sub(p, center)) - radius
 }
 
-/// A box around `center`, with its half `sides` along `axes`, a true distance but outside of its edges.
+/// Box around `center`, with its half `sides` along `axes`; an exact distance except outside of its edges.
 fn block(center: Vec3, half: Vec3, axes: [Vec3; 3]) -> impl Fn(Vec3) -> f64 {
     move |p| {
         let along = (0..3).map(|i| dot(axes[i], sub(p, center)).abs() - half[i]);
@@ -82,7 +82,7 @@ fn volume(skin: &Skin) -> f64 {
     skin.surface.triangles.iter().map(each).sum()
 }
 
-/// Edges that are not there once in each direction.
+/// Counts edges that do not occur once in each direction.
 fn open_edges(skin: &Skin) -> usize {
     let mut edges: BTreeMap<[u32; 2], i32> = BTreeMap::new();
     for [a, b, c] in &skin.surface.triangles {
@@ -94,7 +94,7 @@ fn open_edges(skin: &Skin) -> usize {
     edges.values().filter(|count| **count != 0).count()
 }
 
-/// Pairs of triangles that pass through each other.
+/// Counts pairs of triangles that intersect.
 fn crossings(skin: &Skin) -> usize {
     let all: Vec<[i32; 3]> = skin
         .surface
@@ -110,7 +110,7 @@ fn crossings(skin: &Skin) -> usize {
     found.len()
 }
 
-/// The largest distance of a point from a surface, m.
+/// Largest distance of a point from a surface, m.
 fn farthest(skin: &Skin, shape: impl Fn(Vec3) -> f64) -> f64 {
     skin.points
         .iter()
@@ -145,7 +145,7 @@ fn points_of_a_ball_are_on_it() {
             "{exact} of {}",
             off.len()
         );
-        // Flat triangles of half a voxel take a volume of the second order away.
+        // Flat triangles of half a voxel reduce the volume by a second-order error.
         let ideal = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
         let lost = 1.0 - volume(&skin) / ideal;
         assert!(lost > 0.0 && lost < 0.13 / radius.powi(2), "{lost}");
@@ -153,7 +153,7 @@ fn points_of_a_ball_are_on_it() {
             let corners = triangle.map(|p| skin.points[p as usize]);
             let middle = sub(corners[0], center);
             let (area, size) = (doubled(corners), norm(doubled(corners)));
-            // The worst one is folded least; on a smooth part normals are right to a few degrees.
+            // The worst one is the least folded; on a smooth part normals are right to a few degrees.
             assert!(dot(area, middle) > 0.5 * size * norm(middle));
         }
     }
@@ -161,7 +161,7 @@ fn points_of_a_ball_are_on_it() {
 
 #[test]
 fn boxes_are_exact() {
-    // Along the faces of voxels, off them, and through centers of voxels, which those are empty at, or all but.
+    // Boxes along the faces of voxels, off them, through centers of voxels, which are empty then, and almost through.
     for (center, half) in [
         ([0.0; 3], [2.0, 1.0, 3.0]),
         ([0.21, -0.13, 0.37], [2.1, 1.3, 2.8]),
@@ -171,7 +171,7 @@ fn boxes_are_exact() {
         let shape = block(center, half, ALONG);
         let skin = skin_of(6, &shape);
         sound(&skin);
-        // Where the surface passes all but through a center, triangles around it are kept apart.
+        // If the surface passes almost through a center, triangles around it are kept apart.
         let through_centers = half[0] == 1.5 + 1e-8;
         let off = farthest(&skin, &shape);
         assert!(off < if through_centers { 1e-2 } else { 1e-8 }, "{off}");
@@ -201,7 +201,7 @@ fn faces_of_voxels_stay_where_no_surface_passes() {
     let stairs = Surface::of_voxels(&filled.voxels, 2);
     assert!(skin.surface == stairs);
     assert!(filled.skin(|_| f64::NAN).surface == stairs);
-    // Nor do they go after a surface that is somewhere else.
+    // A surface somewhere else does not attract them either.
     assert!(filled.skin(|p| p[0] + 7.0).surface == stairs);
 }
 
@@ -234,12 +234,12 @@ fn chambers_are_surfaces_too() {
 
 #[test]
 fn cut_voxels_count_as_far_as_their_centers() {
-    // The top voxels are a third full, with their centers outside: what is below those counts as inside.
+    // The top voxels are a third full, with their centers outside: the space below their centers counts as inside.
     let filled = Filled::of(3, block([0.0; 3], [2.0, 2.0, 2.0], ALONG));
     let skin = filled.skin(block([0.0, 0.0, -0.35], [2.0, 2.0, 1.65], ALONG));
     sound(&skin);
     for point in &skin.points {
-        // At the edges of the top, beside centers that are outside too, it is rounded.
+        // The skin is rounded at the edges of the top, beside centers that are outside too.
         let inner = point[0].abs().max(point[1].abs()) < 1.4;
         assert!(
             point[2] < if inner { 1.51 + 1e-9 } else { 1.75 },
@@ -266,7 +266,7 @@ fn a_skin_moves_as_its_voxels_do() {
     }
 }
 
-/// Half a turn around the middle between `axis` and each of the axes turns all of them.
+/// Rotates the axes by half a turn about `axis`.
 fn turned(axis: Vec3) -> [Vec3; 3] {
     let square = dot(axis, axis);
     ALONG.map(|v| std::array::from_fn(|i| 2.0 * dot(axis, v) / square * axis[i] - v[i]))
@@ -274,7 +274,7 @@ fn turned(axis: Vec3) -> [Vec3; 3] {
 
 proptest! {
     #[test]
-    fn skins_are_closed_and_do_not_pass_through_themselves(
+    fn skins_are_closed_without_self_intersection(
         center in prop::array::uniform3(-0.5..0.5f64),
         half in prop::array::uniform3(0.7..3.0f64),
         axis in prop::array::uniform3(0.1..1.0f64),

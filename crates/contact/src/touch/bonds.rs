@@ -1,20 +1,21 @@
-//! Bonds: surfaces that are glued to each other, for good or until a traction.
+//! Bonds: surfaces that are glued to each other (tie constraints), for good or up to a strength.
 //!
-//! Points `s` all over the triangles of the first surface that lie on the second at rest, with the areas `A_s`, are tied to the
-//! places `y_s` of the second body where they are: these move with it. Vertices `v` share each point by `N_v(s)`, and there
-//! is one tie for each of them (a mortar form: Bernardi, Maday and Patera 1994; Puso and Laursen 2004, doi 10.1016/j.cma.2003.10.010):
+//! Points `s` all over the triangles of the first surface that lie on the second at rest, with the areas `A_s`, are
+//! tied to the coincident places `y_s` of the second body, which move with it. Vertices `v` share each point by
+//! `N_v(s)`, and there is one tie for each of them (a mortar form: Bernardi, Maday and Patera 1994; Puso and Laursen
+//! 2004, doi 10.1016/j.cma.2003.10.010):
 //!
 //! ```text
 //! c_v = Σ_s A_s N_v(s) (x_s − y_s) / W_v = 0,   W_v = Σ_s A_s N_v(s),
 //! ```
 //!
-//! so that a uniform traction passes between voxels of different sizes, and neither side is stiffened. With a multiplier
-//! `f` and a penalty `k` its force is `f − k c`, and `f` is brought up after each equilibrium as that of contact is. As
-//! `y_s` is where the point was, gaps and overlaps at rest are kept, and no moment is lost.
+//! so that a uniform traction passes between voxels of different sizes, and neither side is stiffened. With a
+//! multiplier `f` and a penalty `k` its force is `f − k c`, and `f` is updated after each equilibrium like that of
+//! contact. Because `y_s` coincides with the point at rest, gaps and overlaps at rest are kept, and no moment is lost.
 //!
-//! A bond with a strength lets go where `√(t_n² + t_t²)` passes it, with the pull `t_n` along the normal, which
-//! a pressure does not count for, and the traction `t_t` along the surface; both as means over a tie and those beside it.
-//! What has let go touches.
+//! A bond with a strength breaks where `√(t_n² + t_t²)` exceeds it, with the tension `t_n` along the normal, for which
+//! pressure does not count, and the traction `t_t` along the surface; both as means over a tie and its neighbors.
+//! Surfaces of a broken tie are in contact.
 
 use std::collections::BTreeMap;
 
@@ -28,12 +29,13 @@ use super::rigid::Frame;
 use super::state::State;
 use super::{Carried, PENALTY, Surface, Touch};
 
-/// How far a tie may be off at the end, in voxels: a hundredth of the clearance of contact.
+/// Tolerance of the tie constraint, in voxels: a hundredth of the clearance of contact.
 const OFF: f64 = 1e-6;
-/// The penalty of a tie over that of contact: it has no kinks, and what multipliers still have to learn shrinks by it.
+/// Penalty of a tie over that of contact: a tie has no kinks, and a larger penalty reduces the multiplier error more
+/// with each correction.
 const STIFFER_THAN_CONTACT: f64 = 10.0;
 
-/// What moves with a body, also a little beside its surface.
+/// Body that carries points in it, also a little beside its surface.
 #[derive(Debug, Clone, Copy)]
 pub enum Solid<'a> {
     /// A rigid object whose vertices are those from the given one on.
@@ -45,52 +47,52 @@ pub enum Solid<'a> {
 /// One side of a bond.
 #[derive(Debug, Clone, Copy)]
 pub struct Side<'a> {
-    /// Its number among the surfaces.
+    /// Number among the surfaces.
     pub number: u32,
     /// The surface.
     pub surface: &'a Surface,
-    /// For each point the vertices that stand for it, with positive weights; none where these are what carries it.
+    /// Vertices that stand for each point, with positive weights; empty if the vertices that carry the point do.
     pub shares: &'a [Carried],
-    /// What is behind the surface.
+    /// Body behind the surface.
     pub solid: Solid<'a>,
 }
 
 /// Two surfaces that are bonded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bond {
-    /// The surfaces.
+    /// Numbers of the surfaces.
     pub of: [u32; 2],
-    /// The traction at which it lets go, Pa; infinite for one that does not.
+    /// Strength: the traction at which the bond breaks, Pa; infinite for a permanent one.
     pub strength: f64,
-    /// What is tied.
+    /// Ties between the surfaces.
     pub(super) ties: Vec<Tie>,
 }
 
-/// The mean of places of the first surface, and that of the same places in the second body.
+/// Tie constraint: the weighted mean of places of the first surface, and that of the same places in the second body.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tie {
-    /// On the first surface.
+    /// Mean on the first surface.
     pub first: Carried,
-    /// In the second body.
+    /// Mean in the second body.
     pub second: Carried,
-    /// In the unloaded body, m².
+    /// Area in the unloaded body, m².
     pub area: f64,
-    /// The area for which it has a penalty, m².
+    /// Area from which the penalty is computed, m².
     pub stiff: f64,
-    /// A triangle of the second surface there, as it is numbered on it.
+    /// Triangle of the second surface there, as numbered on it.
     pub triangle: u32,
-    /// The points of the first surface in it, and those of the second one nearest to it.
+    /// Points of the first surface in it, and those of the second one nearest to it.
     pub points: [Vec<u32>; 2],
-    /// The ties of its bond that have points of it, itself included.
+    /// Ties of its bond that share points with it, itself included.
     pub patch: Vec<u32>,
 }
 
-/// What a tie carries along a load path.
+/// Multiplier and damage of one tie.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Hold {
-    /// Its multiplier, on the first surface, N.
+    /// Multiplier: the force on the first surface, N.
     pub force: Vec3,
-    /// Whether it has let go.
+    /// True once the tie is broken.
     pub broken: bool,
 }
 
@@ -101,7 +103,7 @@ impl Bond {
     ///
     /// # Errors
     ///
-    /// They do not meet.
+    /// An error if the surfaces do not meet.
     pub fn new(
         first: Side<'_>,
         second: Side<'_>,
@@ -123,20 +125,20 @@ impl Bond {
 }
 
 impl Tie {
-    /// How far it is off, m.
+    /// Constraint violation, m.
     fn off(&self, positions: &[Vec3]) -> Vec3 {
         sub(self.first.at(positions), self.second.at(positions))
     }
 }
 
 impl Touch {
-    /// All ties with their bonds, as their holds are numbered.
+    /// All ties with their bonds, in the order of their holds.
     pub(super) fn ties(&self) -> impl Iterator<Item = (&Bond, &Tie)> {
         let bonds = self.description.bonds.iter();
         bonds.flat_map(|bond| bond.ties.iter().map(move |tie| (bond, tie)))
     }
 
-    /// Hands over every tie that holds, with its force on the first surface, N.
+    /// Calls `take` with every unbroken tie and its force on the first surface, N.
     pub(super) fn each_tie(
         &self,
         state: &State,
@@ -157,12 +159,13 @@ impl Touch {
         force
     }
 
-    /// N/m.
+    /// Penalty, N/m.
     pub(super) fn tie_penalty(&self, tie: &Tie) -> f64 {
         STIFFER_THAN_CONTACT * PENALTY * self.description.young / self.description.voxel * tie.stiff
     }
 
-    /// The multipliers that ties have at an equilibrium, and how far off they are, as a part of what they may.
+    /// Updated multipliers of the ties at an equilibrium, and their largest constraint violation relative to its
+    /// tolerance.
     pub(super) fn corrected_ties(&self, state: &State, positions: &[Vec3]) -> (Vec<Hold>, f64) {
         let mut largest = 0.0f64;
         let pairs = self.ties().zip(&state.holds);
@@ -179,7 +182,7 @@ impl Touch {
         (corrected.collect(), largest)
     }
 
-    /// Lets go what is pulled harder than it holds; whether anything has.
+    /// Breaks ties that are loaded beyond their strength; returns true if any broke.
     pub(super) fn break_ties(&self, state: &mut State, positions: &[Vec3]) -> bool {
         let mut loads = Vec::with_capacity(state.holds.len());
         let mut first = 0;
@@ -205,8 +208,8 @@ impl Touch {
         any
     }
 
-    /// The traction on the first surface around a tie, Pa: multipliers of single ones, of which some have little area, go
-    /// up and down from one to the next.
+    /// Traction on the first surface, averaged around a tie, Pa: multipliers of single ties, of which some have little
+    /// area, oscillate from one to the next.
     fn traction(&self, bond: &Bond, tie: &Tie, holds: &[Hold], positions: &[Vec3]) -> Vec3 {
         let (mut force, mut area) = ([0.0; 3], 0.0);
         for &near in &tie.patch {
@@ -219,7 +222,7 @@ impl Touch {
         scale(1.0 / area, force)
     }
 
-    /// The size of a traction on the first surface without what of it presses, Pa.
+    /// Magnitude of a traction on the first surface without its compressive part, Pa.
     fn pull(&self, bond: &Bond, tie: &Tie, traction: Vec3, positions: &[Vec3]) -> f64 {
         let surface = &self.description.surfaces[bond.of[1] as usize];
         let corners = surface.triangles[tie.triangle as usize];
@@ -228,7 +231,7 @@ impl Touch {
         norm(sub(traction, scale(pressing, outward)))
     }
 
-    /// For each sample the ties that it is in, with the surface that they are to.
+    /// Ties of each sample, with the surface at their other end.
     pub(super) fn ties_at(&self, first_sample: &[u32], samples: usize) -> Vec<Vec<(u32, u32)>> {
         let mut at = vec![Vec::new(); samples];
         for (number, (bond, tie)) in self.ties().enumerate() {
@@ -242,14 +245,14 @@ impl Touch {
         at
     }
 
-    /// Whether a sample is still bonded to a surface.
+    /// Tests whether a sample is still bonded to a surface.
     pub(super) fn is_bonded(&self, state: &State, sample: u32, surface: u32) -> bool {
         let ties = self.ties_at[sample as usize].iter();
         let holds = |(tie, to): &(u32, u32)| *to == surface && !state.holds[*tie as usize].broken;
         ties.into_iter().any(holds)
     }
 
-    /// The stiffness of a tie: its penalty between all vertices that carry it.
+    /// Stiffness of a tie: its penalty between all vertices that carry it.
     pub(super) fn visit_tie(&self, tie: &Tie, visit: Visitor<'_>) {
         let mut parts: BTreeMap<u32, f64> = BTreeMap::new();
         for (sign, side) in [(1.0, &tie.first), (-1.0, &tie.second)] {

@@ -1,11 +1,11 @@
-//! Edges that cross edges.
+//! Edge-to-edge contact.
 //!
-//! Where two ridges meet, no point of one is behind the other, and yet they may pass through each other. So edges are
+//! If two ridges meet, no point of one is behind the other, and yet they may pass through each other. So edges are
 //! samples too: each faces the edge of the other surface that it lies across, with the common perpendicular of both as
-//! normal ([`super::gap::crossing`]). The two are next to each other there if the faces at each edge lie on its own side of that
-//! normal; an inner edge never is.
+//! normal ([`super::gap::crossing`]). The two are adjacent there if the faces at each edge lie on its own side of that
+//! normal; a concave edge never is.
 //!
-//! They look at equilibria alone, as a crossing comes and goes with less than a step of Newton's method.
+//! Edges search at equilibria alone, because a crossing comes and goes with less than a step of Newton's method.
 
 use voxsoft_solid::vector::{Vec3, add, dot, norm, scale, sub};
 
@@ -15,22 +15,22 @@ use super::state::{Facing, State};
 use super::{CLEARANCE, DEEPEST, Touch};
 use crate::threads;
 
-/// How far a face may lean over the normal of its edge, as a sine: before the edge meets another one, where the normal of facets
-/// that are nearly flat is found by how they deform, and while it presses one, so that it does not turn to and fro
+/// Largest sine by which a face may lean over the normal of its edge: before the edge meets another one, where the
+/// normal of nearly flat facets depends on their deformation, and while it presses one, so that it does not alternate
 /// between two.
 const LEANING: [f64; 2] = [0.01, 0.1];
-/// The sine up to which the faces at an edge lie in one plane: over half of an edge, which is shorter than a voxel, it comes to less
-/// than what points have left of their clearance.
+/// Largest sine between faces at an edge that count as coplanar: over half of an edge, which is shorter than a voxel,
+/// it amounts to less than the smallest gap that points keep.
 const FLAT: f64 = 2.0 * CLEARANCE[1];
-/// How far, in parts of an edge, a crossing may slide beyond its ends before it is given up.
+/// Largest slide of a crossing beyond the ends of an edge, in parts of the edge, before it is dropped.
 const BEYOND: f64 = 0.1;
 
-/// The ends of the side of a triangle from a corner to the next.
+/// Ends of the side of a triangle from a corner to the next.
 pub(super) fn side(corners: [Vec3; 3], corner: usize) -> [Vec3; 2] {
     [corners[corner], corners[(corner + 1) % 3]]
 }
 
-/// The affine coordinates of a place on that side.
+/// Affine coordinates of a place on that side.
 pub(super) fn weights(corner: usize, along: f64) -> [f64; 3] {
     let mut weights = [0.0; 3];
     weights[corner] = 1.0 - along;
@@ -39,7 +39,7 @@ pub(super) fn weights(corner: usize, along: f64) -> [f64; 3] {
 }
 
 impl Touch {
-    /// Lets all edges look for what they cross at an equilibrium; whether any goes on with another force than it has.
+    /// Searches the edges that each edge crosses at an equilibrium; returns true if any force changes by it.
     pub(super) fn face_edges(&self, state: &mut State, positions: &[Vec3]) -> bool {
         let points = self.points_at(positions);
         let first = self.points.len();
@@ -56,7 +56,7 @@ impl Touch {
         changes
     }
 
-    /// What an edge faces while equilibrium is looked for: what it did, or nothing once it has left that.
+    /// Edge faced during Newton iterations: the previous one, or `None` once the crossing has left it.
     pub(super) fn keep_across(
         &self,
         state: &State,
@@ -96,7 +96,7 @@ impl Touch {
         })
     }
 
-    /// The edge that an edge lies across, of its candidates the one in which it is deepest; what it presses stays.
+    /// Candidate edge that an edge lies across, the one with the deepest crossing; an edge that is pressed is kept.
     fn look_across(&self, state: &State, index: usize, points: &[Vec3]) -> Option<Facing> {
         let before = state.facing[index];
         if self.is_pressed(state, index, before, points)
@@ -119,8 +119,8 @@ impl Touch {
         best.map(|(_, facing)| facing)
     }
 
-    /// How an edge faces a side of a triangle, and the gap, if they are next to each other; where it `presses` that already, more
-    /// or less.
+    /// Facing of a sample edge and a side of a triangle, and their depth, if they are adjacent; with wider tolerances
+    /// if it already `presses` it.
     fn across(
         &self,
         state: &State,
@@ -146,7 +146,7 @@ impl Touch {
         {
             return None;
         }
-        // From the other edge to this one, as their faces look.
+        // Direction from the other edge to this one, from the normals of their faces.
         let looks = sub(
             self.edge_normal(other, points),
             self.edge_normal(ends, points),
@@ -154,7 +154,7 @@ impl Touch {
         let same = dot(normal, looks) > 0.0;
         let sign = if same { 1.0 } else { -1.0 };
         let depth = -sign * gap;
-        // What is deeper in a surface than an edge is long is behind its points.
+        // A crossing deeper than the distance to the ends of an edge is handled by its points.
         let voxel = self.description.voxel;
         let length = |[a, b]: [u32; 2]| norm(sub(points[a as usize], points[b as usize]));
         let to_end = |part: f64, ends: [u32; 2]| (beyond + part.min(1.0 - part)) * length(ends);
@@ -184,13 +184,13 @@ impl Touch {
             .then_some((-depth, Facing::Across(triangle, corner, same)))
     }
 
-    /// The triangles at an edge.
+    /// Triangles at an edge.
     fn faces_at(&self, [from, to]: [u32; 2]) -> impl Iterator<Item = u32> {
         let around = self.around[from as usize].iter().copied();
         around.filter(move |t| self.triangles[*t as usize].contains(&to))
     }
 
-    /// Whether an edge is one within a plane, which its points keep others out of.
+    /// Tests whether an edge lies within a plane, where its points suffice.
     fn is_flat(&self, edge: [u32; 2], points: &[Vec3]) -> bool {
         let mut faces = self.faces_at(edge);
         let (Some(first), Some(second)) = (faces.next(), faces.next()) else {
@@ -200,13 +200,13 @@ impl Touch {
         dot(self.inwards(second, edge, points), outward).abs() < FLAT
     }
 
-    /// The sum of the normals at an edge.
+    /// Sum of the normals at an edge.
     fn edge_normal(&self, edge: [u32; 2], points: &[Vec3]) -> Vec3 {
         let normals = self.faces_at(edge).map(|t| normal(self.corners(t, points)));
         normals.fold([0.0; 3], add)
     }
 
-    /// The direction into a triangle from its edge, along it and at right angles to the edge.
+    /// Direction into a triangle from its edge, in its plane and at right angles to the edge.
     fn inwards(&self, triangle: u32, edge: [u32; 2], points: &[Vec3]) -> Vec3 {
         let third = self.triangles[triangle as usize]
             .iter()
@@ -244,7 +244,7 @@ mod tests {
     }
 
     fn touch(friction: f64, positions: &[Vec3]) -> Touch {
-        // Outward by the sign of the volume of four points.
+        // Orientation outward, by the sign of the volume of four points.
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
         let surface = |first: u32, flip: bool| Surface {
             points: (first..first + 4).map(Carried::vertex).collect(),
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn crossed_edges_press_each_other_though_no_point_is_behind_a_face() {
+    fn crossed_edges_press_each_other() {
         let (apart, positions) = (crossed(0.01), crossed(-0.01));
         let mut touch = touch(0.0, &apart);
         touch.follow(&positions);
@@ -281,14 +281,14 @@ mod tests {
         let pairs = touch.pairs(&positions);
         assert_eq!(pairs.len(), 1);
         assert!((pairs[0].gap + 0.01).abs() < 1e-12, "{pairs:?}");
-        // On the first one, which is the lower.
+        // Force on the first surface, which is the lower one.
         assert!(pairs[0].force[2] < 0.0, "{pairs:?}");
         assert!(touch.pairs(&apart).is_empty());
     }
 
     #[test]
-    fn edges_keep_the_laws_of_terms() {
-        // By no more than pressures that are believed take.
+    fn edges_obey_the_laws_of_terms() {
+        // Penetrated by less than the pressure that the exact tangent accepts.
         let (apart, positions) = (crossed(0.05), crossed(-0.0004));
         let mut touch = touch(0.0, &crossed(0.0));
         touch.follow(&positions);
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_hold_each_other_up_to_the_bound_of_friction() {
+    fn edges_stick_up_to_the_bound_of_friction() {
         let positions = crossed(-0.0004);
         let mut touch = touch(0.4, &crossed(0.0));
         touch.follow(&positions);
@@ -317,7 +317,7 @@ mod tests {
         };
         let held = slip(0.0);
         assert!(held.pressure > 0.0 && norm(held.friction) < 1e-9 * held.pressure);
-        // The first one is carried along.
+        // Friction carries the first surface along.
         let slipping = slip(0.05);
         let bound: f64 = touch.state.now.iter().map(|memory| memory.bound).sum();
         assert!(bound > 0.0 && (norm(slipping.friction) / bound - 1.0).abs() < 1e-9);
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_does_not_face_what_is_behind_it() {
+    fn an_edge_does_not_face_edges_behind_it() {
         let positions = crossed(-1.0);
         let mut touch = touch(0.0, &positions);
         touch.correct(&positions, 0.0, 1.0);

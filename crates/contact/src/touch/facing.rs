@@ -1,4 +1,4 @@
-//! What a sample is in front of.
+//! Contact search: the triangle or edge that a sample faces.
 
 use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 
@@ -7,18 +7,19 @@ use super::gap::{Closest, closest, normal, unit};
 use super::listing;
 use super::state::{Facing, State};
 
-/// How far a sample may be beside an edge and still count as flush with it, in voxels.
+/// Tolerance beside an edge within which a sample counts as flush with it, in voxels.
 const FLUSH: f64 = 1e-6;
-/// How far a sample may be beyond the edge of a triangle and still count as in front of it, in voxels.
+/// Distance beyond the edge of a triangle within which a sample still counts as in front of it, in voxels.
 ///
-/// Around an edge normals turn within the clearance, and by as much as friction lets samples creep: of two rims that lie on each other, each
-/// would be rolled off the other.
+/// Around an edge normals turn within the clearance, and by as much as friction lets samples creep: two rims that lie
+/// on each other would push each other aside.
 const RIM: f64 = 1e-3;
-/// By how much more, as a cosine, a surface has to look at another triangle for a sample to leave the one that it faces there.
+/// Margin, as a cosine, by which a surface has to look more toward another triangle for a sample to leave the one that
+/// it faces.
 const STAYS: f64 = 0.1;
 
 impl Touch {
-    /// What a sample at `point` is in front of, or in, among its candidates.
+    /// Facing of a sample at `point`, among its candidates.
     pub(super) fn look(
         &self,
         state: &State,
@@ -40,7 +41,7 @@ impl Touch {
         if let Some((beside, nearer)) = self.nearer_beside(triangle, found, point, points) {
             let height = dot(nearer.away, normal(self.corners(beside, points)));
             if height.abs() > FLUSH * self.description.voxel {
-                // It has gone round the edge; it meets what is behind that if it was in front of it.
+                // The sample has moved around the edge; it meets the triangle behind it if it was in front of that.
                 let met = nearer.is_inside() && self.was_in_front(state, index, beside);
                 return met.then_some(Facing::Plane(beside));
             }
@@ -60,8 +61,8 @@ impl Touch {
         Some(Facing::Edge(triangle, found.weights, normal))
     }
 
-    /// The triangle at an edge or corner in front of which a point is that is beyond that by next to nothing: the one that its own
-    /// surface looks at the most, or that it faces already where two are alike.
+    /// Triangle at an edge or corner in front of which a point lies that is beyond it by less than the tolerance: the
+    /// one toward which its own surface looks most, or the one that it already faces if two are alike.
     fn over_rim(
         &self,
         state: &State,
@@ -91,19 +92,20 @@ impl Touch {
         best.map(|(plane, _)| plane)
     }
 
-    /// The triangles at the corners on which the closest point of a triangle depends.
+    /// Triangles at the corners on which the closest point of a triangle depends.
     fn triangles_at(&self, triangle: u32, found: Closest) -> impl Iterator<Item = u32> {
         let corners = self.triangles[triangle as usize];
         let on = (0..3).filter(move |c| found.weights[*c] > 0.0);
         on.flat_map(move |c| self.around[corners[c] as usize].iter().copied())
     }
 
-    /// Whether a sample that looks to be behind an edge or a corner has gone through it since the accepted state.
+    /// Tests whether a sample that appears to be behind an edge or a corner has passed through it since the accepted
+    /// state.
     ///
-    /// Inside of the body only an inner edge is the closest point of its faces. Between the faces of an inner edge of the
-    /// opening angle θ the sample was at most θ/2 from its normal, and behind it is at most (π − θ)/2 from the other way:
-    /// so it has turned around the edge by a right angle or more. What has turned by less only lies beside an edge
-    /// whose normal has turned.
+    /// Inside of the body only a concave edge is the closest point of its faces. Between the faces of a concave edge of
+    /// the opening angle θ the sample was at most θ/2 from its normal, and behind it is at most (π − θ)/2 from the
+    /// opposite direction: so it has turned around the edge by a right angle or more. A sample that has turned by less
+    /// only lies beside an edge whose normal has turned.
     fn went_through(&self, state: &State, index: usize, triangle: u32, found: &Closest) -> bool {
         let points = &state.accepted_points;
         let mut before = points[index];
@@ -117,7 +119,7 @@ impl Touch {
         dot(found.away, before) <= 0.0 || was_behind()
     }
 
-    /// A triangle at the edge or corner of another that comes closer to a point than that does.
+    /// Triangle at the edge or corner of another that is closer to a point than that one.
     fn nearer_beside(
         &self,
         triangle: u32,
@@ -136,10 +138,10 @@ impl Touch {
         best
     }
 
-    /// Whether a point is in front of a triangle, or no deeper behind it than a `depth` in voxels.
+    /// Tests whether a point is in front of a triangle, or no deeper behind it than a `depth` in voxels.
     ///
-    /// Beside the triangle this is asked of the surface at its edge: the plane of a wall goes on into the body where
-    /// that wall ends in a corner, and what lies along it there is inside.
+    /// Beside the triangle the surface at its edge decides: the plane of a wall continues into the body where that wall
+    /// ends in a corner, and points along it there are inside.
     pub(super) fn is_in_front(
         &self,
         triangle: u32,
@@ -152,7 +154,7 @@ impl Touch {
         dot(found.away, outward) >= 0.0 || found.distance <= depth * self.description.voxel
     }
 
-    /// The mean normal at a point of a surface.
+    /// Mean normal at a point of a surface.
     fn normal_at(&self, point: u32, points: &[Vec3]) -> Vec3 {
         let Some(&triangle) = self.around[point as usize].first() else {
             return [0.0; 3];
@@ -162,8 +164,8 @@ impl Touch {
         self.normal_beside(triangle, weights, points)
     }
 
-    /// The mean normal at a point of a triangle, on an edge or corner that of all that meet there, which tells outside from inside (Baerentzen and
-    /// Aanaes 2005, doi 10.1109/TVCG.2005.49).
+    /// Mean normal at a point of a triangle, on an edge or corner of all triangles that meet there (angle-weighted
+    /// pseudonormal), which distinguishes outside from inside (Baerentzen and Aanaes 2005, doi 10.1109/TVCG.2005.49).
     pub(super) fn normal_beside(&self, triangle: u32, weights: [f64; 3], points: &[Vec3]) -> Vec3 {
         let corners = self.triangles[triangle as usize];
         let on: Vec<u32> = (0..3)
@@ -172,7 +174,7 @@ impl Touch {
             .collect();
         let mut sum = [0.0; 3];
         let Some(&first) = on.first() else {
-            return sum; // The weights of points that are no numbers.
+            return sum; // Weights of points with NaN coordinates.
         };
         for &other in &self.around[first as usize] {
             let of_other = self.triangles[other as usize];
@@ -201,7 +203,7 @@ mod tests {
     use crate::touch::{Carried, Description, Surface, listing};
     use voxsoft_solid::vector::add;
 
-    /// A prism of the height 1 over the L of the lengths 2 and the width 1, its inner edge at (1, 1).
+    /// Prism of height 1 over an L of lengths 2 and width 1, its concave edge at (1, 1).
     fn angle() -> (Touch, Vec<Vec3>) {
         let outline = [
             [0.0, 0.0],
@@ -236,30 +238,30 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_along_a_wall_but_behind_its_end_is_not_in_front_of_it() {
+    fn points_in_front_of_a_wall_with_an_inner_edge() {
         let (touch, positions) = angle();
         let front = |triangle: u32, point: Vec3| {
             touch.is_in_front(triangle, point, &positions, listing::DEPTH)
         };
-        // The wall y = 1, which ends at the inner edge, where its plane goes on into the body.
+        // The wall y = 1, which ends at the concave edge, where its plane continues into the body.
         let wall = 4;
         assert_eq!(touch.triangles[wall as usize], [2, 3, 9]);
         assert!(!front(wall, [0.5, 0.99, 0.5]));
         assert!(front(wall, [1.2, 1.5, 0.5]));
-        // Not too deep behind it, at its edge too.
+        // Points not too deep behind it, at its edge too.
         assert!(front(wall, [0.9, 0.99, 0.5]));
         assert!(front(wall, [1.2, 0.8, 0.5]));
         assert!(!front(wall, [1.2, 0.7, 0.5]));
-        // Beyond an outer edge, along the wall and a little below its plane.
+        // A point beyond a convex edge, along the wall and a little below its plane.
         assert!(front(wall, [3.0, 0.7, 0.5]));
     }
 
     #[test]
-    fn what_lies_beside_an_inner_edge_has_not_gone_through_it() {
+    fn sample_beside_an_inner_edge_has_not_passed_through() {
         let (touch, positions) = angle();
         let mut state = touch.state.clone();
         state.accepted_points = touch.points_at(&positions);
-        // The inner edge is that of the points 3 and 9, at (1, 1); its normal is along x + y.
+        // The concave edge joins the points 3 and 9, at (1, 1); its normal is along x + y.
         let (triangle, weights) = (4, [0.0, 0.5, 0.5]);
         let mut through = |before: Vec3, away: Vec3| {
             state.accepted_points[0] = add([1.0, 1.0, 0.5], before);
@@ -272,9 +274,9 @@ mod tests {
             touch.went_through(&state, 0, triangle, &found)
         };
         assert!(through([0.3, 0.2, 0.0], [-0.1, -0.1, 0.0]));
-        // Turned with the body by a little, at right angles to the normal.
+        // Rotated with the body by a little, at right angles to the normal.
         assert!(!through([0.5, -0.5, 0.0], [0.5, -0.51, 0.0]));
-        // Little behind it already, within what an overlap at rest may be.
+        // Slightly behind it already, within the depth allowed at rest.
         assert!(through([-0.1, -0.1, 0.0], [-0.1, -0.11, 0.0]));
     }
 }

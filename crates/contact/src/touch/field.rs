@@ -1,41 +1,41 @@
 //! Contact as a field over the vertices of the body.
 //!
-//! The pressure of a vertex is what it carries of all contact forces along their normals, over the area of the
-//! surface that it stands for and that lies toward them: a vertex on the edge of a block stands for a part of its side
-//! too, which nothing presses. As points move bilinearly with their faces, an even pressure comes out even.
+//! The pressure of a vertex is its share of all contact forces along their normals, over the surface area that it
+//! stands for and that faces them: a vertex on the edge of a block stands for a part of its side too, which is not
+//! pressed. Because points move bilinearly with their faces, a uniform pressure comes out uniform.
 
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale};
 
 use super::gap::{area, normal, unit};
 use super::{Carried, Spot, Touch};
 
-/// How far the normal of a triangle may be from the direction that presses it: the cosine of 60 degrees.
+/// Smallest cosine between the normal of a triangle and the direction against which it is pressed: 60 degrees.
 const TOWARD: f64 = 0.5;
 
-/// What touches the vertices of the body.
+/// Contact fields on the vertices of the body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactField {
-    /// In Pa, over the surface as it is now; 0 where nothing touches.
+    /// Pressure in Pa, over the deformed surface; 0 without contact.
     pub pressure: Vec<f64>,
-    /// Of friction, on the body, in Pa.
+    /// Friction traction on the body, Pa.
     pub friction: Vec<Vec3>,
-    /// To what a vertex faces, in m; infinite where nothing is near.
+    /// Gap between a vertex and the surface that it faces, m; infinite where nothing is near.
     pub gap: Vec<f64>,
-    /// Of the surface now that each vertex stands for, in m²; where it is pressed, of the side toward that.
+    /// Deformed surface area that each vertex stands for, m²; if it is pressed, of the side that faces the force.
     pub area: Vec<f64>,
 }
 
-/// The images of all vertices of bodies in a plane of symmetry.
+/// Mirror images of all vertices of bodies in a plane of symmetry.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Flip {
-    /// Across the plane.
+    /// Axis across the plane.
     pub axis: usize,
-    /// Of each vertex.
+    /// Image of each vertex.
     pub images: Vec<u32>,
 }
 
 impl Flip {
-    /// Adds to what vertices have what their images have.
+    /// Adds the values of the images to those of the vertices.
     fn add<T: Copy>(&self, of: &mut Vec<T>, sum: impl Fn(T, T) -> T) {
         let images = self.images.iter().map(|&v| of[v as usize]);
         *of = of
@@ -54,8 +54,8 @@ impl Flip {
 }
 
 impl Touch {
-    /// What touches bodies at `positions`, with the multipliers of the last correction. Their vertices are the first
-    /// `count`. With planes of symmetry, of all images.
+    /// Contact fields at `positions`, with the multipliers of the last correction, on the vertices of bodies, the first
+    /// `count`. With planes of symmetry the images are added.
     pub fn field(&self, positions: &[Vec3], count: usize, flips: &[Flip]) -> ContactField {
         let state = &self.state;
         let mut pressed = vec![0.0; count];
@@ -109,8 +109,8 @@ impl Touch {
         }
     }
 
-    /// Hands over the vertices of the body that share a force at a spot: the
-    /// sign of the force on them, and their share.
+    /// Calls `take` with the vertices of the body that share a force at a spot: the sign of the force on them, and
+    /// their share.
     fn each_share(&self, spot: Spot, mut take: impl FnMut(usize, f64, f64)) {
         let sample = &self.samples[spot.sample as usize];
         let other = self.surface_of[spot.triangle as usize];
@@ -131,7 +131,7 @@ impl Touch {
         }
     }
 
-    /// The area that each vertex of the body stands for; where forces press it, of what lies toward them.
+    /// Surface area that each vertex of the body stands for; if it is pressed, of the side that faces the force.
     fn areas(&self, points: &[Vec3], direction: &[Vec3]) -> Vec<f64> {
         let mut whole = vec![0.0; direction.len()];
         let mut toward = whole.clone();
@@ -165,7 +165,7 @@ mod tests {
 
     const CUBE: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
 
-    /// A cube of 1 m on another one that is an object, a thousandth apart, and then as deep in it.
+    /// Cube of 1 m on another one that is an object, with a gap of a thousandth, and then as deep in it.
     fn stacked() -> (Touch, Vec<Vec3>) {
         let corner = |c: u32| {
             let at = |shift: u32| f64::from(c >> shift & 1);
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn an_even_pressure_is_even_and_sums_to_the_force() {
+    fn uniform_pressure_is_uniform_and_sums_to_the_force() {
         let (touch, positions) = stacked();
         let field = touch.field(&positions, 8, &[]);
         let pairs = touch.pairs(&positions);

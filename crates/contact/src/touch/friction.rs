@@ -1,4 +1,4 @@
-//! Friction under the multipliers, bounds and anchors that samples hold.
+//! Coulomb friction with the multipliers, bounds and anchors of samples.
 
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
@@ -7,24 +7,24 @@ use super::gap::unit;
 use super::state::{Memory, State};
 use super::{Spot, Touch};
 
-/// How friction acts on a sample.
+/// Friction on one sample.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Friction {
-    /// N.
+    /// Force, N.
     pub force: Vec3,
-    /// Minus the derivative of the force by the slip, N/m.
+    /// Tangent stiffness: minus the derivative of the force with respect to the slip, N/m.
     pub stiffness: Mat3,
-    /// J.
+    /// Energy, J.
     pub energy: f64,
     pub anchor: (u32, [f64; 3]),
-    /// Where on an edge it acts.
+    /// Place on an edge where it acts, as a part of the way between its ends.
     pub along: f64,
     pub slips: bool,
 }
 
 impl Touch {
-    /// The friction of a sample that was in contact at the last correction and had an anchor: also where it has lost
-    /// contact since, or its force would jump.
+    /// Friction of a sample that was in contact at the last correction and had an anchor: also if it has lost contact
+    /// since, or its force would jump.
     pub(super) fn friction(&self, state: &State, sample: u32, points: &[Vec3]) -> Option<Friction> {
         let memory = &state.now[sample as usize];
         let point = self.place(sample, memory.along, points);
@@ -37,7 +37,7 @@ impl Touch {
 }
 
 impl Friction {
-    /// Where it acts on a sample.
+    /// Place where the force acts.
     pub(super) fn spot(&self, sample: u32) -> Spot {
         Spot {
             sample,
@@ -47,8 +47,8 @@ impl Friction {
         }
     }
 
-    /// That of a sample at `point` with a penalty of slip `k` (N/m), which moves along the axes that are `free`; `None` without
-    /// a bound or an anchor.
+    /// Return mapping of a sample at `point` with a slip penalty `k` (N/m), which moves along the axes that are `free`;
+    /// `None` without a bound or an anchor.
     pub(super) fn new(
         memory: &Memory,
         k: f64,
@@ -103,7 +103,7 @@ impl Friction {
 }
 
 impl Touch {
-    /// Hands over the friction of every sample that has some.
+    /// Calls `take` with the friction of every sample that has some.
     pub(super) fn each_friction(
         &self,
         state: &State,

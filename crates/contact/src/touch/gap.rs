@@ -1,32 +1,32 @@
-//! How far a point is in front of a triangle, and how that changes when both move.
+//! Gap between a point and a triangle, and its derivatives when both move.
 //!
-//! With the closest point `y = Σ b_i x_i` of the triangle and the relative position `r = x − y`, the gap is
-//! `g = n·r`, and `∂g = n·(∂x − Σ b_i ∂x_i)`: what moves the closest point along the triangle does not change it.
-//! Over the inside of a triangle, with `∇β_i` the gradients of its barycentric coordinates, the second
-//! variation is `−2 Σ (n·∂x_i)(∇β_i·∂r) − g Σ (∇β_i·∇β_j)(n·∂x_i)(n·∂x_j)` with `∂r = ∂x − Σ b_i ∂x_i`: the
-//! normal turns by `∂n = −Σ (n·∂x_i) ∇β_i`. Beside a triangle the normal is taken as it is.
+//! With the closest point `y = Σ b_i x_i` of the triangle and the relative position `r = x − y`, the gap is `g = n·r`,
+//! and `∂g = n·(∂x − Σ b_i ∂x_i)`: motion of the closest point along the triangle does not change it. Over the inside
+//! of a triangle, with `∇β_i` the gradients of its barycentric coordinates, the second variation is
+//! `−2 Σ (n·∂x_i)(∇β_i·∂r) − g Σ (∇β_i·∇β_j)(n·∂x_i)(n·∂x_j)` with `∂r = ∂x − Σ b_i ∂x_i`: the normal turns by
+//! `∂n = −Σ (n·∂x_i) ∇β_i`. Beside a triangle the normal is held constant.
 
 use voxsoft_solid::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 
-/// The closest point of a triangle to a point.
+/// Closest point of a triangle to a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Closest {
-    /// Its barycentric coordinates.
+    /// Barycentric coordinates.
     pub weights: [f64; 3],
-    /// From it to the point, m.
+    /// Vector from it to the point, m.
     pub away: Vec3,
-    /// Its distance, m.
+    /// Distance, m.
     pub distance: f64,
 }
 
 impl Closest {
-    /// Whether it is inside the triangle, not on an edge or a corner.
+    /// Tests whether it is inside the triangle, not on an edge or a corner.
     pub fn is_inside(&self) -> bool {
         self.weights.iter().all(|w| *w > 0.0)
     }
 }
 
-/// The area of a triangle.
+/// Area of a triangle.
 pub(super) fn area(corners: [Vec3; 3]) -> f64 {
     norm(doubled(corners)) / 2.0
 }
@@ -36,7 +36,7 @@ pub(crate) fn doubled([a, b, c]: [Vec3; 3]) -> Vec3 {
     cross(sub(b, a), sub(c, a))
 }
 
-/// The outward unit normal; zero for a triangle without area.
+/// Outward unit normal; zero for a degenerate triangle.
 pub(super) fn normal(corners: [Vec3; 3]) -> Vec3 {
     unit(doubled(corners))
 }
@@ -50,7 +50,7 @@ pub(crate) fn unit(a: Vec3) -> Vec3 {
     }
 }
 
-/// The closest point of a triangle (Ericson, Real-Time Collision Detection, section 5.1.5).
+/// Closest-point projection onto a triangle (Ericson, Real-Time Collision Detection, section 5.1.5).
 pub(super) fn closest(point: Vec3, [a, b, c]: [Vec3; 3]) -> Closest {
     let (ab, ac) = (sub(b, a), sub(c, a));
     let weights = || {
@@ -99,36 +99,37 @@ pub(super) fn closest(point: Vec3, [a, b, c]: [Vec3; 3]) -> Closest {
     }
 }
 
-/// The gradients of the barycentric coordinates in the plane of a triangle, 1/m.
+/// Gradients of the barycentric coordinates in the plane of a triangle, 1/m.
 pub(super) fn barycentric_gradients([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
     let doubled = doubled([a, b, c]);
     let square = dot(doubled, doubled);
-    // Each is the edge opposite, turned by a right angle inwards, over twice the area.
+    // Each is the opposite edge, turned inward by a right angle, over twice the area.
     [sub(c, b), sub(a, c), sub(b, a)].map(|edge| scale(1.0 / square, cross(doubled, edge)))
 }
 
-/// Two lines that cross, as the edges of two surfaces do.
+/// Crossing of two lines, such as edges of two surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Crossing {
-    /// Where they are closest to each other, as parts of the ways between the given points.
+    /// Closest points of the lines, as parts of the ways between the given points.
     pub along: [f64; 2],
-    /// The unit vector of the cross product of their directions.
+    /// Unit vector of the cross product of their directions.
     pub normal: Vec3,
-    /// From the second to the first one along it, m.
+    /// Signed distance from the second to the first along it, m.
     pub gap: f64,
-    /// The dual vectors of their directions in the plane of both, 1/m: how `along` changes.
+    /// Dual vectors of their directions in the plane of both, 1/m: the derivatives of `along`.
     pub duals: [Vec3; 2],
 }
 
-/// The least sine of the angle between lines that cross; others are too near to parallel.
+/// Smallest sine of the angle between lines that cross; others are too near to parallel.
 const LEAST_SINE: f64 = 0.05;
 
-/// How two lines through given points cross; `None` for nearly parallel ones.
+/// Crossing of two lines through given points; `None` for nearly parallel ones.
 ///
-/// With the directions `a` and `b`, `c = a × b` and the dual vectors `A = b × c/c²`, `B = c × a/c²`, the vector `r` between the
-/// first points says all: they are closest where `r + s a − t b` is along `c`, at `s = −A·r`, `t = B·r`. When both move, the
-/// normal turns by `∂n = −(n·∂a) A − (n·∂b) B`, as that of a triangle does with the gradients of its coordinates: the formulas
-/// above hold with `−A, A` for the points of the first line and `−B, B` for those of the second.
+/// With the directions `a` and `b`, `c = a × b` and the dual vectors `A = b × c/c²`, `B = c × a/c²`, the vector `r`
+/// between the first points determines the rest: the lines are closest where `r + s a − t b` is along `c`, at
+/// `s = −A·r`, `t = B·r`. When both move, the normal turns by `∂n = −(n·∂a) A − (n·∂b) B`, as that of a triangle does
+/// with the gradients of its coordinates: the formulas above hold with `−A, A` for the points of the first line and
+/// `−B, B` for those of the second.
 pub(super) fn crossing(first: [Vec3; 2], second: [Vec3; 2]) -> Option<Crossing> {
     let (a, b) = (sub(first[1], first[0]), sub(second[1], second[0]));
     let c = cross(a, b);
@@ -150,7 +151,7 @@ pub(super) fn crossing(first: [Vec3; 2], second: [Vec3; 2]) -> Option<Crossing> 
     })
 }
 
-/// The affine coordinates of a point's foot in the plane of a triangle.
+/// Affine coordinates of a point's foot in the plane of a triangle.
 pub(super) fn affine(point: Vec3, corners: [Vec3; 3]) -> [f64; 3] {
     let gradients = barycentric_gradients(corners);
     let second = dot(gradients[1], sub(point, corners[0]));
@@ -183,7 +184,7 @@ mod tests {
         }
 
         #[test]
-        fn no_places_of_two_lines_are_closer_than_where_they_cross(
+        fn crossing_has_the_smallest_distance_of_two_lines(
             first in prop::array::uniform2(point()), second in prop::array::uniform2(point()),
             u in -2.0..2.0f64, v in -2.0..2.0f64,
         ) {
@@ -194,7 +195,7 @@ mod tests {
                 place
             };
             let between = sub(place(first, found.along[0]), place(second, found.along[1]));
-            // Coordinates are up to the inverse of the least sine.
+            // Coordinates are up to the inverse of the smallest sine.
             prop_assert!(norm(sub(between, scale(found.gap, found.normal))) < 1e-11);
             let other = sub(place(first, u), place(second, v));
             prop_assert!(found.gap.abs() <= norm(other) + 1e-12);

@@ -1,4 +1,4 @@
-//! Which triangles a sample may meet on its way.
+//! Broad phase of the contact search: candidate triangles of each sample.
 
 use voxsoft_solid::vector::{Vec3, dot};
 
@@ -9,30 +9,31 @@ use crate::bounds::Bounds;
 use crate::threads;
 use crate::tree::Tree;
 
-/// How far apart a sample and a triangle may pass each other and be listed, in voxels.
+/// Distance between a sample and a triangle within which the triangle is listed, in voxels.
 pub(super) const REACH: f64 = 0.5;
-/// How far points may have moved and still have the candidates that were listed, in voxels: little beside [`REACH`].
+/// Largest motion of points for which listed candidates are kept, in voxels: little beside [`REACH`].
 pub(super) const SAME: f64 = 1e-3;
-/// How deep a sample may be in what it touches at an accepted state, in voxels: less than half of the thinnest wall.
+/// Largest depth of a sample in another surface at an accepted state, in voxels: less than half of the thinnest wall.
 pub(super) const DEPTH: f64 = 0.25;
-/// Faces that can meet look at each other: the product of their normals is below this. A sample on an edge has
-/// several, of which those along the other face do not meet it.
+/// Largest product of the normals of faces that can meet: they look at each other. A sample on an edge has several
+/// normals, of which those along the other face do not meet it.
 const FACING: f64 = -0.1;
-/// How near each other two places of one surface are in the unloaded body for which its shape there says whether they
-/// can meet, in voxels. The two sides of a wall do not, however thin it is or becomes: rubber does not press a thicker
-/// one to [`DEPTH`], and a thin one does not roll up so tightly that its sides meet around its end.
+/// Distance of two places of one surface in the unloaded body, in voxels, within which its shape there decides if they
+/// can meet. The two sides of a wall cannot, however thin it is or becomes: rubber does not press a thicker one to
+/// [`DEPTH`], and a thin one does not roll up so tightly that its sides meet around its end.
 const WALL: f64 = 3.0;
-/// Places nearer than this, in voxels, whose normals have at least such a product are one patch of the surface. What
-/// folds there is an element.
+/// Distance, in voxels, within which places whose normals have at least the product `SAME_WAY` are one patch of the
+/// surface. A fold there is a folded element.
 const PATCH: f64 = 1.0;
 const SAME_WAY: f64 = 0.3;
-/// How deep a sample may be in what is near but did not face it in the unloaded body, in voxels. A fold has to bring the
-/// two in front of each other first; around an outer edge a sample is behind what is there by less than a voxel.
+/// Largest depth of a sample in a near triangle that did not face it in the unloaded body, in voxels. A fold first has
+/// to bring the two in front of each other; around a convex edge a sample is behind the other side by less than a
+/// voxel.
 const BESIDE: f64 = 0.01;
 
 impl Touch {
     /// Lists for every sample the triangles that come near it on the straight way from the last accepted state to
-    /// where `points` are, and that it was in front of there.
+    /// `points`, and in front of which it was at that state.
     pub(super) fn list(&self, state: &mut State, points: Vec<Vec3>) {
         let reach = REACH * self.description.voxel;
         let swept = |triangle: &[u32; 3]| {
@@ -61,13 +62,13 @@ impl Touch {
             found
         };
         state.candidates = threads::map(self.samples.len(), meets);
-        // What is faced stays: the forces are still those of the state that it was looked for.
+        // The facing is kept: the forces are still those of the state for which it was found.
         state.facing.resize(self.samples.len(), None);
         state.looks = state.looks.max(1);
         state.listed_points = points;
     }
 
-    /// Whether a sample may meet a triangle; `normals` are those of all triangles at the accepted state.
+    /// Tests whether a sample may meet a triangle; `normals` are those of all triangles at the accepted state.
     fn may_meet(&self, index: usize, triangle: u32, normals: &[Vec3], state: &State) -> bool {
         let sample = &self.samples[index];
         if self.coefficient(index as u32, triangle).is_nan() {
@@ -100,13 +101,15 @@ impl Touch {
         self.was_in_front(state, index, triangle)
     }
 
-    /// How deep an edge may be in a triangle of its own surface at an accepted state, in voxels: what both of its ends may.
+    /// Largest depth of an edge in a triangle of its own surface at an accepted state, in voxels: the smaller one of
+    /// its ends.
     pub(super) fn depth_of_edge(&self, ends: [u32; 2], triangle: u32) -> Option<f64> {
         let [first, second] = ends.map(|end| self.depth_at_rest(end as usize, triangle));
         Some(first?.min(second?))
     }
 
-    /// Whether a sample was in front of a triangle at the accepted state, or not too deep behind it, so that it may meet it.
+    /// Tests whether a sample was in front of a triangle at the accepted state, or not too deep behind it, so that it
+    /// may meet it.
     pub(super) fn was_in_front(&self, state: &State, index: usize, triangle: u32) -> bool {
         let itself = self.samples[index].surface == self.surface_of[triangle as usize];
         let depth = if itself {
@@ -118,8 +121,8 @@ impl Touch {
         depth.is_some_and(|depth| self.is_in_front(triangle, start, &state.accepted_points, depth))
     }
 
-    /// How deep a sample may be in a triangle of its own surface at an accepted state and count as in front of it, in voxels;
-    /// `None` where they never meet, which the unloaded body shows.
+    /// Largest depth of a sample in a triangle of its own surface at an accepted state to count as in front of it, in
+    /// voxels; `None` if the unloaded body shows that they never meet.
     fn depth_at_rest(&self, index: usize, triangle: u32) -> Option<f64> {
         let points = &self.rest_points;
         let corners = self.corners(triangle, points);

@@ -1,14 +1,14 @@
-//! Contact for steps that are not solved to the end, as someone watches.
+//! Contact for live motion: dynamic steps without a converged augmented-Lagrange loop.
 //!
-//! A step minimizes with the multipliers as they are and corrects them once, at its end: what is held still settles
-//! within some steps, and what sticks keeps its anchor. The penalty is moderate, of the stiffness of the voxels that
-//! touch, so that a factor of the tangent from before serves where contact has come or gone since. How deep samples go
-//! in one step is pressure over penalty, `2 p h/(50 E)`, until multipliers bear it.
+//! A step minimizes with fixed multipliers and corrects them once, at its end: bodies that are held still settle within
+//! some steps, and sticking samples keep their anchors. The penalty is moderate, of the stiffness of the voxels in
+//! contact, so that an old factor of the tangent serves where contact has opened or closed since. The penetration of
+//! one step is pressure over penalty, `2 p h/(50 E)`, until multipliers carry the load.
 //!
-//! - A multiplier takes on what two steps have borne, the smaller of the two: the pressure of an impact would else push
-//!   again in the step after it, and what meets would rebound with the velocity that it had.
-//! - Friction begins in the step after the first touch.
-//! - Candidates are listed anew only where something has moved by half of their reach, and energies and forces go through
+//! - A multiplier takes the smaller of the pressures of two steps: the pressure of an impact would otherwise push again
+//!   in the next step, and bodies would rebound with their impact velocity.
+//! - Friction begins in the step after the first contact.
+//! - Candidates are listed anew only if something has moved by half of their reach, and energies and forces go through
 //!   the samples that have some.
 
 use std::any::Any;
@@ -23,15 +23,15 @@ use super::friction::Friction;
 use super::state::{Memory, State};
 use super::{Description, LOOKS, Meeting, Touch, gap, listing};
 
-/// The penalty in units of Young's modulus over the voxel size, and that of slip relative to it.
+/// Contact penalty in units of Young's modulus over the voxel size, and slip penalty relative to it.
 const PENALTY: f64 = 8.0;
 const STICK: f64 = 1.0;
-/// How deep a sample may be before the penalty grows within a step, in voxels, and by how much.
+/// Depth of a sample beyond which the penalty grows within a step, in voxels, and the factor of this growth.
 const DEEP: f64 = 0.05;
 const STIFFER: f64 = 4.0;
-/// How deep a step may leave a sample, in voxels: beyond [`listing::DEPTH`] its side is lost.
+/// Largest depth of a sample after a step, in voxels: beyond [`listing::DEPTH`] its side is lost.
 const DEEPEST: f64 = 0.8 * listing::DEPTH;
-/// How often a step that is too deep is taken again, before what is too deep is let go.
+/// Rejections of a step that is too deep, before samples that are too deep are released.
 const REFUSALS: u32 = 2;
 
 /// Contact of surfaces, for live motion.
@@ -44,20 +44,20 @@ pub struct LiveTouch {
 
 #[derive(Debug, Clone, PartialEq, Default)]
 struct Run {
-    /// The samples that face something.
+    /// Samples that face something.
     near: Vec<u32>,
-    /// The pressure of each sample at the end of the last step, N.
+    /// Pressure of each sample at the end of the last step, N.
     borne: Vec<f64>,
-    /// How often in a row a step was too deep.
+    /// Consecutive steps rejected as too deep.
     refused: u32,
-    /// How deep samples were that were let go since the start, m.
+    /// Largest depth of released samples since the start, m.
     lost: f64,
-    /// Samples and triangles that the pattern of the stiffness has.
+    /// Samples and triangles in the sparsity pattern of the stiffness.
     pattern: BTreeSet<(u32, u32)>,
 }
 
 impl LiveTouch {
-    /// Makes contact ready for a problem with the vertices `rest` (m).
+    /// Sets up contact for a problem with the vertices `rest` (m).
     pub fn new(description: Description, rest: &[Vec3]) -> Result<Self, ProblemError> {
         let touch = Touch::new(description, rest)?.without_edges(rest);
         let mut live = Self {
@@ -68,19 +68,19 @@ impl LiveTouch {
         Ok(live)
     }
 
-    /// The contact with the multipliers of the last step: what touches, and the fields of contact.
+    /// Contact with the multipliers of the last step: for reports and contact fields.
     pub fn touch(&self) -> &Touch {
         &self.touch
     }
 
-    /// The same where it is more than contact lets it in a step; from then on, too, where something had to be let go that
-    /// was too deep to be held.
+    /// Depth of the deepest sample (m) if it exceeds the limit of a step; once a sample was released as too deep, also
+    /// at least that depth.
     pub fn excess_depth(&self, positions: &[Vec3]) -> Option<f64> {
         let depth = self.depth(positions).max(self.run.lost);
         Some(depth).filter(|depth| *depth > DEEP * self.touch.description.voxel)
     }
 
-    /// How deep the deepest sample is in what it faces at `positions`, m.
+    /// Depth of the deepest sample in the surface that it faces at `positions`, m.
     pub fn depth(&self, positions: &[Vec3]) -> f64 {
         let state = &self.touch.state;
         let mut deepest = 0.0f64;
@@ -94,12 +94,12 @@ impl LiveTouch {
         self.touch.triangles[triangle as usize].map(|point| self.point(point, positions))
     }
 
-    /// Where a point is, which is the sample with its number.
+    /// Position of a point, which is the sample with its number.
     fn point(&self, point: u32, positions: &[Vec3]) -> Vec3 {
         self.touch.points[point as usize].at(positions)
     }
 
-    /// Hands over every sample that faces something.
+    /// Calls `take` with every sample that faces something.
     fn each_near(&self, state: &State, positions: &[Vec3], mut take: impl FnMut(&Meeting)) {
         for &sample in &self.run.near {
             let Some(facing) = state.facing[sample as usize] else {
@@ -113,7 +113,7 @@ impl LiveTouch {
         }
     }
 
-    /// Those that are pressed, with their pressure in N.
+    /// Calls `take` with every pressed sample and its pressure in N.
     fn each_pressed(&self, state: &State, positions: &[Vec3], mut take: impl FnMut(&Meeting, f64)) {
         self.each_near(state, positions, |meeting| {
             let memory = &state.now[meeting.sample as usize];
@@ -149,7 +149,7 @@ impl LiveTouch {
         }
     }
 
-    /// The pairs that have stiffness at `positions`.
+    /// Pairs that have stiffness at `positions`.
     fn pairs_of_stiffness(&self, state: &State, positions: &[Vec3]) -> BTreeSet<(u32, u32)> {
         let mut pairs = BTreeSet::new();
         self.each_pressed(state, positions, |meeting, _| {
@@ -161,7 +161,7 @@ impl LiveTouch {
         pairs
     }
 
-    /// Notes which samples face something, or hold on to something.
+    /// Lists the samples that face something or have friction.
     fn note_near(&mut self) {
         let state = &self.touch.state;
         let near = |sample: &u32| {
@@ -172,7 +172,7 @@ impl LiveTouch {
         self.run.near = all.filter(near).collect();
     }
 
-    /// What a sample remembers after a step that ended with a pressure on it.
+    /// Multipliers and anchor of a sample after a step that ended with a pressure on it.
     fn remembered(
         &self,
         state: &State,
@@ -320,7 +320,7 @@ impl Contact for LiveTouch {
         self.each_pressed(state, positions, |meeting, pressure| {
             let sample = meeting.sample as usize;
             if -meeting.gap > deepest {
-                return; // It is let go, and `excess_depth` says so.
+                return; // Released as too deep; see `excess_depth`.
             }
             pressures[sample] = pressure;
             let both = (pressure, self.run.borne[sample]);
@@ -394,8 +394,9 @@ impl Term for LiveTouch {
         self.visit_tangent(positions, Tangent::Exact, visit);
     }
 
-    /// Without how normals turn under pressures, whatever is asked for: so it is positive, and serves longer. Pairs for
-    /// which the pattern has no room are left out; the search learns of them as it goes.
+    /// Tangent without the geometric stiffness of contact, for any `Tangent`: so it is positive semidefinite, and
+    /// serves longer. Pairs outside of the sparsity pattern are left out; the minimization tolerates an inexact
+    /// tangent.
     fn visit_tangent(&self, positions: &[Vec3], _: Tangent, visit: Visitor<'_>) {
         let state = &self.touch.state;
         let pattern = &self.run.pattern;

@@ -2,24 +2,25 @@
 //!
 //! # Gap
 //!
-//! Points of every surface look for the closest triangle in front of them ([`gap`]), and edges for those that they cross
-//! ([`edges`]). Both sides have samples, and each point stands for half of its area, so that neither is the master. A sample keeps its side: a triangle counts
-//! only if the sample was in front of it at the last accepted state, so that the far side of a thin wall is never
-//! taken for something that is met.
+//! Points of every surface search the closest triangle in front of them ([`gap`]), and edges the edges that they cross
+//! ([`edges`]). Both sides have samples, and each point stands for half of its area, so that neither is the master. A
+//! sample keeps its side: a triangle counts only if the sample was in front of it at the last accepted state, so that
+//! the far side of a thin wall is never mistaken for an obstacle.
 //!
 //! # Augmented Lagrangian
 //!
 //! With a multiplier `λ` (N) for each sample and a penalty `k` (N/m), the energy is `k/2 ⟨λ/k − (g − δ)⟩²`, its force
-//! `p = k ⟨λ/k − (g − δ)⟩`; after each equilibrium `λ ← p`, until no
-//! gap is below the clearance `δ` by more than [`DEEPEST`], so that surfaces which touch do not intersect. The answer
-//! does not depend on `k` (Alart and Curnier 1991, doi 10.1016/0045-7825(91)90022-X).
+//! `p = k ⟨λ/k − (g − δ)⟩`; after each equilibrium `λ ← p`, until no gap is below the clearance `δ` by more than
+//! [`DEEPEST`], so that surfaces in contact do not intersect. The result does not depend on `k` (Alart and Curnier
+//! 1991, doi 10.1016/0045-7825(91)90022-X).
 //!
 //! # Friction
 //!
-//! A sample in contact has an anchor on the other surface and slips from it by `u`. Its friction is
-//! `t = P (τ − k u)`, cut to the length `μ λ` (return mapping), with the multiplier `τ` brought up like `λ`: what
-//! sticks does not move, however long it is held. The bound and the plane of friction are those of the last correction, so that friction has a potential; at the
-//! end they are those of the pressure itself. Where a state is accepted, the anchor of what has slipped comes along.
+//! A sample in contact has an anchor on the other surface and slips from it by `u`. Its friction is `t = P (τ − k u)`,
+//! cut to the length `μ λ` (return mapping), with the multiplier `τ` updated like `λ`: a sticking sample does not move,
+//! however long it is held. The bound and the plane of friction are those of the last correction, so that friction has
+//! a potential; at the end they are those of the pressure itself. When a state is accepted, the anchors of slipping
+//! samples move along.
 
 pub mod bonds;
 mod edges;
@@ -51,55 +52,57 @@ use state::{Facing, Memory, State};
 use surface::Sample;
 pub use surface::{Carried, Surface};
 
-/// The penalty in units of Young's modulus over the voxel size. What multipliers still have to learn shrinks by it
-/// with every correction; at 100, blocks of rubber that is held against bulging take ten times as many.
+/// Contact penalty in units of Young's modulus over the voxel size. The larger it is, the more each correction reduces
+/// the multiplier error; at 100, blocks of rubber held against bulging take ten times as many corrections.
 const PENALTY: f64 = 1000.0;
-/// The least area for which a sample has a penalty, of the mean one of its surface. Slivers of a skin would take theirs
-/// on for ever, a little with each correction.
+/// Smallest area from which the penalty of a sample is computed, relative to the mean one of its surface. Multipliers
+/// of slivers of a skin would otherwise converge endlessly, a little with each correction.
 const LEAST_AREA: f64 = 0.5;
-/// The penalty of slip, relative to that of gaps: what sticks gives way by more, and lets go less suddenly. Where
-/// corrections take it on too slowly, because what they hold is stiffer than that, it grows.
+/// Slip penalty relative to the contact penalty, at first and at most: a soft one lets sticking samples slip less
+/// abruptly. It grows if corrections converge too slowly, because the held bodies are stiffer.
 const STICK: [f64; 2] = [0.01, 1.0];
-/// By how much a correction must bring down what sticks and still creeps, and how much stiffer it is else.
+/// Factor by which a correction has to reduce the creep of sticking samples, and by which the slip penalty grows
+/// otherwise.
 const STIFFER: f64 = 4.0;
-/// The clearance of surfaces that touch, in voxels: that of points, and that of edges, or of points where there are no edges, which is
-/// what points have left of theirs at least. So edges carry nothing where surfaces lie flat on each other, as the sides of mismatched squares cross everywhere.
+/// Clearance of surfaces in contact, in voxels: of points, and of edges, or of points where there are no edges; the
+/// latter is below the smallest gap that points keep. So edges carry no load where surfaces lie flat on each other, as
+/// the sides of mismatched squares cross everywhere.
 const CLEARANCE: [f64; 2] = [2e-4, 1e-4];
-/// Looks at the start of a search for equilibrium; after a correction there is one.
+/// Searches of all samples at the start of an equilibrium iteration; after a correction there is one.
 const LOOKS: u32 = 2;
-/// How far a sample may slide beyond the edge of the triangle that it faces before it looks again, in affine
-/// coordinates.
+/// Slide of a sample beyond the edge of the triangle that it faces before it searches again, in affine coordinates.
 const STRAYED: f64 = 0.5;
-/// By how much gaps may be below the clearance at the end, in voxels: surfaces that touch do not intersect.
+/// Tolerance of gaps below the clearance at the end, in voxels: surfaces in contact do not intersect.
 const DEEPEST: f64 = 0.9e-4;
-/// How far apart samples may be that still press, and how far those may creep that stick, in voxels. Surfaces of
-/// different voxels do not fit each other to the last point, where multipliers converge slowly.
+/// Tolerances, in voxels, of the gap of pressed samples and of the creep of sticking ones. Surfaces of different voxels
+/// do not fit each other to the last point, where multipliers converge slowly.
 const APART: f64 = 1e-3;
 const CREEP: f64 = 1e-4;
-/// By how much bounds of friction may be off, of the largest one that a vertex feels: at first, and after [`PATIENCE`]
-/// corrections, as long as the sum of the bounds on each surface is that good.
+/// Tolerance of friction bounds, relative to the largest one of a vertex: at first, and after [`PATIENCE`] corrections,
+/// as long as the sum of the bounds on each pair of surfaces keeps the first one.
 const BOUND: [f64; 2] = [3e-3, 0.05];
-/// The part of its bound from which friction counts as slipping: bounds of light pressures are right to a few percent.
+/// Fraction of its bound from which friction counts as slipping: bounds of light pressures are right to a few percent.
 const NEARLY: f64 = 0.95;
-/// Corrections at one load after which samples keep what they face, and bounds may be off by more.
+/// Corrections at one load factor after which samples keep the faces that they meet, and the tolerance of bounds is
+/// wider.
 const PATIENCE: u32 = 10;
-/// Corrections after which more precision than by default is given up.
+/// Corrections after which only the default precision is asked for.
 const PRECISE: u32 = 36;
-/// Parts of a motion, and of a direction, that are none.
+/// Relative rounding of motions and directions.
 const ROUNDING: f64 = 1e-9;
 
-/// Who touches whom, and how.
+/// Surfaces in contact, their friction and bonds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Description {
     /// The surfaces.
     pub surfaces: Vec<Surface>,
-    /// The coefficient of friction of each surface with each, symmetric; NaN where they pass through each other.
+    /// Coefficient of friction of each surface with each, symmetric; NaN where they pass through each other.
     pub friction: Vec<Vec<f64>>,
-    /// Surfaces that are bonded.
+    /// Bonds between surfaces.
     pub bonds: Vec<Bond>,
-    /// The size of a voxel in m.
+    /// Voxel size in m.
     pub voxel: f64,
-    /// Young's modulus of what touches, or something of its size, in Pa.
+    /// Young's modulus of the bodies in contact, or its order of magnitude, Pa.
     pub young: f64,
 }
 
@@ -108,57 +111,57 @@ pub struct Description {
 pub struct Touch {
     description: Description,
     samples: Vec<Sample>,
-    /// The least area for which a sample of each surface has a penalty, m².
+    /// Smallest area from which the penalty of a sample of each surface is computed, m².
     least_area: Vec<f64>,
-    /// The points of all surfaces.
+    /// Points of all surfaces.
     points: Vec<Carried>,
-    /// How many of the surfaces, the first ones, are those of bodies.
+    /// Number of surfaces that belong to bodies, which come first.
     bodies: u32,
-    /// For each point of bodies the vertices that stand for it, where those are not what carries it.
+    /// Vertices that stand for each point of bodies, if they are not the vertices that carry it.
     shares: Vec<Carried>,
-    /// Where they are in the unloaded design, m.
+    /// Positions of the points in the unloaded design, m.
     rest_points: Vec<Vec3>,
-    /// The axes across planes of symmetry through the origin.
+    /// Axes across planes of symmetry through the origin.
     planes: [bool; 3],
-    /// With these, the part of each sample that counts: none of those on the negative sides, which are images.
+    /// Part of each sample that counts with planes of symmetry: 0 on the negative sides, which are images.
     weights: Vec<f64>,
-    /// With these, the point that each is an image of, itself where it counts.
+    /// Point of which each is an image with planes of symmetry, itself if it counts.
     twins: Vec<u32>,
-    /// The axes on which vertices never move; empty where nothing touches in the unloaded design.
+    /// Axes along which vertices never move; empty if nothing touches in the unloaded design.
     still: Vec<[bool; 3]>,
-    /// With these, the samples that are within their clearance there.
+    /// True for samples within their clearance in the unloaded design; empty where `still` is.
     touching: Vec<bool>,
-    /// The triangles of all surfaces, of these points.
+    /// Triangles of all surfaces, of these points.
     triangles: Vec<[u32; 3]>,
-    /// The surface of each.
+    /// Surface of each triangle.
     surface_of: Vec<u32>,
-    /// The triangles at each point.
+    /// Triangles at each point.
     around: Vec<Vec<u32>>,
-    /// For each sample the ties that it is in, with the surface that they are to.
+    /// Ties of each sample, with the surface at their other end.
     ties_at: Vec<Vec<(u32, u32)>>,
-    /// The penalty in units of Young's modulus over the voxel size, which live contact changes.
+    /// Contact penalty in units of Young's modulus over the voxel size, which live contact changes.
     penalty: f64,
     state: State,
 }
 
-/// A sample and what it is in front of.
+/// Contact pair: a sample and the triangle or edge that it faces.
 #[derive(Debug, Clone, Copy)]
 struct Meeting {
     sample: u32,
     triangle: u32,
-    /// Where on an edge it is, as a part of the way between its ends; 0 for a point.
+    /// Place on an edge, as a part of the way between its ends; 0 for a point.
     along: f64,
     /// Barycentric coordinates of the closest point.
     weights: [f64; 3],
     gap: f64,
-    /// From the triangle to the sample.
+    /// Contact normal, from the triangle to the sample.
     normal: Vec3,
     facing: Facing,
 }
 
 impl Meeting {
-    /// How a sample with these ends lies to what it faces, a triangle with these corners; `None` for edges that have become
-    /// parallel.
+    /// Gap and normal of a sample with these ends and the triangle with these corners that it faces; `None` for edges
+    /// that have become parallel.
     fn new(sample: u32, facing: Facing, ends: [Vec3; 2], corners: [Vec3; 3]) -> Option<Self> {
         let (along, weights, normal) = match facing {
             Facing::Plane(_) => (0.0, gap::affine(ends[0], corners), normal(corners)),
@@ -189,7 +192,7 @@ impl Meeting {
         })
     }
 
-    /// Where the forces of a pressure act.
+    /// Place where the contact force acts.
     fn spot(&self) -> Spot {
         Spot {
             sample: self.sample,
@@ -200,18 +203,18 @@ impl Meeting {
     }
 }
 
-/// A place of a sample and one of a triangle that act on each other.
+/// Places of a sample and of a triangle between which a force acts.
 #[derive(Debug, Clone, Copy)]
 struct Spot {
     sample: u32,
-    /// As [`Meeting::along`].
+    /// Place on an edge, see [`Meeting::along`].
     along: f64,
     triangle: u32,
-    /// Affine coordinates.
+    /// Affine coordinates in the triangle.
     weights: [f64; 3],
 }
 
-/// The place that is a part of the way between two.
+/// Linear interpolation between two places.
 fn between([start, end]: [Vec3; 2], along: f64) -> Vec3 {
     let mut place = start;
     axpy(&mut place, along, sub(end, start));
@@ -219,7 +222,7 @@ fn between([start, end]: [Vec3; 2], along: f64) -> Vec3 {
 }
 
 impl Touch {
-    /// Makes contact ready for a problem with the vertices `rest` (m).
+    /// Sets up contact for a problem with the vertices `rest` (m).
     pub fn new(description: Description, rest: &[Vec3]) -> Result<Self, ProblemError> {
         let count = description.surfaces.len();
         let rows = description.friction.iter().map(Vec::len);
@@ -266,7 +269,7 @@ impl Touch {
                 around[*point as usize].push(t as u32);
             }
         }
-        // Points first, as they are numbered.
+        // Points first, so that sample numbers equal point numbers.
         samples.extend(surface::edges(&triangles, &surface_of));
         let mut touch = Self {
             description,
@@ -293,9 +296,9 @@ impl Touch {
         Ok(touch)
     }
 
-    /// Says how many surfaces are those of bodies, which come first, and gives their points vertices that stand for
-    /// them in fields over vertices, with positive weights: what carries a smooth surface lies partly inside, and has
-    /// weights of both signs.
+    /// Sets the number of surfaces that belong to bodies, which come first, and the vertices that stand for their
+    /// points in fields over vertices, with positive weights: the vertices that carry a smooth surface lie partly
+    /// inside, and have weights of both signs.
     #[must_use]
     pub fn with_bodies(mut self, bodies: u32, shares: Vec<Carried>) -> Self {
         self.bodies = bodies;
@@ -303,8 +306,8 @@ impl Touch {
         self
     }
 
-    /// Says on which axes vertices, which are at `rest` in the unloaded design, never move, as those of a clamp without a
-    /// motion.
+    /// Sets the axes along which vertices, at `rest` in the unloaded design, never move, such as those of a clamp
+    /// without a motion.
     #[must_use]
     pub fn with_still(mut self, still: Vec<[bool; 3]>, rest: &[Vec3]) -> Self {
         let points = self.points_at(rest);
@@ -321,9 +324,9 @@ impl Touch {
         self
     }
 
-    /// The part of the clearance that a meeting keeps: of what is within it in the unloaded design, the part of what carries
-    /// it that could open its gap, a half between a vertex that never moves and one that does, beside what rests. All of
-    /// it, where there was more to begin with.
+    /// Fraction of the clearance that a contact pair keeps. A pair within the clearance in the unloaded design keeps
+    /// the fraction of its carrying vertices that can open the gap: a half between a vertex that never moves and one
+    /// that does, 0 if none moves. Others keep all of it.
     fn mobility(&self, meeting: &Meeting) -> f64 {
         if !self
             .touching
@@ -345,30 +348,30 @@ impl Touch {
         free.min(1.0)
     }
 
-    /// Whether edges are kept out of edges.
+    /// Tests whether there is edge-to-edge contact.
     fn has_edges(&self) -> bool {
         self.samples.len() > self.points.len()
     }
 
-    /// Leaves edges to themselves: only points are kept out of surfaces.
+    /// Removes edge-to-edge contact: only points are kept out of surfaces.
     pub(super) fn without_edges(mut self, rest: &[Vec3]) -> Self {
         self.samples.truncate(self.points.len());
         Contact::start(&mut self, rest);
         self
     }
 
-    /// Who touches whom, and how.
+    /// Surfaces in contact, their friction and bonds.
     pub fn description(&self) -> &Description {
         &self.description
     }
 
-    /// The vertices that stand for a point, as points are numbered over all surfaces.
+    /// Vertices that stand for a point, as points are numbered over all surfaces.
     fn share(&self, point: u32) -> &Carried {
         let point = point as usize;
         self.shares.get(point).unwrap_or(&self.points[point])
     }
 
-    /// Changes the state by what the surfaces say of it.
+    /// Changes the state by a function of the surfaces and the state.
     fn change<T>(&mut self, act: impl FnOnce(&Self, &mut State) -> T) -> T {
         let mut state = std::mem::take(&mut self.state);
         let outcome = act(self, &mut state);
@@ -387,27 +390,27 @@ impl Touch {
         self.triangles[triangle as usize].map(|p| points[p as usize])
     }
 
-    /// The friction between a sample and a triangle.
+    /// Coefficient of friction between a sample and a triangle.
     fn coefficient(&self, sample: u32, triangle: u32) -> f64 {
         let of = self.samples[sample as usize].surface as usize;
         let with = self.surface_of[triangle as usize] as usize;
         self.description.friction[of][with]
     }
 
-    /// N/m; both sides of a contact have samples.
+    /// Contact penalty of a sample, N/m; half of that of its area, because both sides have samples.
     fn penalty(&self, sample: u32) -> f64 {
         let per_area = self.penalty * self.description.young / self.description.voxel;
         per_area * self.stiff_area(sample) / 2.0
     }
 
-    /// The area for which a sample has a penalty, m².
+    /// Area from which the penalty of a sample is computed, m².
     fn stiff_area(&self, sample: u32) -> f64 {
         let weight = self.weight(sample);
         let sample = &self.samples[sample as usize];
         weight * sample.area.max(self.least_area[sample.surface as usize])
     }
 
-    /// The gap that a sample keeps, m.
+    /// Clearance of a sample, m.
     fn clearance(&self, sample: u32) -> f64 {
         let leaves_to_edges = sample < self.points.len() as u32 && self.has_edges();
         CLEARANCE[usize::from(!leaves_to_edges)] * self.description.voxel
@@ -419,21 +422,21 @@ impl Touch {
             .map(|p| points[p as usize])
     }
 
-    /// The place of a sample that is a part of the way along it.
+    /// Place at a part of the way along a sample.
     fn place(&self, sample: u32, along: f64, points: &[Vec3]) -> Vec3 {
         between(self.ends(sample, points), along)
     }
 
-    /// How a sample lies to what it faces; `None` for edges that have become parallel.
+    /// Contact pair of a sample and the triangle that it faces; `None` for edges that have become parallel.
     fn meeting(&self, sample: u32, facing: Facing, points: &[Vec3]) -> Option<Meeting> {
         let corners = self.corners(facing.triangle(), points);
         Meeting::new(sample, facing, self.ends(sample, points), corners)
     }
 
-    /// The force with which a sample is pushed away, N.
+    /// Contact force on a sample along the normal, N.
     ///
-    /// Where a body touches from the first, the clearance goes to zero beside vertices that never move: there gaps are what
-    /// they are, and a multiplier that were to open them would grow for ever.
+    /// If a body touches in the unloaded design, the clearance goes to zero beside vertices that never move: their gaps
+    /// cannot change, and a multiplier that should open them would grow without bound.
     fn pressure(&self, memory: &Memory, meeting: &Meeting) -> f64 {
         let k = self.penalty(meeting.sample);
         let clearance = self.clearance(meeting.sample);
@@ -447,7 +450,7 @@ impl Touch {
         (memory.normal - k * (meeting.gap - mobility * clearance)).max(0.0)
     }
 
-    /// Hands over every sample that is in contact, with its pressure in N.
+    /// Calls `take` with every contact pair under pressure, and its pressure in N.
     fn each_contact(
         &self,
         state: &State,
@@ -467,8 +470,8 @@ impl Touch {
         }
     }
 
-    /// The points that a spot moves with, each with the factor of its motion in the relative one: those of the sample,
-    /// one or two, and the corners of the triangle.
+    /// Points that a spot moves with, each with its factor in the relative motion: those of the sample, one or two, and
+    /// the corners of the triangle.
     fn relative(&self, spot: Spot) -> impl Iterator<Item = (f64, u32)> {
         let sample = &self.samples[spot.sample as usize];
         let own = sample.ends.into_iter().zip([1.0 - spot.along, spot.along]);
@@ -478,7 +481,7 @@ impl Touch {
         own.chain(other).map(|(point, factor)| (factor, point))
     }
 
-    /// Adds the force on the sample at a spot, and its opposite on the triangle.
+    /// Adds the force on the sample at a spot, and its reaction on the triangle.
     fn add_force(&self, force: Vec3, spot: Spot, forces: &mut [Vec3]) {
         for (factor, point) in self.relative(spot) {
             self.points[point as usize].add_force(factor, force, forces);

@@ -1,4 +1,4 @@
-//! Where two surfaces meet at rest, and the ties between them: integrals over the bonded part of the first one.
+//! Mortar integrals over the bonded part of the first surface, and the ties of a bond.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,29 +11,30 @@ use crate::bounds::Bounds;
 use crate::skin::Carriers;
 use crate::tree::Tree;
 
-/// Surfaces that are bonded look at each other: the product of their normals is below this.
+/// Largest product of the normals of bonded surfaces, which look at each other.
 const FACING: f64 = -0.5;
-/// Into how many parts the edge of a triangle is divided for the integrals: functions of the other side have kinks in it.
+/// Parts into which the edge of a triangle is divided for the integrals: shape functions of the other side have kinks
+/// in it.
 const PARTS: u32 = 4;
-/// How far beside a triangle what lies on its edge may be, of the reach.
+/// Tolerance for a point straight above a triangle, relative to the reach.
 const ROUNDING: f64 = 1e-9;
 
-/// Two surfaces at rest, and where they meet.
+/// Two surfaces at rest, and the search of their bonded parts.
 pub(super) struct Meeting<'a> {
     sides: [Side<'a>; 2],
-    /// The points of both, m.
+    /// Points of both, m.
     points: [Vec<Vec3>; 2],
     trees: [Tree; 2],
-    /// m
+    /// Largest distance of bonded surfaces, m.
     reach: f64,
 }
 
-/// A triangle near a point.
+/// Triangle near a point.
 #[derive(Clone, Copy)]
 struct Near {
     distance: f64,
     triangle: u32,
-    /// Whether the point is straight above it.
+    /// True if the point is straight above the triangle.
     is_over: bool,
 }
 
@@ -59,7 +60,7 @@ impl<'a> Meeting<'a> {
         corners.map(|p| self.points[side][p as usize])
     }
 
-    /// The nearest triangle of a side within reach that looks against a direction.
+    /// Nearest triangle of a side within reach whose normal opposes a direction.
     fn nearest(&self, side: usize, point: Vec3, against: Vec3) -> Option<Near> {
         let around = Bounds {
             low: point.map(|x| x - self.reach),
@@ -88,7 +89,7 @@ impl<'a> Meeting<'a> {
         best
     }
 
-    /// The triangles of the first surface that lie on the second one.
+    /// Triangles of the first surface that lie on the second one.
     fn bonded(&self) -> Vec<bool> {
         let all = 0..self.sides[0].surface.triangles.len() as u32;
         let lies = |triangle: u32| {
@@ -103,7 +104,7 @@ impl<'a> Meeting<'a> {
         all.map(lies).collect()
     }
 
-    /// The points of the second surface that lie on those triangles.
+    /// Points of the second surface that lie on those triangles.
     fn beside(&self, bonded: &[bool]) -> BTreeSet<u32> {
         let mut beside = BTreeSet::new();
         for (t, triangle) in self.sides[1].surface.triangles.iter().enumerate() {
@@ -118,7 +119,7 @@ impl<'a> Meeting<'a> {
         beside
     }
 
-    /// The ties between them, one for each vertex that has points of the first surface on the second.
+    /// Ties of the bond, one for each vertex that has points of the first surface on the second.
     pub fn ties(&self, rest: &[Vec3]) -> Vec<Tie> {
         let [first, second] = self.sides;
         let carriers = match second.solid {
@@ -149,7 +150,7 @@ impl<'a> Meeting<'a> {
                     }
                 };
                 let share = match first.solid {
-                    // A rigid side has no vertices that share its points: each of them is tied.
+                    // A rigid side has no vertices that share its points: each of its points is tied.
                     Solid::Rigid(..) => Carried {
                         vertices: triangle.to_vec(),
                         weights: weights.to_vec(),
@@ -191,13 +192,13 @@ impl<'a> Meeting<'a> {
             let each = tie.points[0].iter().flat_map(|point| &of_point[point]);
             let patch: BTreeSet<u32> = each.copied().collect();
             tie.patch = patch.into_iter().collect();
-            // What has little area would take its multiplier on slowly.
+            // The multiplier of a tie of little area would converge slowly.
             tie.stiff = tie.area.max(LEAST_AREA * mean);
         }
         ties
     }
 
-    /// The vertex nearest to a point of those that stand for a triangle.
+    /// Vertex nearest to a point among those that stand for a triangle.
     fn vertex_near(&self, side: Side<'_>, triangle: u32, point: Vec3, rest: &[Vec3]) -> Carried {
         let corners = side.surface.triangles[triangle as usize];
         let share = |corner: &u32| {
@@ -213,13 +214,13 @@ impl<'a> Meeting<'a> {
     }
 }
 
-/// A place in a triangle.
+/// Place in a triangle.
 fn place(corners: [Vec3; 3], weights: [f64; 3]) -> Vec3 {
     let pairs = corners.iter().zip(weights);
     pairs.fold([0.0; 3], |sum, (x, weight)| add(sum, scale(weight, *x)))
 }
 
-/// The middles of the parts of a triangle, as barycentric coordinates.
+/// Centroids of the parts of a triangle, as barycentric coordinates.
 fn parts() -> impl Iterator<Item = [f64; 3]> {
     let third = 1.0 / 3.0;
     let at = |i: u32, j: u32, offset: f64| {
@@ -233,7 +234,7 @@ fn parts() -> impl Iterator<Item = [f64; 3]> {
     })
 }
 
-/// A weighted mean of what is carried.
+/// Weighted mean of carried points.
 fn mixed(parts: [&Carried; 3], weights: [f64; 3]) -> Carried {
     let mut sum: BTreeMap<u32, f64> = BTreeMap::new();
     for (part, factor) in parts.iter().zip(weights) {
@@ -245,12 +246,12 @@ fn mixed(parts: [&Carried; 3], weights: [f64; 3]) -> Carried {
     Carried { vertices, weights }
 }
 
-/// A tie that is being summed up.
+/// Accumulator of a tie.
 #[derive(Default)]
 struct Draft {
     sides: [BTreeMap<u32, f64>; 2],
     area: f64,
-    /// The largest part of it, and the triangle below that.
+    /// Largest contribution, and the triangle below it.
     heaviest: (f64, u32),
     points: BTreeSet<u32>,
 }

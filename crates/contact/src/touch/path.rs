@@ -1,4 +1,4 @@
-//! Contact along a load path: who faces whom, corrections of multipliers, anchors that come along.
+//! Contact along a load path: contact search, corrections of multipliers, motion of anchors.
 
 use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,11 +16,11 @@ use super::{
 };
 use crate::threads;
 
-/// How many times more pairs there may be room for than have stiffness, where these are many. What slides comes by many
-/// triangles, and an iteration that goes astray by any.
+/// Largest ratio of pairs in the sparsity pattern to pairs with stiffness, if these are [`MANY`]. Sliding samples pass
+/// many triangles, and a diverging iteration any.
 const WASTE: usize = 2;
 const MANY: usize = 100;
-/// How far multipliers are taken to go on as they did, in steps.
+/// Largest extrapolation of multipliers, in steps.
 const LONGEST_EXTRAPOLATION: f64 = 2.0;
 
 impl Contact for Touch {
@@ -129,8 +129,8 @@ impl Contact for Touch {
                 state.stick = (STIFFER * state.stick).min(STICK[1]);
             }
             state.crept = farthest;
-            // The forces of a settled state are those of its equilibrium, not of multipliers that came after.
-            // Edges look once points have settled: where these are still too deep, the edges beside them are so too.
+            // The forces of a settled state are those of its equilibrium, not of multipliers that came after. Edges
+            // search once points have settled: while these are still too deep, the edges beside them are so too.
             let settled = largest <= enough && !(patient && touch.face_edges(state, positions));
             if settled {
                 state.settle_moment(enough <= precision);
@@ -151,7 +151,7 @@ impl Contact for Touch {
         self.change(|touch, state| {
             let any = touch.break_ties(state, positions);
             if any {
-                // What held until now may touch.
+                // Surfaces whose ties broke may be in contact now.
                 let points = touch.points_at(positions);
                 touch.list(state, points);
                 (state.listed_at_rest, state.corrections) = (false, 0);
@@ -246,9 +246,9 @@ impl Contact for Touch {
 }
 
 impl Touch {
-    /// What samples hold after a correction by the forces at `positions`.
+    /// Multipliers and anchors of samples after a correction with the forces at `positions`.
     pub(super) fn corrected(&self, state: &State, positions: &[Vec3]) -> Vec<Memory> {
-        // What loses contact for now keeps its anchor: it may come back before the state is accepted.
+        // A sample that loses contact for now keeps its anchor: it may come back before the state is accepted.
         let anchor_of = |memory: &Memory| Memory {
             anchor: memory.anchor,
             along: memory.along,
@@ -278,7 +278,7 @@ impl Touch {
         now
     }
 
-    /// What samples hold from an accepted state on: the anchors of what has slipped come along.
+    /// Multipliers and anchors of samples from an accepted state on: the anchors of slipping samples move along.
     pub(super) fn carried_on(&self, state: &State, positions: &[Vec3]) -> Vec<Memory> {
         let mut moved = vec![Memory::default(); self.samples.len()];
         self.each_contact(state, positions, |meeting, _, points| {
@@ -293,7 +293,7 @@ impl Touch {
         moved
     }
 
-    /// Lists what may be met from the accepted state on, unless it is where it was when that was listed.
+    /// Lists candidates from the accepted state on, unless that state has not moved since they were listed.
     fn list_from_accepted(&self, state: &mut State, points: Vec<Vec3>) {
         if !(state.listed_at_rest && self.farthest_from_listed(state, &points) <= listing::SAME) {
             self.list(state, points);
@@ -318,18 +318,19 @@ impl Touch {
         pairs
     }
 
-    /// How far any point has moved since candidates were listed, in voxels.
+    /// Largest motion of any point since candidates were listed, in voxels.
     pub(super) fn farthest_from_listed(&self, state: &State, points: &[Vec3]) -> f64 {
         let moved = |(a, b): (&Vec3, &Vec3)| norm(sub(*a, *b));
         let farthest = points.iter().zip(&state.listed_points).map(moved);
         farthest.fold(0.0, f64::max) / self.description.voxel
     }
 
-    /// How far the bounds of friction are off, as a part of what they may: as vertices feel them, which may be `off_vertex`,
-    /// and summed over two surfaces.
+    /// Largest change of the friction bounds relative to its tolerance: on vertices, with the tolerance `off_vertex`,
+    /// and summed over each pair of surfaces.
     ///
-    /// Surfaces that do not fit share a pressure among their samples in many ways, between which multipliers decide slowly
-    /// and nothing moves: there are more samples than vertices that carry them. So single bounds do not count.
+    /// Surfaces that do not fit can distribute a pressure among their samples in many ways, between which multipliers
+    /// converge slowly without any motion: there are more samples than vertices that carry them. So bounds of single
+    /// samples do not count.
     fn off_bounds(&self, old: &[Memory], new: &[Memory], off_vertex: f64, negligible: f64) -> f64 {
         let mut pairs: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();
         let mut vertices: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
@@ -376,11 +377,11 @@ impl Touch {
         let of_pairs = pairs
             .values()
             .map(|[change, size]| change.abs() / (BOUND[0] * size.max(negligible)));
-        // Where nothing is bounded, 0/0 counts as nothing.
+        // A ratio 0/0 without any bound counts as zero.
         of_vertices.chain(of_pairs).fold(0.0, f64::max)
     }
 
-    /// The place of a triangle that a sample is over.
+    /// Foot of a sample on the triangle that it faces.
     fn foot(&self, meeting: &Meeting, points: &[Vec3]) -> (u32, [f64; 3]) {
         let weights = match meeting.facing {
             Facing::Across(..) => meeting.weights,
@@ -392,9 +393,9 @@ impl Touch {
         (meeting.triangle, weights)
     }
 
-    /// Where a sample that has come into contact since the last accepted state met the surface: as far back along its
-    /// way as the gap says. An edge holds on where it first presses at an equilibrium. Beside the place on the triangle that on
-    /// the edge, and the part of the step that was left.
+    /// First anchor of a sample that has come into contact since the last accepted state: the place where it met the
+    /// surface, back along its way by the ratio of the gaps. An edge sticks where it first presses at an equilibrium.
+    /// Returns the place on the triangle, the place on the edge, and the part of the step that remained.
     fn first_anchor(
         &self,
         state: &State,
@@ -426,13 +427,13 @@ impl Touch {
         } else {
             1.0
         };
-        // A touch that only just begins has `since` near 0: it has not slipped yet.
+        // A contact that only just begins has `since` near 0: it has not slipped yet.
         let slip = sub(point, foot_now);
         let anchor = add(point, scale(-since, slip));
         ((meeting.triangle, gap::affine(anchor, corners)), 0.0, since)
     }
 
-    /// Lets samples look for what they face: all of them, or those that have strayed from it.
+    /// Updates the faces that samples meet: of all of them, or of those that have strayed from theirs.
     pub(super) fn face(&self, state: &mut State, positions: &[Vec3], all: bool) {
         let points = self.points_at(positions);
         let facing = |index: usize| {

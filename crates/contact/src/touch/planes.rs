@@ -1,4 +1,4 @@
-//! Planes of symmetry: of contacts that are images of each other one counts.
+//! Planes of symmetry: of contact pairs that are images of each other one counts.
 
 use std::collections::BTreeMap;
 
@@ -8,14 +8,14 @@ use voxsoft_solid::vector::Vec3;
 use super::surface::Sample;
 use super::{Touch, between};
 
-/// How near to a plane of symmetry a place is in it, in voxels: edges that cross there do so up to this, and their images
-/// slip toward each other by no more.
+/// Distance within which a place counts as in a plane of symmetry, in voxels: edges cross there up to this tolerance,
+/// and their images slip toward each other by no more.
 const IN_PLANE: f64 = 1e-3;
 impl Touch {
-    /// Says that all moves symmetrically in planes through the origin across the given axes, `rest` (m) being symmetric. Of
-    /// samples that are images of each other one counts: two might hold on to other places, and pull for ever against each
-    /// other where nothing can give way. What lies in a plane counts in part, and does not slip across it: of the two sides
-    /// of a ridge there it faces either one.
+    /// Declares planes of symmetry through the origin across the given axes, `rest` (m) being symmetric. Of samples
+    /// that are images of each other one counts: two might stick to different places, and pull against each other for
+    /// ever where nothing can give way. A sample in a plane counts in part, and does not slip across it: of the two
+    /// sides of a ridge there it faces either one.
     #[must_use]
     pub fn with_planes(mut self, across: [bool; 3], rest: &[Vec3]) -> Self {
         let near = IN_PLANE * self.description.voxel;
@@ -37,12 +37,12 @@ impl Touch {
         self
     }
 
-    /// The part of a sample that counts.
+    /// Part of a sample that counts.
     pub(super) fn weight(&self, sample: u32) -> f64 {
         *self.weights.get(sample as usize).unwrap_or(&1.0)
     }
 
-    /// The points that are on the positive sides of planes where images of points are, of the same surface if there is one.
+    /// Points on the positive sides of the planes of which points are images, of the same surface if there is one.
     fn twins_across(&self, across: [bool; 3]) -> Vec<u32> {
         let near = IN_PLANE * self.description.voxel;
         let key = |point: u32| {
@@ -69,8 +69,8 @@ impl Touch {
         (0..count).map(twin).collect()
     }
 
-    /// The axes along which a sample may slip at a place of it. Where it has come to a plane it meets its own image, which moves
-    /// alike.
+    /// Axes along which a sample may slip at a place of it. A sample that has moved to a plane meets its own image,
+    /// which moves alike, and does not slip.
     pub(super) fn free_ways(&self, sample: u32, place: Vec3, points: &[Vec3]) -> [bool; 3] {
         if self.planes == [false; 3] {
             return [true; 3];

@@ -1,4 +1,4 @@
-//! Contact that goes over its path again.
+//! Recorded contact that can be retraced along its path.
 
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, sub};
 use voxsoft_solid::{Contact, Moment, RecordedContact};
@@ -7,11 +7,11 @@ use super::gap::normal;
 use super::state::{Facing, Memory, State};
 use super::{CREEP, Touch};
 
-/// How far the normal at an edge may be from that of the triangle there and still turn with it: the cosine of 0.08 degrees.
-/// What touches lies so near that the normal to the closest point is rounded to 10⁻⁵.
+/// Smallest cosine between the normal at an edge and that of the triangle there for which the facing turns with the
+/// triangle: 0.08 degrees. Surfaces in contact are so near that the normal to the closest point is rounded to 10⁻⁵.
 const FLUSH: f64 = 1.0 - 1e-6;
 
-/// What all samples held at an equilibrium, before it corrected them.
+/// Multipliers and facing of all samples at an equilibrium, before its correction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Held {
     now: Vec<Memory>,
@@ -21,11 +21,11 @@ pub struct Held {
     precise: bool,
 }
 
-/// A path as far as it was recorded.
+/// Recorded part of a path.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Recording {
     accepted: Vec<Moment<Held>>,
-    /// Since the last accepted state.
+    /// Moments since the last accepted state.
     pending: Vec<Moment<Held>>,
 }
 
@@ -48,7 +48,7 @@ impl State {
         }
     }
 
-    /// Contact has settled at the last equilibrium, and whether as precisely as was asked for.
+    /// Marks contact as settled at the last equilibrium, and if it is as precise as asked for.
     pub fn settle_moment(&mut self, precise: bool) {
         let pending = self
             .recording
@@ -60,14 +60,14 @@ impl State {
         }
     }
 
-    /// Takes what was recorded since the last accepted state as a step of the path.
+    /// Accepts the moments recorded since the last accepted state as a step of the path.
     pub fn keep_step(&mut self) {
         if let Some(recording) = &mut self.recording {
             recording.accepted.append(&mut recording.pending);
         }
     }
 
-    /// Forgets what was recorded since the last accepted state.
+    /// Drops the moments recorded since the last accepted state.
     pub fn drop_step(&mut self) {
         if let Some(recording) = &mut self.recording {
             recording.pending.clear();
@@ -139,8 +139,8 @@ impl RecordedContact for Touch {
     }
 }
 
-/// Moves what contacts of values around one hold so that its mean is what that one itself holds: only their differences
-/// are followed, and nothing drifts.
+/// Shifts the multipliers of contacts at perturbed values so that their mean is that of the unperturbed one: only their
+/// differences are followed, and nothing drifts.
 fn bring_around(around: &mut [&mut Memory], own: &Memory) {
     let part = 1.0 / around.len() as f64;
     let mut mean = Memory::default();
@@ -179,7 +179,7 @@ fn bring_around(around: &mut [&mut Memory], own: &Memory) {
 }
 
 impl Touch {
-    /// Corrects what samples hold, or where contact has `settled` accepts the state.
+    /// Corrects the multipliers, or accepts the state if contact has `settled`.
     fn follow_to(&mut self, positions: &[Vec3], settled: bool) {
         if !settled {
             self.state.now = self.corrected(&self.state, positions);
@@ -193,7 +193,7 @@ impl Touch {
         state.now = moved;
     }
 
-    /// Whether another contact has the same surfaces, wherever they are.
+    /// Tests whether another contact has the same surfaces, at any positions.
     pub fn has_surfaces_of(&self, other: &Self) -> bool {
         let sizes = |touch: &Self| {
             let surfaces = touch.description.surfaces.iter();
@@ -202,7 +202,7 @@ impl Touch {
         self.triangles == other.triangles && sizes(self) == sizes(other)
     }
 
-    /// Whether contact has settled as precisely as was asked for in all recorded steps.
+    /// Tests whether contact has settled to the requested precision in all recorded steps.
     pub fn recorded_precisely(&self) -> bool {
         let state = &self.state;
         let mut moments = state
@@ -212,8 +212,8 @@ impl Touch {
         moments.all(|moment| moment.memory.precise)
     }
 
-    /// The largest part of the pressure between surfaces with friction under which something has slipped, of the recorded
-    /// steps: by more than what sticks may creep.
+    /// Largest fraction of the pressure between surfaces with friction that slips, of the recorded steps: by more than
+    /// the tolerance of creep.
     pub fn recorded_slip(&self) -> f64 {
         let state = &self.state;
         let moments = state
@@ -224,8 +224,8 @@ impl Touch {
         steps.map(|moment| self.slip_at(moment)).fold(0.0, f64::max)
     }
 
-    /// The largest part of the pressure between surfaces with friction on what was not yet in contact after the first of the
-    /// recorded steps.
+    /// Largest fraction of the pressure between surfaces with friction on samples that came into contact after the
+    /// first of the recorded steps.
     pub fn recorded_touching_later(&self) -> f64 {
         let state = &self.state;
         let moments = state
@@ -278,8 +278,8 @@ impl Touch {
         }
     }
 
-    /// Lets samples that face an edge within a flat surface face the plane of its triangle, whose normal turns as the
-    /// triangle does: along a path such a normal is found anew with each correction.
+    /// Replaces an edge within a flat surface by the plane of its triangle as the face that a sample meets, whose
+    /// normal turns with the triangle: along a path the normal at an edge is found anew with each correction.
     fn turn_with_planes(&self, moment: &mut Moment<Held>) {
         let points = self.points_at(&moment.positions);
         for facing in moment.memory.facing.iter_mut().flatten() {

@@ -1,4 +1,4 @@
-//! What a state of contact comes to, pair by pair.
+//! Contact report of each pair of surfaces.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,37 +8,37 @@ use super::gap::normal;
 use super::state::State;
 use super::{Meeting, NEARLY, Touch};
 
-/// How near what is not pressed itself must be to count as touching between points that are, in voxels: facets of a
-/// ball of four voxels radius are a thirtieth of a voxel apart from it.
+/// Largest gap of a point between pressed ones that counts as in contact, in voxels: facets of a ball of four voxels
+/// radius are a thirtieth of a voxel apart from it.
 const NEAR: f64 = 0.05;
 
-/// The contact of two surfaces, or of one with itself.
+/// Contact of two surfaces, or of one with itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairReport {
     /// The two surfaces.
     pub of: [u32; 2],
-    /// The force on the first in N; zero for a surface with itself.
+    /// Force on the first surface in N; zero for a surface with itself.
     pub force: Vec3,
-    /// The sum of the sizes of all pressures and frictions, N: also what cancels.
+    /// Sum of the magnitudes of all contact forces with friction, N: also of those that cancel.
     pub pressed: f64,
-    /// The sum of all pressures alone, N.
+    /// Sum of all pressures alone, N.
     pub pressure: f64,
-    /// The part of the force that is friction, N.
+    /// Friction part of the force, N.
     pub friction: Vec3,
-    /// The most that friction can be: the sum of all pressures times their coefficients, N.
+    /// Bound of friction: the sum of all pressures times their coefficients, N.
     pub bound: f64,
-    /// The area in contact in the unloaded body, m²; bonded area is part of it.
+    /// Contact area in the unloaded body, m²; bonded area is part of it.
     pub area: f64,
-    /// The area that is bonded, m².
+    /// Bonded area, m².
     pub bonded: f64,
-    /// The smallest gap in m.
+    /// Smallest gap in m.
     pub gap: f64,
-    /// The part of the pressure under which the surfaces slip.
+    /// Fraction of the pressure under which the surfaces slip.
     pub slipping: f64,
 }
 
 impl PairReport {
-    /// Of surfaces that do not touch.
+    /// Report of surfaces without contact.
     fn apart(of: [u32; 2]) -> Self {
         Self {
             of,
@@ -56,8 +56,8 @@ impl PairReport {
 }
 
 impl Touch {
-    /// What touches at `positions`, with the multipliers of the last correction; ascending. With planes of symmetry what
-    /// counts of it, to which the caller adds the images.
+    /// Reports of the surfaces in contact at `positions`, with the multipliers of the last correction; ascending. With
+    /// planes of symmetry only the part that counts, to which the caller adds the images.
     pub fn pairs(&self, positions: &[Vec3]) -> Vec<PairReport> {
         let state = &self.state;
         let mut found: BTreeMap<[u32; 2], (PairReport, [f64; 2])> = BTreeMap::new();
@@ -127,20 +127,20 @@ impl Touch {
         each.collect()
     }
 
-    /// The surfaces that meet, the one with the smaller number first.
+    /// Surfaces of a contact pair, the smaller number first.
     fn surfaces_of(&self, meeting: &Meeting) -> [u32; 2] {
         let own = self.samples[meeting.sample as usize].surface;
         let other = self.surface_of[meeting.triangle as usize];
         [own.min(other), own.max(other)]
     }
 
-    /// On which of them the sample is; of one surface with itself, on the second.
+    /// Index of the surface in this pair that has the sample; for a surface with itself the second.
     fn side(&self, meeting: &Meeting) -> usize {
         let [first, second] = self.surfaces_of(meeting);
         usize::from(self.samples[meeting.sample as usize].surface != first || first == second)
     }
 
-    /// The area of a sample in the unloaded body, as far as it lies toward what it meets.
+    /// Area of a sample in the unloaded body, of its triangles that face the contact.
     fn area_toward(&self, meeting: &Meeting, points: &[Vec3]) -> f64 {
         let sample = &self.samples[meeting.sample as usize];
         let area = self.weight(meeting.sample) * sample.area;
@@ -152,10 +152,10 @@ impl Touch {
         area * part as f64 / sample.triangles.len() as f64
     }
 
-    /// Hands over every sample that is not pressed, and lies near what it meets and between some that are.
+    /// Calls `take` with every sample that is not pressed, near the face that it meets, and between pressed ones.
     ///
-    /// Facets of surfaces that do not fit each other meet at points: the vertices of a voxel move fewer ways than it
-    /// has points, and the others are left a little apart.
+    /// Facets of surfaces that do not fit each other meet at points: the vertices of a voxel have fewer degrees of
+    /// freedom than it has points, and the others keep a small gap.
     fn each_between(
         &self,
         state: &State,
@@ -178,7 +178,7 @@ impl Touch {
         }
     }
 
-    /// Whether pressed samples lie on opposite sides of a point, among those around the points around it.
+    /// Tests whether pressed samples lie on opposite sides of a point, among its neighbors and theirs.
     fn is_between(&self, point: u32, pressed: &[bool], points: &[Vec3]) -> bool {
         let ring = |point: u32| {
             let triangles = self.around[point as usize].iter();

@@ -1,9 +1,9 @@
 //! Rigid objects: points that four vertices carry.
 //!
-//! The four are corners of a box, in the directions of a regular tetrahedron, so that every point is a weighted mean
-//! of them whose weights are linear in its place. Of an object that moves freely the box lies along its principal
-//! axes, with half edges `a_i = √(S_i/m)` for the second moments of mass `S_i`: four quarters of the mass at its
-//! corners have the same center, mass and moments of inertia as the object. Six stiff springs keep them apart.
+//! The four are corners of a box, in the directions of a regular tetrahedron, so that every point is a weighted mean of
+//! them whose weights are linear in its place. For an object that moves freely the box lies along its principal axes,
+//! with half edges `a_i = √(S_i/m)` for the second moments of mass `S_i`: four quarters of the mass at its corners have
+//! the same center, mass and moments of inertia as the object. Six stiff springs keep them apart.
 
 use voxsoft_solid::matrix::{IDENTITY, Mat3, multiply, transpose};
 use voxsoft_solid::vector::{Vec3, add, cross, dot, norm, scale, sub};
@@ -19,14 +19,14 @@ const CORNERS: [Vec3; 4] = [
     [-1.0, 1.0, -1.0],
     [-1.0, -1.0, 1.0],
 ];
-/// The pairs of corners.
+/// Pairs of corners.
 const PAIRS: [[u32; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
-/// A voxel over what the points of an object may give way.
+/// Ratio of a voxel to the displacement allowed for the points of an object under load.
 const STIFFNESS: f64 = 1e4;
-/// The thinnest box, relative to its longest edge: a flat one would not hold its own shape.
+/// Thinnest box, relative to its longest edge: a flat one would not hold its own shape.
 const THINNEST: f64 = 1e-2;
 
-/// The box whose corners carry a rigid object.
+/// Box whose corners carry a rigid object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     middle: Vec3,
@@ -37,7 +37,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A cube around the middle of points, as far out as they are.
+    /// Cube around the middle of points, large enough to contain them.
     pub fn around(points: &[Vec3]) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for point in points {
@@ -54,7 +54,7 @@ impl Frame {
         }
     }
 
-    /// The box of an object with its center of mass at `center` (m), principal `axes` (unit vectors, row by row), and
+    /// Box of an object with its center of mass at `center` (m), principal `axes` (unit vectors, row by row), and
     /// `radii` (m), the roots of its second moments of mass along them over its mass.
     pub fn of_mass(center: Vec3, axes: Mat3, radii: Vec3) -> Result<Self, ProblemError> {
         let longest = radii.into_iter().fold(0.0, f64::max);
@@ -65,7 +65,7 @@ impl Frame {
             let what = "a radius of gyration of an object in m";
             return Err(ProblemError::NotPositive { what, value });
         }
-        // Right-handed, as poses are.
+        // Right-handed, like all poses.
         let mut axes = axes;
         axes[2] = cross(axes[0], axes[1]);
         Ok(Self {
@@ -75,7 +75,7 @@ impl Frame {
         })
     }
 
-    /// Its four vertices, m.
+    /// Four vertices of the box, m.
     pub fn vertices(&self) -> [Vec3; 4] {
         CORNERS.map(|corner| {
             let mut vertex = self.middle;
@@ -86,7 +86,7 @@ impl Frame {
         })
     }
 
-    /// A point of an object whose vertices are those from `first` on.
+    /// Weights of a point of an object whose vertices are those from `first` on.
     pub fn carry(&self, point: Vec3, first: u32) -> Carried {
         let from = sub(point, self.middle);
         // The corners of the cube have Σ s sᵀ = 4, so that the weights are linear in the offset.
@@ -100,16 +100,16 @@ impl Frame {
         }
     }
 
-    /// A stiffness (N/m) of [springs](Self::springs) by which an object with these points does not give way, pressed by
-    /// bodies of a modulus `young` (Pa) in voxels of a size `voxel` (m): a pressure of that modulus all over it moves its
-    /// points by a ten-thousandth of a voxel.
+    /// Stiffness (N/m) of [springs](Self::springs) that makes an object with these points effectively rigid, pressed by
+    /// bodies of a modulus `young` (Pa) in voxels of a size `voxel` (m): a pressure of that modulus all over it moves
+    /// its points by a ten-thousandth of a voxel.
     pub fn stiffness(&self, points: &[Vec3], young: f64, voxel: f64) -> f64 {
         let farthest = points.iter().map(|point| norm(sub(*point, self.middle)));
         let size = 2.0 * farthest.fold(0.0, f64::max);
         STIFFNESS * young * size * size / voxel
     }
 
-    /// Springs of a stiffness in N/m that keep the vertices from `first` on apart.
+    /// Springs of a stiffness in N/m that keep the distances of the vertices from `first` on.
     pub fn springs(&self, first: u32, stiffness: f64) -> [Spring; 6] {
         let vertices = self.vertices();
         PAIRS.map(|pair| Spring {
@@ -121,7 +121,7 @@ impl Frame {
         })
     }
 
-    /// Where the object is when its vertices are at `now`: its middle in m, and the rotation from its first pose.
+    /// Pose of the object when its vertices are at `now`: its middle in m, and the rotation from its first pose.
     pub fn pose(&self, now: &[Vec3; 4]) -> (Vec3, Mat3) {
         let middle = scale(0.25, now.iter().fold([0.0; 3], |sum, x| add(sum, *x)));
         let axis = |k: usize| {
@@ -151,7 +151,7 @@ mod tests {
     const POINTS: [Vec3; 3] = [[0.01, 0.02, 0.0], [0.04, -0.01, 0.03], [0.0, 0.0, 0.01]];
 
     #[test]
-    fn a_frame_carries_points_and_tells_the_pose() {
+    fn a_frame_carries_points_and_has_a_pose() {
         for frame in frames() {
             let vertices = frame.vertices();
             let (turn, shift) = (0.7, [0.1, -0.2, 0.05]);

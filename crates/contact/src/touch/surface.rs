@@ -1,4 +1,4 @@
-//! Surfaces that touch, and the points at which they are looked at.
+//! Contact surfaces, and their samples.
 
 use std::collections::BTreeMap;
 
@@ -8,14 +8,14 @@ use voxsoft_solid::vector::{Vec3, axpy};
 /// A point of a surface: the weighted mean of vertices of the problem.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Carried {
-    /// The vertices that carry it, each once.
+    /// Vertices that carry the point, each once.
     pub vertices: Vec<u32>,
-    /// Their weights; they sum to 1.
+    /// Weights of the vertices; they sum to 1.
     pub weights: Vec<f64>,
 }
 
 impl Carried {
-    /// A vertex of the problem itself.
+    /// Point at a vertex of the problem itself.
     pub fn vertex(vertex: u32) -> Self {
         Self {
             vertices: vec![vertex],
@@ -23,7 +23,7 @@ impl Carried {
         }
     }
 
-    /// Where it is.
+    /// Position of the point.
     pub fn at(&self, positions: &[Vec3]) -> Vec3 {
         let mut point = [0.0; 3];
         for (vertex, weight) in self.vertices.iter().zip(&self.weights) {
@@ -32,7 +32,7 @@ impl Carried {
         point
     }
 
-    /// Adds a force on it to those on the vertices that carry it.
+    /// Distributes a force on the point to the vertices that carry it.
     pub fn add_force(&self, factor: f64, force: Vec3, forces: &mut [Vec3]) {
         for (vertex, weight) in self.vertices.iter().zip(&self.weights) {
             axpy(&mut forces[*vertex as usize], factor * weight, force);
@@ -40,16 +40,16 @@ impl Carried {
     }
 }
 
-/// The closed surface of a body or of an object.
+/// Closed surface of a body or of an object.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Surface {
-    /// Its points.
+    /// Points of the surface.
     pub points: Vec<Carried>,
     /// Triangles of points, outward.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// The corners of the faces of a voxel, outward.
+/// Corners of the faces of a voxel, outward.
 const FACES: [[usize; 4]; 6] = [
     [0, 1, 3, 2],
     [4, 6, 7, 5],
@@ -59,16 +59,16 @@ const FACES: [[usize; 4]; 6] = [
     [1, 5, 7, 3],
 ];
 
-/// A face of a voxel that has no neighbor there.
+/// Outer face: a face of a voxel without a neighbor there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Face {
-    /// Its corners, outward.
+    /// Corners, outward.
     pub corners: [u32; 4],
-    /// The voxel that it is of.
+    /// Number of the voxel.
     pub voxel: u32,
 }
 
-/// The faces of voxels that have no neighbor, in an order that depends on their corners alone.
+/// Faces of voxels without a neighbor, in an order that depends on their corners alone.
 pub(crate) fn outer_faces(voxels: &[[u32; 8]]) -> Vec<Face> {
     let mut open: BTreeMap<[u32; 4], Option<Face>> = BTreeMap::new();
     for (number, voxel) in voxels.iter().enumerate() {
@@ -86,7 +86,7 @@ pub(crate) fn outer_faces(voxels: &[[u32; 8]]) -> Vec<Face> {
 }
 
 impl Surface {
-    /// Triangles of vertices of the problem.
+    /// Surface of triangles of vertices of the problem.
     pub fn of_triangles(triangles: &[[u32; 3]]) -> Self {
         let mut place: BTreeMap<u32, u32> = BTreeMap::new();
         let mut points = Vec::new();
@@ -100,16 +100,16 @@ impl Surface {
         Self { points, triangles }
     }
 
-    /// The faces of voxels that have no neighbor, each divided into squares by `refine` along an edge, two triangles
-    /// each. Its points move bilinearly with the four corners of their face: triangles of corners would share a
-    /// pressure unevenly among them.
+    /// Surface of the faces of voxels without a neighbor, each divided into squares by `refine` along an edge, two
+    /// triangles each. Its points move bilinearly with the four corners of their face: triangles of corners would share
+    /// a pressure unevenly among them.
     ///
     /// Corner `c` of a voxel is at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
     pub fn of_voxels(voxels: &[[u32; 8]], refine: u32) -> Self {
         Self::of_faces(&outer_faces(voxels), refine)
     }
 
-    /// Faces divided as [`Self::of_voxels`] says, their triangles in the order of the faces.
+    /// Faces divided like in [`Self::of_voxels`], their triangles in the order of the faces.
     pub(crate) fn of_faces(faces: &[Face], refine: u32) -> Self {
         let n = refine.max(1);
         let mut surface = Self::default();
@@ -140,7 +140,7 @@ impl Surface {
                         point(i + 1, j + 1),
                         point(i, j + 1),
                     ];
-                    // Diagonals in turn, so that the corners of a face have even shares.
+                    // Diagonals alternate, so that the corners of a face have equal shares.
                     let pair = if (i + j) % 2 == 0 {
                         [[a, b, c], [a, c, d]]
                     } else {
@@ -177,28 +177,28 @@ impl Surface {
     }
 }
 
-/// Where a surface looks at others: at each of its points, and along each of its edges.
+/// Contact sample: a point or an edge of a surface, at which the gap is measured.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sample {
-    /// The points at its ends, as they are numbered over all surfaces; a point is both.
+    /// Points at its ends, as numbered over all surfaces; a point is both.
     pub ends: [u32; 2],
-    /// The area that it stands for in the unloaded body, m²; none for an edge, whose ends have it.
+    /// Area that it stands for in the unloaded body, m²; none for an edge, whose ends have it.
     pub area: f64,
-    /// The surface that it is on.
+    /// Surface of the sample.
     pub surface: u32,
-    /// The triangles that it is on, as they are numbered over all surfaces.
+    /// Triangles that contain it, as numbered over all surfaces.
     pub triangles: Vec<u32>,
 }
 
 impl Sample {
-    /// Whether it is an edge, not a point.
+    /// Tests whether it is an edge, not a point.
     pub fn is_edge(&self) -> bool {
         self.ends[0] != self.ends[1]
     }
 }
 
-/// The points of a surface as samples, each with a third of the triangles around it; `first` are the numbers of its first
-/// point and triangle.
+/// Points of a surface as samples, each with a third of the area of the triangles around it; `first` are the numbers of
+/// its first point and triangle.
 pub(super) fn samples(
     surface: &Surface,
     number: u32,
@@ -223,7 +223,7 @@ pub(super) fn samples(
     samples
 }
 
-/// The edges of triangles of all surfaces as samples, in the order of their ends.
+/// Edges of the triangles of all surfaces as samples, in the order of their ends.
 pub(super) fn edges(triangles: &[[u32; 3]], surface_of: &[u32]) -> Vec<Sample> {
     let mut edges: BTreeMap<[u32; 2], Sample> = BTreeMap::new();
     for (t, [a, b, c]) in triangles.iter().copied().enumerate() {

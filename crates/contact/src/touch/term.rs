@@ -1,4 +1,4 @@
-//! Contact as a term of a body: its energy, forces and stiffness under the multipliers that it holds.
+//! Contact as an energy term: its energy, forces and tangent stiffness with given multipliers.
 
 use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::brick::Tangent;
@@ -11,8 +11,8 @@ use super::gap::{barycentric_gradients, crossing};
 use super::state::{Facing, State};
 use super::{Meeting, Spot, Touch, edges};
 
-/// How far, in units of Young's modulus, a pressure may be above its multiplier and count in how it turns. What a step
-/// has taken deep into each other is under pressures that nothing bears, and that would make the stiffness indefinite.
+/// Largest excess of a pressure over its multiplier that enters the geometric stiffness, in units of Young's modulus. A
+/// step that lets surfaces penetrate deeply causes spurious pressures, which would make the stiffness indefinite.
 const SPURIOUS: f64 = 0.3;
 
 impl Term for Touch {
@@ -94,7 +94,8 @@ impl Term for Touch {
 }
 
 impl Touch {
-    /// The stiffness with normals that turn under the pressure (N) that `believed` makes of a sample and its pressure.
+    /// Contact stiffness; its geometric part uses the pressure (N) that `believed` returns for a sample and its
+    /// pressure.
     pub(super) fn visit_stiffness_under(
         &self,
         state: &State,
@@ -112,7 +113,7 @@ impl Touch {
         self.each_tie(state, positions, |_, tie, _| self.visit_tie(tie, visit));
     }
 
-    /// Hands over a matrix on points, one behind the other, as one on the vertices that carry them.
+    /// Assembles a matrix on points, blockwise, into one on the vertices that carry them.
     fn visit_points(
         &self,
         points: &[u32],
@@ -149,7 +150,7 @@ impl Touch {
         visit(&vertices, &matrix);
     }
 
-    /// Hands over the vertices that carry a sample and a triangle.
+    /// Calls `visit` with the vertices that carry a sample and a triangle.
     pub(super) fn visit_pair(&self, (sample, triangle): (u32, u32), visit: &mut dyn FnMut(&[u32])) {
         let spot = Spot {
             sample,
@@ -162,7 +163,7 @@ impl Touch {
         self.visit_points(&points, nothing, &mut |vertices, _| visit(vertices));
     }
 
-    /// The stiffness of friction.
+    /// Tangent stiffness of friction.
     pub(super) fn visit_friction(&self, sample: u32, friction: &Friction, visit: Visitor<'_>) {
         let (factors, points): (Vec<f64>, Vec<u32>) = self.relative(friction.spot(sample)).unzip();
         let block = |a: usize, b: usize| {
@@ -173,7 +174,8 @@ impl Touch {
         self.visit_points(&points, block, visit);
     }
 
-    /// The stiffness of a pressed gap: `k n nᵀ` and how the normal turns under the pressure.
+    /// Tangent stiffness of a contact pair: `k n nᵀ` and the geometric stiffness of the turning normal under the
+    /// pressure.
     pub(super) fn visit_gap(
         &self,
         meeting: &Meeting,
@@ -208,8 +210,8 @@ impl Touch {
         self.visit_points(&own, block, visit);
     }
 
-    /// The vectors by which points turn the normal of a meeting, as [`super::gap`] has them, in the order of
-    /// [`Touch::relative`]; `None` where it is taken as it is.
+    /// Vectors by which points turn the normal of a contact pair, see [`super::gap`], in the order of
+    /// [`Touch::relative`]; `None` if the normal is held constant.
     fn turning(&self, meeting: &Meeting, points: &[Vec3]) -> Option<Vec<Vec3>> {
         let corners = self.corners(meeting.triangle, points);
         match meeting.facing {

@@ -1,10 +1,10 @@
-//! Contact of tetrahedra, alone and as mirror images, held to the laws of terms.
+//! Contact of tetrahedra, alone and with mirror images, checked against the laws of terms.
 use super::*;
 use voxsoft_solid::conformance::{Law, check_term};
 use voxsoft_solid::{Contact, Images, MirroredContact};
 
-/// Two tetrahedra, the tip of the second in a face of the first, by no more than pressures that are believed take:
-/// beyond them how a pressure turns is not all in the stiffness.
+/// Two tetrahedra, the tip of the second in a face of the first, by less than the pressure that the exact tangent
+/// accepts: beyond it the stiffness leaves out a part of the turning of the pressure.
 const PRESSED: [Vec3; 8] = [
     [0.0, 0.0, 0.0],
     [1.0, 0.1, 0.0],
@@ -15,10 +15,10 @@ const PRESSED: [Vec3; 8] = [
     [0.1, 0.2, 1.1],
     [0.4, 0.7, 0.9],
 ];
-/// Of negative volume, hence these faces.
+/// Faces of tetrahedra of negative volume.
 const FACES: [[u32; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
-/// A tetrahedron and, of the same surface, its image where there is one.
+/// Tetrahedron and, on the same surface, its image if there is one.
 fn tetrahedron(first: u32, image: Option<u32>) -> Surface {
     let of_image = image.map(|first| (first, FACES.map(|[a, b, c]| [a, c, b])));
     let mut surface = Surface {
@@ -51,7 +51,7 @@ fn pressed() -> (Touch, Vec<Vec3>) {
     (touch, PRESSED.to_vec())
 }
 
-/// The second tetrahedron lifted off the first.
+/// Second tetrahedron lifted off the first.
 fn apart(positions: &[Vec3]) -> Vec<Vec3> {
     let mut apart = positions.to_vec();
     for x in &mut apart[4..] {
@@ -61,7 +61,7 @@ fn apart(positions: &[Vec3]) -> Vec<Vec3> {
 }
 
 #[test]
-fn contact_keeps_the_laws_of_terms() {
+fn contact_obeys_the_laws_of_terms() {
     let (mut touch, positions) = pressed();
     let pairs = touch.pairs(&positions);
     assert_eq!(pairs.len(), 1);
@@ -74,7 +74,7 @@ fn contact_keeps_the_laws_of_terms() {
 }
 
 #[test]
-fn what_cannot_move_is_not_pushed_apart() {
+fn immovable_bodies_are_not_pushed_apart() {
     let (mut touch, positions) = pressed();
     touch.follow(&positions);
     assert!(!touch.correct(&positions, 0.0, 1.0), "it is too deep");
@@ -83,12 +83,12 @@ fn what_cannot_move_is_not_pushed_apart() {
     touch.follow(&positions);
     assert!(touch.pairs(&positions).is_empty());
     assert!(touch.correct(&positions, 0.0, 1.0));
-    // What comes to touch later is met as ever.
+    // A contact that closes later acts as usual.
     let (touch, _) = pressed();
     let mut touch = touch.with_still(vec![[true; 3]; 8], &apart(&PRESSED));
     touch.follow(&positions);
     assert_eq!(touch.pairs(&positions).len(), 1);
-    // The normal has a part along each axis, along which the tip may be moved.
+    // The normal has a component along each axis, along which the tip may be moved.
     for axis in 0..3 {
         let (touch, _) = pressed();
         let mut still = vec![[true; 3]; 8];
@@ -100,7 +100,7 @@ fn what_cannot_move_is_not_pushed_apart() {
 }
 
 #[test]
-fn contact_of_mirror_images_keeps_them_too_and_half_of_all_is_all_of_half() {
+fn mirrored_contact_equals_contact_of_half() {
     // Half of a body beside the plane x = 0, and the whole of both halves.
     let half = PRESSED.map(|[x, y, z]| [x + 0.5, y, z]).to_vec();
     let sides = [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]];
@@ -118,8 +118,8 @@ fn contact_of_mirror_images_keeps_them_too_and_half_of_all_is_all_of_half() {
     let apart = apart(&half);
     alone.follow(&half);
     alone.correct(&half, 0.0, 1.0);
-    // Anchored for what the other half may do to it, which here is nothing: that it costs nothing to move it is the
-    // one law that it breaks, behind those of derivatives.
+    // Mirrored contact counts as anchored by the other half, which here does not touch it: rigid motion without energy
+    // is the one law that it breaks, after those of derivatives pass.
     let keeps_derivatives = |mirrored: &MirroredContact<Touch>| {
         let broken = check_term(mirrored, &apart, &half).unwrap_err();
         assert_eq!(broken.law, Law::RigidMotion);

@@ -1,22 +1,21 @@
-//! `L D Lᵀ` of one tangent for each lane, on the envelope that they share.
+//! Factorization `L D Lᵀ` of one tangent for each lane, on a shared envelope.
 
 use pulp::{Simd, WithSimd};
 use voxsoft_solid::lanes::Lanes;
 
 use super::layout::{Layout, Row};
 
-/// A 3×3 block for each lane, row by row.
+/// Block of 3×3 numbers for each lane, row by row.
 type Block<S> = [<S as Simd>::f64s; 9];
 
 /// Factorizes in place, and counts negative pivots.
 ///
-/// There are no pivots off the diagonal: near an equilibrium that is stable the tangent is positive definite,
-/// and elsewhere a bad step is only a longer way. Diagonal blocks then hold their own factor: one over
-/// the pivots, and below them the unit triangle.
+/// There is no pivoting: near a stable equilibrium the tangent is positive definite, and elsewhere a bad step only
+/// costs more steps. Diagonal blocks then hold their own factor: one over the pivots, and below them the unit triangle.
 pub(super) struct Factor<'a> {
     pub layout: &'a Layout,
     pub blocks: &'a mut [f64],
-    /// How many pivots of each lane are negative.
+    /// Number of negative pivots of each lane.
     pub negative: &'a mut [f64],
 }
 
@@ -111,7 +110,7 @@ impl WithSimd for Factor<'_> {
     }
 }
 
-/// Where the diagonal block of a row stands.
+/// Index of the diagonal block of a row.
 fn diagonal(row: &Row, place: usize) -> usize {
     row.start as usize + place - row.first as usize
 }

@@ -1,4 +1,4 @@
-//! As many candidates as the processor has lanes, each replaced by the next as soon as it is done.
+//! Group of candidates, one for each SIMD lane, each replaced by the next as soon as it is done.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -24,12 +24,12 @@ impl WithSimd for Count {
     }
 }
 
-/// The number of lanes of a processor.
+/// Number of lanes of a processor.
 pub(super) fn count(arch: pulp::Arch) -> usize {
     arch.dispatch(Count)
 }
 
-/// The arrays of all lanes: the numbers of one place side by side.
+/// Arrays of all lanes: the numbers of one place side by side.
 pub(super) struct Group<'a> {
     task: &'a Task<'a>,
     layout: &'a Layout,
@@ -104,7 +104,7 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// One Newton step of all lanes.
+    /// Takes one Newton step of all lanes.
     fn step(&mut self) {
         self.forces();
         let mut balanced = vec![false; self.width];
@@ -126,7 +126,7 @@ impl<'a> Group<'a> {
             self.fresh[lane] = if start || balanced[lane] { 1.0 } else { 0.0 };
         }
         self.tangents();
-        // A lane whose forces balance asks its tangent, and goes on to more load with the same one.
+        // A balanced lane tests its tangent, and continues to more load with the same one.
         let mut moves: Vec<bool> = self.lanes.iter().map(Option::is_some).collect();
         for lane in (0..self.width).filter(|&lane| balanced[lane]) {
             moves[lane] = self.judge(lane);
@@ -156,7 +156,7 @@ impl<'a> Group<'a> {
         Some(self.lanes[lane].as_mut()?.look(norm, tolerance))
     }
 
-    /// What becomes of a lane whose forces balance; whether it moves on with the tangent at hand.
+    /// Handles a lane in equilibrium; returns true if it moves on with the present tangent.
     fn judge(&mut self, lane: usize) -> bool {
         let stable = self.negative[lane] == 0.0;
         let Some(state) = &mut self.lanes[lane] else {
@@ -167,7 +167,7 @@ impl<'a> Group<'a> {
             return false;
         }
         if !stable {
-            // The single solver says more about it.
+            // The single solver may still find an equilibrium.
             self.finish(lane, Status::NotConverged);
             return false;
         }
@@ -202,7 +202,7 @@ impl<'a> Group<'a> {
         true
     }
 
-    /// Goes back to the last equilibrium with a shorter step, or gives the candidate up; whether the lane is
+    /// Goes back to the last equilibrium with a shorter step, or gives the candidate up; returns true if the lane is
     /// still in use.
     fn go_back(&mut self, lane: usize) -> bool {
         let Some(mut state) = self.lanes[lane].take() else {
@@ -277,7 +277,7 @@ impl<'a> Group<'a> {
             .collect()
     }
 
-    /// How far the vertex that went farthest is from rest, in m.
+    /// Largest distance of a vertex from rest, in m.
     fn travel(&self, lane: usize) -> f64 {
         let rest = self.layout.rest.iter().enumerate();
         rest.map(|(vertex, rest)| {

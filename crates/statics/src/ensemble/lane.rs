@@ -1,40 +1,40 @@
-//! How far one candidate has come on its load path: the way that [`crate::solve`] takes, but that the whole
-//! load is always tried first.
+//! Progress of one candidate on its load path: the adaptive steps of [`crate::solve`], except that the whole load is
+//! always tried first.
 
 use voxsoft_solid::vector::Vec3;
 
 use crate::equilibrium::{MIXED_ITERATIONS, PATIENCE, is_standstill};
 use crate::path::{EASY, UNSTABLE_CUTS};
 
-/// Steps below this part of the full load are not tried.
+/// Smallest step, as a part of the full load.
 const LEAST_STEP: f64 = 1e-3;
-/// Bodies do not move farther than this many of their sizes in one step.
+/// Largest move of a vertex in one step, in sizes of the body.
 const FARTHEST: f64 = 20.0;
 
-/// What the forces at some positions mean.
+/// Assessment of the forces at some positions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Look {
-    /// They balance; whether the state is stable is to be asked.
+    /// Equilibrium; its stability has to be tested.
     Balanced,
-    /// On with the next step.
+    /// Not in equilibrium: the next step follows.
     Open,
-    /// Newton's method goes nowhere.
+    /// Newton's method has diverged.
     Lost,
 }
 
-/// One candidate under way.
+/// Candidate in progress.
 pub(super) struct Lane {
     pub candidate: usize,
-    /// The last equilibrium, in m, and the part of the load that it carries.
+    /// Last equilibrium, in m, and the part of the load that it carries.
     pub saved: Vec<Vec3>,
     pub carried: f64,
-    /// The part of the load that is being tried.
+    /// Part of the load that is being tried.
     pub tried: f64,
     step: f64,
-    /// The norm of the full external forces and the forces of a negligible strain, in N.
+    /// Norm of the full external forces and the forces of a negligible strain, in N.
     full: f64,
     negligible: f64,
-    /// Newton steps at this part of the load, and altogether.
+    /// Newton steps at this part of the load, and in total.
     pub here: u32,
     pub iterations: u32,
     pub back_offs: u32,
@@ -66,7 +66,7 @@ impl Lane {
         }
     }
 
-    /// Judges the norm (N) of the forces left over on free coordinates.
+    /// Assesses the norm (N) of the residual on free coordinates.
     pub fn look(&mut self, norm: f64, tolerance: f64) -> Look {
         self.residual = norm / f64::max(self.tried * self.full, self.negligible);
         if !self.residual.is_finite() {
@@ -85,8 +85,8 @@ impl Lane {
         Look::Open
     }
 
-    /// Judges a step from the sum and the largest of the squares (m²) by which vertices went, and how far
-    /// they are from rest (m); whether it was one that Newton's method may take.
+    /// Assesses a step from the sum and the largest of the squares (m²) of the moves of vertices, and their distance
+    /// from rest (m); returns true if Newton's method may take it.
     pub fn took(&mut self, sum: f64, largest: f64, size: f64, moved: f64) -> bool {
         self.here += 1;
         self.iterations += 1;
@@ -95,7 +95,7 @@ impl Lane {
         sum.is_finite() && largest < FARTHEST * size
     }
 
-    /// Keeps an equilibrium, and goes on to more of the load; `false` where all of it is carried.
+    /// Accepts an equilibrium, and sets the next part of the load; returns `false` if all of it is carried.
     pub fn accept(&mut self) -> bool {
         self.carried = self.tried;
         if self.here <= EASY {
@@ -106,14 +106,14 @@ impl Lane {
         self.carried < 1.0
     }
 
-    /// Whether a state that is not stable is tried again with a shorter step: a long one may come upon a
-    /// branch that the path does not lead to.
+    /// Decides if an unstable state is tried again with a shorter step: a long one may reach a branch that the path
+    /// does not lead to.
     pub fn refuses_unstable(&mut self) -> bool {
         self.unstable_cuts += 1;
         self.unstable_cuts <= UNSTABLE_CUTS
     }
 
-    /// Goes back to the last equilibrium and cuts the step; `false` where it is too short already.
+    /// Goes back to the last equilibrium and cuts the step; returns `false` if it is too short already.
     pub fn cut(&mut self) -> bool {
         self.back_offs += 1;
         self.step = (self.tried - self.carried) / 4.0;

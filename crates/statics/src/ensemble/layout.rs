@@ -1,21 +1,21 @@
-//! What all candidates share: the order of elimination, and where each constraint goes in the tangent.
+//! Data shared by all candidates: the order of elimination, and the entries of each constraint in the tangent.
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Load, Problem};
 
-/// Marks a vertex that is held along all axes, and a block of the tangent that does not exist.
+/// Index of a vertex that is held along all axes, and of a block of the tangent that does not exist.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// An edge constraint and its blocks of the tangent.
+/// Edge constraint and its blocks of the tangent.
 pub(super) struct EdgePiece {
     pub ends: [u32; 2],
-    /// m
+    /// Rest length, m.
     pub length: f64,
-    /// N/m, before the candidate's factor.
+    /// Stiffness in N/m, before the candidate's factor.
     pub stiffness: f64,
-    /// The blocks of each end with itself.
+    /// Blocks of each end with itself.
     pub diagonal: [u32; 2],
-    /// The block of the two ends; symmetric, so that it does not matter which comes first.
+    /// Block of the two ends; symmetric, so that their order does not matter.
     pub cross: u32,
 }
 
@@ -23,38 +23,37 @@ pub(super) struct EdgePiece {
 #[derive(Clone, Copy)]
 pub(super) struct Pair {
     pub block: u32,
-    /// The corner whose row it is, eliminated after the other.
+    /// Corner of the row, eliminated after the other.
     pub row: u8,
     pub column: u8,
-    /// The other two corners, in the order in which the second derivative of the volume by row and
-    /// column is `[x_to − x_from]×/6`.
+    /// Other two corners, in the order in which the second derivative of the volume with respect to row and column is
+    /// `[x_to − x_from]×/6`.
     pub from: u8,
     pub to: u8,
 }
 
-/// A volume constraint and its blocks of the tangent.
+/// Volume constraint and its blocks of the tangent.
 pub(super) struct TetPiece {
     pub vertices: [u32; 4],
-    /// m³
+    /// Rest volume, m³.
     pub volume: f64,
-    /// Pa/m³, before the candidate's factor.
+    /// Stiffness in Pa/m³, before the candidate's factor.
     pub stiffness: f64,
     pub diagonal: [u32; 4],
     pub pairs: [Pair; 6],
 }
 
-/// A row of 3×3 blocks of the lower half of the tangent: all columns from the first one that is not
-/// zero to the diagonal.
+/// Row of 3×3 blocks of the lower half of the tangent: all columns from the first nonzero one to the diagonal.
 #[derive(Clone, Copy)]
 pub(super) struct Row {
     pub vertex: u32,
-    /// The row of the first block.
+    /// Row of the first block.
     pub first: u32,
-    /// Where that block stands in the list of all blocks.
+    /// Index of that block in the list of all blocks.
     pub start: u32,
 }
 
-/// Everything about a problem that does not depend on the candidate.
+/// Data of a problem that do not depend on the candidate.
 pub(super) struct Layout {
     pub rest: Vec<Vec3>,
     pub edges: Vec<EdgePiece>,
@@ -64,22 +63,21 @@ pub(super) struct Layout {
     pub blocks: usize,
     /// Held axes of such vertices: row and axis.
     pub pinned: Vec<(u32, u8)>,
-    /// Numbers of the tangent that belong to held axes.
+    /// Entries of the tangent that belong to held axes.
     pub cleared: Vec<u32>,
-    /// Those of them on the diagonal.
+    /// Diagonal entries among them.
     pub ones: Vec<u32>,
-    /// The weight of each vertex and the other forces on it in N, with the final factors of their
-    /// histories.
+    /// Weight of each vertex and the other forces on it in N, with the final factors of their histories.
     pub weight: Vec<Vec3>,
     pub forces: Vec<Vec3>,
-    /// m
+    /// Size of the body, m.
     pub size: f64,
-    /// N, before the candidate's factor on edges.
+    /// Force of a unit strain in N, before the candidate's factor on edges.
     pub unit_strain_force: f64,
 }
 
-/// For each pair of corners the other two, so that the second derivative of the volume by the first and
-/// the second is `[x_to − x_from]×/6`.
+/// Other two corners for each pair of corners, so that the second derivative of the volume with respect to the first
+/// and the second is `[x_to − x_from]×/6`.
 const PAIRS: [[u8; 4]; 6] = [
     [0, 1, 3, 2],
     [0, 2, 1, 3],
@@ -90,8 +88,7 @@ const PAIRS: [[u8; 4]; 6] = [
 ];
 
 impl Layout {
-    /// The layout of a lattice body in dead loads, on no floor, whose clamps stand still; `None` for any
-    /// other.
+    /// Lays out a lattice body under dead loads, without a floor, with fixed clamps; `None` for any other.
     pub fn of(problem: &Problem) -> Option<Self> {
         let body = problem.body();
         let beyond = body.attached().count() + body.membranes().len();
@@ -132,7 +129,7 @@ impl Layout {
                 pairs: PAIRS.map(|[p, q, from, to]| {
                     let block = block(tet.vertices[p as usize], tet.vertices[q as usize]);
                     let (row, column) = if place(p) > place(q) { (p, q) } else { (q, p) };
-                    // The block of `q` and `p` is the transpose, and turns the sign.
+                    // The block of `q` and `p` is the transpose, and changes the sign.
                     let (from, to) = if row == p { (from, to) } else { (to, from) };
                     Pair {
                         block,
@@ -174,7 +171,7 @@ impl Layout {
         })
     }
 
-    /// The products of 3×3 blocks that a factorization takes.
+    /// Number of products of 3×3 blocks in a factorization.
     pub fn products(&self) -> u64 {
         let row = |(index, row): (usize, &Row)| {
             let width = |j: u32| j - self.rows[j as usize].first.max(row.first);
@@ -187,10 +184,10 @@ impl Layout {
     }
 }
 
-/// The rows of the tangent, and the row of each vertex or [`NONE`].
+/// Rows of the tangent, and the row of each vertex or [`NONE`].
 ///
-/// Vertices are eliminated along the longest axis of the body: the envelope of the factor is then about
-/// as wide as two layers of vertices across it.
+/// Vertices are eliminated along the longest axis of the body: the envelope of the factor is then about as wide as two
+/// layers of vertices across it.
 fn skyline(problem: &Problem) -> (Vec<Row>, Vec<u32>) {
     let body = problem.body();
     let rest = body.rest();
@@ -203,7 +200,7 @@ fn skyline(problem: &Problem) -> (Vec<Row>, Vec<u32>) {
     let mut order: Vec<u32> = (0..rest.len() as u32)
         .filter(|&v| problem.held()[v as usize] != [true; 3])
         .collect();
-    // Coordinates of one layer agree to rounding only.
+    // Coordinates of one layer agree only up to rounding.
     let slack = 1e-6
         * body
             .edges()
@@ -249,7 +246,7 @@ fn skyline(problem: &Problem) -> (Vec<Row>, Vec<u32>) {
     (rows.collect(), places)
 }
 
-/// The held axes of vertices that are free along others, with what of the tangent belongs to them.
+/// Held axes of vertices that are free along others, their entries of the tangent, and those on the diagonal.
 fn pinned(problem: &Problem, rows: &[Row]) -> (Vec<(u32, u8)>, Vec<u32>, Vec<u32>) {
     let (mut pinned, mut cleared, mut ones) = (Vec::new(), Vec::new(), Vec::new());
     for (place, row) in rows.iter().enumerate() {

@@ -1,21 +1,19 @@
-//! Many candidates of one lattice body at a time: the same mesh, clamps and loads with other moduli and
-//! other factors on the loads.
+//! Many candidates of one lattice body at a time: the same mesh, clamps and loads with other moduli and other factors
+//! on the loads.
 //!
-//! Each lane of the processor holds one candidate, so that constraints and blocks of the tangent are taken
-//! one after the other with plain loads, whatever the mesh. All lanes take a Newton step together
-//! with strains carried along ([`voxsoft_solid::mixed`]); how far each is on its load path is its own
-//! affair. One that has come to rest makes room for the next candidate, so a slow one holds up no other.
-//! Groups of lanes run side by side on threads. A lane never sees its neighbors: the bits of an answer
-//! depend neither on the company, nor on the number of lanes or threads.
+//! Each SIMD lane of the processor holds one candidate, so that constraints and blocks of the tangent are processed one
+//! after the other with contiguous loads, whatever the mesh. All lanes take a mixed Newton step together, with strains
+//! as unknowns ([`voxsoft_solid::mixed`]); the position on the load path is individual. A candidate that has come to
+//! rest makes room for the next one, so a slow one holds up no other. Groups of lanes run side by side on threads. A
+//! lane never sees its neighbors: the bits of a result depend neither on them, nor on the number of lanes or threads.
 //!
 //! # Why Newton's method and not relaxation
 //!
-//! For a beam of 20 × 2 × 2 voxels a step of relaxation is some 30,000 operations, and a Newton step some
-//! 400,000, of which 230,000 are products of the factorization. To 10⁻⁶ of the load relaxation takes 900
-//! to 7,500 steps, Newton's method 3 to 10 for what bends moderately and up to 50 for what hangs like
-//! a rope. Both fill the lanes alike; the second takes a tenth of the operations or less. The products
-//! grow with the square of the body's cross section, so that squat bodies are better relaxed
-//! ([`Ensemble::products`]).
+//! For a beam of 20 × 2 × 2 voxels a step of relaxation is some 30,000 operations, and a Newton step some 400,000, of
+//! which 230,000 are products of the factorization. To 10⁻⁶ of the load relaxation takes 900 to 7,500 steps, Newton's
+//! method 3 to 10 for moderate bending and up to 50 for a body that hangs like a rope. Both fill the lanes alike; the
+//! second takes a tenth of the operations or less. The products grow with the square of the body's cross section, so
+//! that squat bodies are better relaxed ([`Ensemble::products`]).
 
 mod factor;
 mod group;
@@ -32,42 +30,42 @@ use group::Group;
 use layout::Layout;
 use voxsoft_solid::Status;
 
-/// What sets one candidate apart from the problem that all share, as factors.
+/// Parameters of one candidate, as factors on the common problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Variant {
-    /// On the stiffness of all edges.
+    /// Factor on the stiffness of all edges.
     pub edge: f64,
-    /// On the stiffness of all tetrahedra.
+    /// Factor on the stiffness of all tetrahedra.
     pub bulk: f64,
-    /// On gravity: of another density, or another acceleration.
+    /// Factor on gravity: of another density, or another acceleration.
     pub weight: f64,
-    /// On all other forces.
+    /// Factor on all other forces.
     pub forces: f64,
 }
 
-/// Where one candidate ended.
+/// Result of one candidate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settled {
-    /// The last equilibrium, in m.
+    /// Last equilibrium, in m.
     pub positions: Vec<Vec3>,
-    /// [`Status::AtRest`] in a stable equilibrium under the full load; [`Status::NotConverged`] where
-    /// [`crate::solve`], which knows more ways, may still find one; [`Status::Cancelled`].
+    /// [`Status::AtRest`] in a stable equilibrium under the full load; [`Status::NotConverged`] if [`crate::solve`],
+    /// which has more methods, may still find one; [`Status::Cancelled`].
     pub status: Status,
-    /// The residual force without units.
+    /// Relative residual force.
     pub residual: f64,
     /// Newton steps.
     pub iterations: u32,
-    /// How often the load step was cut.
+    /// Cuts of the load step.
     pub back_offs: u32,
 }
 
-/// A problem laid out for many candidates at a time.
+/// Problem laid out for many candidates at a time.
 pub struct Ensemble {
     layout: Layout,
     arch: pulp::Arch,
 }
 
-/// What groups work on.
+/// Input of all groups.
 struct Task<'a> {
     layout: &'a Layout,
     arch: pulp::Arch,
@@ -77,8 +75,7 @@ struct Task<'a> {
 }
 
 impl Ensemble {
-    /// Lays out a lattice body in dead loads, on no floor, whose clamps stand still; `None` for any
-    /// other.
+    /// Lays out a lattice body under dead loads, without a floor, with fixed clamps; `None` for any other.
     pub fn of(problem: &Problem) -> Option<Self> {
         Some(Self {
             layout: Layout::of(problem)?,
@@ -86,24 +83,24 @@ impl Ensemble {
         })
     }
 
-    /// The products of 3×3 blocks that each candidate's factorization takes.
+    /// Number of products of 3×3 blocks in each candidate's factorization.
     pub fn products(&self) -> u64 {
         self.layout.products()
     }
 
-    /// The bytes that the tangents of one thread take.
+    /// Memory of the tangents of one thread, in bytes.
     pub fn bytes(&self) -> u64 {
         (9 * self.layout.blocks * self.lanes() * size_of::<f64>()) as u64
     }
 
-    /// The candidates that are taken at a time on one thread.
+    /// Number of candidates at a time on one thread.
     pub fn lanes(&self) -> usize {
         group::count(self.arch)
     }
 
-    /// The equilibria of all candidates under the final values of all loads, in the order of `variants`.
+    /// Finds the equilibria of all candidates under the final values of all loads, in the order of `variants`.
     ///
-    /// `tolerance` is that of [`crate::Settings`]; `stop` is asked at every Newton step.
+    /// `tolerance` is that of [`crate::Settings`]; `stop` is polled at every Newton step.
     pub fn settle(
         &self,
         variants: &[Variant],
@@ -155,8 +152,8 @@ impl Ensemble {
     }
 }
 
-/// Four lanes instead of eight where that is enough for all threads: their arrays are half as large, so that
-/// a step takes little more than half the time. Both give the same bits.
+/// Selects four lanes instead of eight if that is enough for all threads: their arrays are half as large, so that a
+/// step takes little more than half the time. Both give the same bits.
 #[cfg(target_arch = "x86_64")]
 fn narrowed(arch: pulp::Arch, candidates: usize) -> pulp::Arch {
     match (arch, pulp::x86::V3::try_new()) {
@@ -165,7 +162,7 @@ fn narrowed(arch: pulp::Arch, candidates: usize) -> pulp::Arch {
     }
 }
 
-/// Other processors have no more than four lanes.
+/// Keeps the lanes: other processors have no more than four.
 #[cfg(not(target_arch = "x86_64"))]
 fn narrowed(arch: pulp::Arch, _: usize) -> pulp::Arch {
     arch
@@ -243,14 +240,14 @@ mod tests {
     }
 
     #[test]
-    fn one_lane_finds_what_many_do() {
+    fn one_lane_agrees_with_many() {
         let one = settled_on(pulp::Arch::Scalar, &variants());
         let many = settled_on(pulp::Arch::new(), &variants());
         for (one, many) in one.iter().zip(&many) {
             assert_eq!((one.status, many.status), (Status::AtRest, Status::AtRest));
             let numbers = one.positions.iter().flatten();
             for (a, b) in numbers.zip(many.positions.iter().flatten()) {
-                // Without fused operations sums round otherwise; both leave 1e-9 of the load.
+                // Without fused operations sums round differently; both leave 1e-9 of the load.
                 assert!((a - b).abs() < 1e-9, "{a} {b}");
             }
         }

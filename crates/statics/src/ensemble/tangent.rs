@@ -34,21 +34,21 @@ fn accumulate<S: Simd>(lanes: Lanes<S>, to: &mut Wide<S>, factor: S::f64s, value
     }
 }
 
-/// The net forces, and their part on free coordinates.
+/// Net forces, and their part on free coordinates.
 pub(super) struct Forces<'a> {
     pub layout: &'a Layout,
     pub positions: &'a [f64],
-    /// The candidates' factors on the stiffness of edges and of tetrahedra.
+    /// Factors of the candidates on the stiffness of edges and of tetrahedra.
     pub edge: &'a [f64],
     pub bulk: &'a [f64],
-    /// Full external forces and the part of them that acts.
+    /// Full external forces and the acting part of them.
     pub external: &'a [f64],
     pub load: &'a [f64],
-    /// Room for the forces on all vertices.
+    /// Buffer for the forces on all vertices.
     pub net: &'a mut [f64],
-    /// Those on free coordinates, row by row.
+    /// Net forces on free coordinates, row by row.
     pub sides: &'a mut [f64],
-    /// The squares of their norms.
+    /// Squares of their norms.
     pub squares: &'a mut [f64],
 }
 
@@ -104,15 +104,15 @@ impl WithSimd for Forces<'_> {
     }
 }
 
-/// The tangents, with strains that the last step predicted or, in fresh lanes, those of the positions.
+/// Tangents, with strains that the last step predicted or, in fresh lanes, those of the positions.
 pub(super) struct Tangent<'a> {
     pub layout: &'a Layout,
     pub positions: &'a [f64],
     pub edge: &'a [f64],
     pub bulk: &'a [f64],
-    /// Above zero in lanes that take the strains of their positions.
+    /// Above zero in lanes that use the strains of their positions.
     pub fresh: &'a [f64],
-    /// The predicted changes of lengths (m) and volumes (m³).
+    /// Predicted changes of lengths (m) and volumes (m³).
     pub stretches: &'a [f64],
     pub swellings: &'a [f64],
     pub blocks: &'a mut [f64],
@@ -230,17 +230,17 @@ impl WithSimd for Tangent<'_> {
     }
 }
 
-/// Takes the steps, and predicts the strains that they lead to.
+/// Takes the steps, and predicts the strains at their ends.
 pub(super) struct Advance<'a> {
     pub layout: &'a Layout,
     pub positions: &'a mut [f64],
-    /// The steps of free coordinates in m, row by row.
+    /// Steps of free coordinates in m, row by row.
     pub sides: &'a [f64],
-    /// Room for the steps of all vertices.
+    /// Buffer for the steps of all vertices.
     pub moves: &'a mut [f64],
     pub stretches: &'a mut [f64],
     pub swellings: &'a mut [f64],
-    /// The sum and the largest of the squares of the steps of vertices, in m².
+    /// Sum and largest of the squares of the steps of vertices, in m².
     pub sum: &'a mut [f64],
     pub largest: &'a mut [f64],
 }

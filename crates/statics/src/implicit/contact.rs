@@ -1,13 +1,13 @@
 //! Contact and free rigid bodies within a step.
 //!
-//! Contact is a term of the body that is minimized with the rest, its multipliers as they are; they are corrected once,
-//! at the end of the step. What samples face is fixed during a search and looked for anew after it: where that has
-//! changed anything the search goes on.
+//! Contact is a term of the body that is minimized with the rest, with fixed multipliers; they are corrected once, at
+//! the end of the step. The facing of samples is fixed during a search and updated after it: if that has changed
+//! anything the search continues.
 //!
-//! Where something touches, at the start of a step or at its end, the step is taken by the backward Euler formula: one
-//! that looks two steps back lets what meets rebound too fast (see [`crate::transient`]).
+//! If there is contact at the start of a step or at its end, the step is taken by the backward Euler formula: one that
+//! looks two steps back makes bodies in contact rebound too fast (see [`crate::transient`]).
 //!
-//! A rigid body moves as four vertices whose forces and moves are made rigid, and which are put back where they have
+//! A rigid body moves as four vertices whose forces and moves are projected to rigid ones, and which are restored to
 //! their distances after every move: no move has to go along the narrow valley of its stiff springs.
 
 use voxsoft_solid::Problem;
@@ -16,13 +16,13 @@ use voxsoft_solid::vector::Vec3;
 use super::objective::{Goal, Objective, Value};
 use super::{Implicit, MOST_MOVES, MOST_MOVES_IN_CONTACT, MOVE_IN_CONTACT, MOVE_OF_EDGE, ROUGH};
 
-/// Searches of one step for which samples may look anew at what they face.
+/// Most searches of one step after which samples update their facing.
 pub(super) const FACING_ROUNDS: u32 = 2;
-/// The same after which contact may resist more, where something is too deep.
+/// Most searches after which the contact penalty may grow, if a sample is too deep.
 pub(super) const DEEP_ROUNDS: u32 = 4;
 
 impl Implicit {
-    /// Lets all samples look for what they face at `positions`.
+    /// Updates the facing of all samples at `positions`; a full search if `anew`.
     pub(super) fn face(&mut self, positions: &[Vec3], anew: bool) {
         if let Some(contact) = self.problem.contact_mut() {
             if anew {
@@ -32,7 +32,7 @@ impl Implicit {
         }
     }
 
-    /// Evaluates anew what is faced at `positions`; whether that changes anything.
+    /// Updates the facing at `positions`, with the value; returns true if the potential changes.
     pub(super) fn faces_other(
         &mut self,
         goal: Goal<'_>,
@@ -49,7 +49,7 @@ impl Implicit {
         value.potential != before
     }
 
-    /// Lets contact resist more where something is too deep at `positions`; whether anything is.
+    /// Raises the contact penalty if a sample is too deep at `positions`; returns true if one is.
     pub(super) fn stiffens(
         &mut self,
         goal: Goal<'_>,
@@ -65,8 +65,7 @@ impl Implicit {
         true
     }
 
-    /// A last move of a search that is small in any case (m), how many moves it may take, and how many times as large
-    /// the last one may be then.
+    /// Tolerance of the last move of a search (m), most moves, and the factor on the tolerance after them.
     pub(super) fn patience(&self) -> (f64, u32, f64) {
         let (part, most, rough) = match self.problem.contact() {
             Some(_) => (MOVE_IN_CONTACT, MOST_MOVES_IN_CONTACT, ROUGH),
@@ -75,21 +74,21 @@ impl Implicit {
         (part * self.shortest_edge, most, rough)
     }
 
-    /// Whether anything is pressed at `positions`.
+    /// Tests whether any sample is pressed at `positions`.
     pub(super) fn touches(&self, positions: &[Vec3]) -> bool {
         let contact = self.problem.contact();
         contact.is_some_and(|contact| contact.is_touching(positions))
     }
 }
 
-/// Leaves of vectors on the vertices of rigid bodies what is rigid.
+/// Projects vectors on the vertices of rigid bodies to rigid motions.
 pub(super) fn make_rigid(problem: &Problem, positions: &[Vec3], vectors: &mut [Vec3]) {
     for body in problem.rigid() {
         body.project(positions, vectors);
     }
 }
 
-/// Gives the vertices of rigid bodies back their distances.
+/// Restores the distances of the vertices of rigid bodies.
 pub(super) fn restore(problem: &Problem, positions: &mut [Vec3]) {
     for body in problem.rigid() {
         body.restore(problem.body().rest(), positions);

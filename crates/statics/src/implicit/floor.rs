@@ -1,4 +1,4 @@
-//! The floor, and what else holds single vertices: clamps and hands.
+//! Floor, and other supports of single vertices: clamps and hands.
 
 use voxsoft_solid::Grab;
 use voxsoft_solid::vector::Vec3;
@@ -6,11 +6,11 @@ use voxsoft_solid::vector::Vec3;
 use super::Implicit;
 use super::objective::Value;
 
-/// The stiffness of the floor under a vertex that rests on it, over the inertia of the vertex.
+/// Stiffness of the floor under a vertex that rests on it, over the inertia of the vertex.
 const FLOOR_STIFFNESS: f64 = 1e8;
 
 impl Implicit {
-    /// Puts what clamps and floor hold where it belongs.
+    /// Moves vertices of clamps and floor to their targets.
     pub(super) fn place(&self, time: f64, positions: &mut [Vec3]) {
         self.problem.place_clamps(time, 1.0, positions);
         let Some(floor) = self.problem.floor() else {
@@ -27,7 +27,7 @@ impl Implicit {
         }
     }
 
-    /// The springs on free coordinates.
+    /// Springs on free coordinates.
     pub(super) fn springs(&self, inertia: f64, grabs: &[Grab]) -> Vec<f64> {
         let Some(lagged) = &self.lagged else {
             return Vec::new();
@@ -49,7 +49,8 @@ impl Implicit {
         springs
     }
 
-    /// Lets the floor catch what fell below it and let go what it pulls; whether anything changed.
+    /// Updates the active set of the floor: catches vertices below it and releases those that it pulls; returns true if
+    /// any changed.
     pub(super) fn touch_floor(&mut self, positions: &mut [Vec3], value: &Value) -> bool {
         let Some(floor) = self.problem.floor() else {
             return false;

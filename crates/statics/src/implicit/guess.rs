@@ -1,4 +1,4 @@
-//! Where the search for the end of a step begins.
+//! Starting guess of a step.
 
 use voxsoft_solid::vector::{Vec3, axpy, sub};
 
@@ -6,18 +6,18 @@ use super::Implicit;
 use super::contact::restore;
 use super::objective::{Goal, Objective, Value};
 
-/// The kinetic energy over the elastic one above which a step looks whether the motion goes on as it did.
+/// Ratio of the kinetic energy to the elastic one above which a step checks the prediction of its motion.
 const VIOLENT: f64 = 1e-3;
 
 impl Implicit {
-    /// Where the search begins, evaluated, and the potential of standing still where that is known.
+    /// Starting guess of the step with its value, and the potential of standing still as a bound, if that is known.
     pub(super) fn first_guess(&mut self, goal: Goal<'_>) -> (Vec<Vec3>, Value, f64) {
         let (positions, value) = self.judged(self.predicted(goal.time), goal);
         if !self.is_violent() && !self.touches(&positions) {
             let bound = value.potential;
             return (positions, value, bound);
         }
-        // The motion may not go on as it did: a load has jumped, or something is met.
+        // The prediction may be wrong: a load has jumped, or a contact has closed.
         let (stayed, other) = self.judged(self.stayed(goal.time), goal);
         let bound = other.potential;
         if !(value.potential <= bound) {
@@ -27,11 +27,11 @@ impl Implicit {
         (positions, value, bound)
     }
 
-    /// Begins anew from standing still where that has less potential, after contact has changed what faces what or how
-    /// much it resists; the potential of standing still.
+    /// Restarts from standing still if that has a lower potential, after contact has changed its facing or penalty;
+    /// returns the potential of standing still.
     ///
-    /// What was found before may lie deep in what is faced now, and a search from there spends the energy of a spring that
-    /// nothing has compressed on throwing the body away.
+    /// The previous result may be deep in a surface that is faced now, and a search from there converts the energy of a
+    /// fictitious compression into motion.
     pub(super) fn stay_where_better(
         &mut self,
         goal: Goal<'_>,
@@ -49,7 +49,7 @@ impl Implicit {
         bound
     }
 
-    /// A guess, what it faces being looked for there.
+    /// Guess with its value, with the facing of samples updated there.
     fn judged(&mut self, positions: Vec<Vec3>, goal: Goal<'_>) -> (Vec<Vec3>, Value) {
         self.face(&positions, true);
         let mut value = Value::default();
@@ -58,13 +58,13 @@ impl Implicit {
         (positions, value)
     }
 
-    /// Whether the body moves so fast, or has changed so much, that its motion cannot be foreseen.
+    /// Tests whether the body moves so fast, or has changed so much, that its motion cannot be predicted.
     fn is_violent(&self) -> bool {
         let kinetic = self.state.kinetic_energy(self.problem.body().masses());
         !(kinetic <= VIOLENT * self.value.energy)
     }
 
-    /// Where the search begins: the motion goes on as it did, clamps are where they belong.
+    /// Prediction of the motion with its velocity and acceleration, and clamps at their targets.
     fn predicted(&self, time: f64) -> Vec<Vec3> {
         let step = time - self.state.time;
         let mut positions = self.state.positions.clone();
@@ -85,7 +85,7 @@ impl Implicit {
         positions
     }
 
-    /// Where it begins instead: where the body is, but for its clamps.
+    /// Prediction of standing still, except for clamps.
     fn stayed(&self, time: f64) -> Vec<Vec3> {
         let mut positions = self.state.positions.clone();
         self.place(time, &mut positions);

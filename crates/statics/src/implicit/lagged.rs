@@ -1,8 +1,8 @@
-//! The tangent of a step, factorized now and then and corrected in between.
+//! Lagged tangent of a step, factorized now and then and corrected in between.
 //!
-//! `A = K + κ M + D`: stiffness of the body and its pressures at some earlier positions, inertia, and a diagonal
-//! of springs: grabs, and vertices held on the floor by one that is as good as rigid. A factor serves many steps.
-//! A few entries of `D` that have changed since are made up for exactly (Sherman, Morrison and Woodbury):
+//! `A = K + κ M + D`: stiffness of the body and its pressures at some earlier positions, inertia, and a diagonal of
+//! springs: grabs, and practically rigid ones on vertices held on the floor. A factor serves many steps. A few entries
+//! of `D` that have changed since are corrected exactly (Sherman, Morrison and Woodbury):
 //! `(A + E Δ Eᵀ)⁻¹ = A⁻¹ − C (Δ⁻¹ + Eᵀ C)⁻¹ Cᵀ` with `C = A⁻¹ E`.
 
 use voxsoft_solid::brick::{Tangent, Within};
@@ -15,32 +15,32 @@ use crate::system::{FactorError, Means};
 
 /// Changed entries of `D` beyond which a new factor is cheaper: each costs a solution.
 const MOST_PATCHES: usize = 24;
-/// How the inertia is lifted until the sum is positive definite.
+/// Factor by which the inertia is raised until the sum is positive definite, and most such raises.
 const LIFT: f64 = 4.0;
 const MOST_LIFTS: u32 = 12;
 
-/// An entry of `D` that has changed.
+/// Changed entry of `D`.
 struct Patch {
     row: usize,
     change: f64,
-    /// `A⁻¹ e`.
+    /// Solution `A⁻¹ e`.
     column: Vec<f64>,
 }
 
-/// The tangent with its last factor.
+/// Tangent with its last factor.
 pub(super) struct Lagged {
     system: DirectSystem,
     /// Masses on free coordinates.
     masses: Vec<f64>,
-    /// Whether the loads have a potential, whose Hessian is part of the tangent.
+    /// True if the loads have a potential, whose Hessian is part of the tangent.
     conservative: bool,
     assembled: bool,
     factor: Option<DirectFactor>,
-    /// `κ` in 1/s² and `D` in N/m that the factor is made for.
+    /// Inertia `κ` in 1/s² and springs `D` in N/m of the factor.
     inertia: f64,
     springs: Vec<f64>,
     patches: Vec<Patch>,
-    /// `A` stands for `R A Rᵀ`, with the turn of every vertex since the stiffness was taken.
+    /// Rotations of all vertices since the assembly: `A` stands for `R A Rᵀ`.
     turns: Turns,
 }
 
@@ -61,20 +61,20 @@ impl Lagged {
         })
     }
 
-    /// Whether there is a factor that serves for an inertia of `κ`.
+    /// Tests whether the factor serves for an inertia of `κ`.
     pub fn serves(&self, inertia: f64, range: f64) -> bool {
         let ratio = inertia / self.inertia;
         self.factor.is_some() && ratio < range && ratio * range > 1.0
     }
 
-    /// What a factor costs, in units of a solution: both go through all entries, the factor once for each row
-    /// of an entry's column.
+    /// Cost of a factor, in units of a solution: both go through all entries, the factor once for each row of an
+    /// entry's column.
     pub fn factor_cost(&self) -> f64 {
         (self.system.factor_entries() as f64 / self.system.size() as f64 / 16.0).max(4.0)
     }
 
-    /// Takes the stiffness at `positions` and `time`, that of the loads included where they have a potential; or, where
-    /// it is to be [`Tangent::Stressless`], without what stress and loads add to it.
+    /// Assembles the stiffness at `positions` and `time`, that of the loads included if they have a potential; a
+    /// [`Tangent::Stressless`] one without the geometric stiffness and that of loads.
     pub fn assemble(
         &mut self,
         problem: &Problem,
@@ -100,24 +100,24 @@ impl Lagged {
         self.factor = None;
     }
 
-    /// Whether a stiffness was taken.
+    /// Tests whether a stiffness is assembled.
     pub fn is_assembled(&self) -> bool {
         self.assembled
     }
 
-    /// Forgets the stiffness.
+    /// Discards the stiffness.
     pub fn forget(&mut self) {
         self.assembled = false;
         self.factor = None;
     }
 
-    /// Factorizes for an inertia of `κ` (1/s²) and springs on coordinates (N/m); `false` where the sum is not
+    /// Factorizes for an inertia of `κ` (1/s²) and springs on coordinates (N/m); returns `false` if the sum is not
     /// positive definite.
     pub fn factorize(&mut self, inertia: f64, springs: &[f64]) -> Result<bool, FactorError> {
         self.factorize_as(inertia, inertia, springs)
     }
 
-    /// The same with as much more inertia as that takes.
+    /// Factorizes with as much more inertia as a positive definite sum takes.
     pub fn factorize_lifted(&mut self, inertia: f64, springs: &[f64]) -> Result<(), FactorError> {
         let mut lifted = inertia;
         for _ in 0..MOST_LIFTS {
@@ -150,7 +150,7 @@ impl Lagged {
         Ok(true)
     }
 
-    /// Takes other springs into account; `false` where only a new factor can.
+    /// Updates the springs; returns `false` if that takes a new factor.
     pub fn patch(&mut self, springs: &[f64]) -> bool {
         let changes = || {
             let pairs = springs.iter().zip(&self.springs).enumerate();
@@ -185,12 +185,12 @@ impl Lagged {
         true
     }
 
-    /// Takes the turns of all vertices up to `positions`; those on the floor do not turn.
+    /// Updates the rotations of all vertices to `positions`; those on the floor do not rotate.
     pub fn turn(&mut self, problem: &Problem, positions: &[Vec3], carried: &[bool]) {
         self.turns.take(problem, positions, carried);
     }
 
-    /// `R A⁻¹ Rᵀ` times forces on free coordinates: moves of all vertices, and of the free coordinates.
+    /// Applies `R A⁻¹ Rᵀ` to forces on free coordinates.
     pub fn apply(&self, side: &mut Vec<f64>) {
         let mut vectors = self.system.spread(side);
         self.turns.back(&mut vectors);
@@ -201,7 +201,7 @@ impl Lagged {
         *side = self.system.gather(&vectors);
     }
 
-    /// `A⁻¹` times a vector, in place.
+    /// Applies `A⁻¹` to a vector, in place.
     fn solve(&self, side: &mut [f64]) {
         let Some(factor) = &self.factor else {
             return;
@@ -227,28 +227,28 @@ impl Lagged {
         }
     }
 
-    /// The free coordinates of vectors on vertices.
+    /// Restricts vectors on vertices to free coordinates.
     pub fn gather(&self, vectors: &[Vec3]) -> Vec<f64> {
         self.system.gather(vectors)
     }
 
-    /// Free coordinates as vectors on vertices, zero where held.
+    /// Expands free coordinates into vectors on vertices, zero where held.
     pub fn spread(&self, free: &[f64]) -> Vec<Vec3> {
         self.system.spread(free)
     }
 
-    /// The row of a coordinate, if it is free.
+    /// Row of a coordinate, if it is free.
     pub fn row_of(&self, vertex: usize, axis: usize) -> Option<usize> {
         self.system.row_of(vertex, axis)
     }
 
-    /// The number of free coordinates.
+    /// Number of free coordinates.
     pub fn size(&self) -> usize {
         self.system.size()
     }
 }
 
-/// Solves a small dense system in place, with the largest pivots.
+/// Solves a small dense system in place, with partial pivoting.
 fn eliminate(matrix: &mut [Vec<f64>], right: &mut [f64]) {
     let count = right.len();
     for k in 0..count {

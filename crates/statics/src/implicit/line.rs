@@ -1,31 +1,31 @@
-//! How far to go along a direction down the potential of a time step.
+//! Line search along a descent direction of the potential of a time step.
 //!
-//! A move that brings too little is halved. Where surfaces may meet that is not enough: on the way the slope jumps from
-//! that of free flight to that of contact, and a move that ends before the jump leaves the search as wise as it was. There
-//! the secant of the slopes finds the end, the upper slope being halved whenever the lower end has moved (the Illinois
-//! variant of the false position, Dowell and Jarratt 1971, doi 10.1007/BF01934364), until at most [`FLAT`] of the first
-//! slope is left.
+//! A move that decreases the potential too little is halved. Where contact may close that is not enough: on the way the
+//! slope jumps from that of free flight to that of contact, and a move that ends before the jump gains no information.
+//! There the secant of the slopes finds the end, the upper slope being halved whenever the lower end has moved (the
+//! Illinois variant of the false position, Dowell and Jarratt 1971, doi 10.1007/BF01934364), until at most [`FLAT`] of
+//! the first slope is left.
 
-/// How often the end of a move may be changed.
+/// Most changes of the end of a move, without contact and with it.
 const CHANGES: u32 = 8;
 const CHANGES_IN_CONTACT: u32 = 16;
-/// The part of the slope at the start that may be left at the end of a move which contact has shortened.
+/// Fraction of the initial slope that may remain at the end of a move which contact has shortened.
 const FLAT: f64 = 0.5;
-/// How near an end a trial between both may be, as a part of the way between them.
+/// Smallest distance of a trial from both ends, as a part of the way between them.
 const LEAST_PART: f64 = 1.0 / 16.0;
 
-/// How a trial ended.
+/// Outcome of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// A voxel is turned inside out, or gives way.
+    /// A voxel is inverted, or its material unstable.
     Unsound,
-    /// The potential is too large.
+    /// The potential is too high.
     TooFar,
     /// The potential is low enough.
     Lower,
 }
 
-/// Which step follows a trial.
+/// Action after a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Then {
     Take,
@@ -33,14 +33,14 @@ pub(super) enum Then {
     GiveUp,
 }
 
-/// The search for the end of a move.
+/// Search for the end of a move.
 pub(super) struct Line {
-    /// The part of the move to try.
+    /// Part of the move to try.
     pub part: f64,
-    /// The slope of the potential at the start, in J.
+    /// Slope of the potential at the start, in J.
     start: f64,
-    /// Parts with the slopes of the potential there, in J: of the last trial that was low enough, and of the last one that
-    /// went too far in contact.
+    /// Parts with the slopes of the potential there, in J: of the last trial that was low enough, and of the last one
+    /// that was too high in contact.
     low: (f64, f64),
     high: Option<(f64, f64)>,
     in_contact: bool,
@@ -48,7 +48,7 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Begins with the part `part` of a move along which the potential falls by `gain` (J) at first.
+    /// Begins with the part `part` of a move along which the potential decreases by `gain` (J) at first.
     pub fn new(part: f64, gain: f64, in_contact: bool) -> Self {
         Self {
             part,
@@ -60,12 +60,12 @@ impl Line {
         }
     }
 
-    /// Whether no trial had to be changed.
+    /// Tests that no trial had to be changed.
     pub fn is_whole(&self) -> bool {
         self.changes == 0
     }
 
-    /// Goes on after a trial of `part` with its outcome and the slope there.
+    /// Continues after a trial of `part` with its outcome and the slope there.
     pub fn after(&mut self, outcome: Outcome, slope: impl FnOnce() -> f64) -> Then {
         match (outcome, self.high) {
             (Outcome::Lower, Some(high)) if self.changes < CHANGES_IN_CONTACT => {
@@ -100,7 +100,7 @@ impl Line {
         }
     }
 
-    /// Where the secant of the slopes vanishes, or the middle.
+    /// Root of the secant of the slopes, or the midpoint.
     fn between(&self) -> f64 {
         let (begin, below) = self.low;
         let (end, part) = match self.high {

@@ -1,4 +1,4 @@
-//! Quasi-Newton steps down the potential of a time step.
+//! Quasi-Newton minimization of the potential of a time step.
 
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
 use voxsoft_solid::matrix::determinant;
@@ -11,58 +11,58 @@ use super::line::{Line, Outcome, Then};
 use super::objective::{Objective, Value};
 use super::quasi_newton::{Memory, product};
 
-/// The parts of [`Tolerance`].
+/// Factors of [`Tolerance`].
 const MOVE_OF_STEP: f64 = 1e-2;
 const MOVE_OF_FORCES: f64 = 3e-2;
-/// Armijo's condition: the part of the predicted gain that a move must bring.
+/// Armijo's condition: the fraction of the predicted decrease that a move must achieve.
 const SUFFICIENT: f64 = 1e-4;
-/// The largest stretch of a voxel after a move, unless it is stretched farther already: no elastomer follows.
+/// Largest stretch of a voxel after a move, unless it is stretched farther already: beyond the range of any elastomer.
 const LARGEST_STRETCH: f64 = 20.0;
-/// How far one move may turn or strain a voxel: what turns by `θ` in a straight line swells by `θ²`.
+/// Largest change of a voxel's deformation gradient by one move: a rotation by `θ` along straight lines swells by `θ²`.
 const LARGEST_CHANGE: f64 = 0.15;
-/// Potentials are sums of many terms and known to about this part of their size, and of the energy of a strain of one:
+/// Relative rounding of potentials, which are sums of many terms, and rounding relative to the energy of a unit strain:
 /// small strains are found as differences.
 const ROUNDING: f64 = 1e-12;
 const ROUNDING_OF_STRAIN: f64 = 4e-15;
-/// The least volume ratio of a voxel after a move, unless it is pressed flatter already.
+/// Smallest volume ratio of a voxel after a move, unless it is compressed more already.
 const LEAST_VOLUME: f64 = 0.05;
 
-/// How a search for the minimum ended.
+/// End of a search for the minimum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
-    /// The last move was as small as asked.
+    /// The last move was within the tolerance.
     Found,
-    /// As many moves as allowed, the last one being small enough where surfaces touch.
+    /// Most moves were taken, the last one being small enough in contact.
     Rough,
-    /// As many moves as allowed.
+    /// Most moves were taken.
     Slow,
-    /// No move along the direction helps.
+    /// No move along the direction decreases the potential.
     Stuck,
     /// The caller asked to stop.
     Cancelled,
 }
 
-/// A search for the minimum.
+/// Search for the minimum.
 pub(super) struct Search<'a> {
     pub objective: Objective<'a>,
     pub lagged: &'a mut Lagged,
     pub memory: &'a mut Memory,
-    /// Coordinates that do not move besides the clamped ones: vertices on the floor.
+    /// Vertices on the floor, whose z coordinates do not move, besides the clamped ones.
     pub carried: &'a [bool],
-    /// After which move it ends.
+    /// Tolerance of the last move.
     pub tolerance: Tolerance<'a>,
 }
 
-/// How small the last move of a search must be: as a part of how far the step has come, and of how far forces have
-/// driven it from where the body would be without them.
+/// Tolerance of the last move of a search: relative to the motion of the step so far, and to the displacement by forces
+/// from the force-free positions.
 pub(super) struct Tolerance<'a> {
-    /// The positions that the step starts from, m.
+    /// Positions at the start of the step, m.
     pub from: &'a [Vec3],
-    /// Where the body would be without forces, m.
+    /// Force-free positions, m.
     pub free: &'a [Vec3],
-    /// What is small in any case, m.
+    /// Smallest tolerance, m.
     pub least: f64,
-    /// How many times as large a last move may be that ends a search which has taken as many as allowed.
+    /// Factor on the tolerance after the most moves.
     pub rough: f64,
 }
 
@@ -74,14 +74,14 @@ impl Tolerance<'_> {
     }
 }
 
-/// The largest distance between two places of a vertex.
+/// Largest distance between two places of a vertex.
 fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
     let pairs = a.iter().zip(b);
     pairs.map(|(a, b)| norm(sub(*a, *b))).fold(0.0, f64::max)
 }
 
 impl Search<'_> {
-    /// Goes down from `positions`, at most as many moves; `value` is that at `positions`, before and after.
+    /// Minimizes from `positions` with `most` moves at most; `value` is that at `positions`, before and after.
     pub fn run(
         &mut self,
         positions: &mut Vec<Vec3>,
@@ -109,7 +109,7 @@ impl Search<'_> {
             let direction = lagged.gather(&moves);
             let gain = product(&direction, &force);
             if !(gain > 0.0) {
-                // A force of zero, or rounding.
+                // Zero force, or rounding.
                 let end = if gain == 0.0 { End::Found } else { End::Stuck };
                 return (end, taken);
             }
@@ -152,7 +152,7 @@ impl Search<'_> {
             let step = direction.iter().map(|d| part * d).collect();
             self.memory.note(step, change, part * part * gain);
             force = after;
-            // A move that had to be shortened does not show how near the minimum is.
+            // A shortened move does not show the distance from the minimum.
             last = if line.is_whole() {
                 part * largest
             } else {
@@ -166,13 +166,14 @@ impl Search<'_> {
         (if rough { End::Rough } else { End::Slow }, most)
     }
 
-    /// What potentials are known to, in J.
+    /// Rounding of potentials, in J.
     fn rounding(&self, a: &Value, b: &Value) -> f64 {
         let unit = self.objective.problem.body().unit_strain_energy();
         ROUNDING * a.size.max(b.size) + ROUNDING_OF_STRAIN * unit
     }
 
-    /// Whether the material still resists: constants that were fitted to some range may promise energy beyond it.
+    /// Tests whether the material is stable: constants that were fitted to some range may have negative energy beyond
+    /// it.
     fn is_stable(&self, value: &Value) -> bool {
         let unit = self.objective.problem.body().unit_strain_energy();
         value.energy >= -NEGLIGIBLE_STRAIN.powi(2) * unit
@@ -197,7 +198,7 @@ impl Search<'_> {
     }
 }
 
-/// The largest norm of the change of a voxel's deformation gradient: how far it is turned or strained.
+/// Largest norm of the change of a voxel's deformation gradient, by rotation or strain.
 fn largest_change(problem: &Problem, moves: &[Vec3]) -> f64 {
     let size = |brick: &voxsoft_solid::Brick| {
         let change = brick.deformation(problem.body().material_of(brick), moves);
@@ -212,7 +213,7 @@ fn largest_change(problem: &Problem, moves: &[Vec3]) -> f64 {
     bricks.map(size).fold(0.0, f64::max)
 }
 
-/// The least ratio of volumes and the largest stretch among voxels.
+/// Smallest volume ratio and largest stretch among voxels.
 #[derive(Clone, Copy)]
 struct Extremes {
     volume: f64,

@@ -1,4 +1,4 @@
-//! Motion by implicit steps: rubber that moves while someone pulls at it.
+//! Implicit dynamics: motion of rubber while a user pulls at it.
 //!
 //! A step of a frame's length is the minimum of a potential, because the second-order backward difference formula
 //! ([`scheme`]) makes the equation of motion at its end
@@ -8,9 +8,9 @@
 //! ```
 //!
 //! with the rate of damping `c`. A line search on the potential makes sudden loads and strong pulls harmless, and a
-//! rest has `a = v = 0`, so that it is the equilibrium whatever the step. The minimum is sought by quasi-Newton
-//! steps ([`minimize`]) with a factor of the tangent that serves many steps ([`lagged`]); it is made anew where the
-//! moves that an old one costs would have paid for it.
+//! rest has `a = v = 0`, so that it is the equilibrium whatever the step. The minimum is found by quasi-Newton steps
+//! ([`minimize`]) with a factor of the tangent that serves many steps ([`lagged`]); it is renewed once the extra moves
+//! with an old one have cost as much.
 
 mod contact;
 mod floor;
@@ -46,33 +46,33 @@ use self::viscosity::Viscosity;
 use crate::settings::LinearSolver;
 use crate::system::{FactorError, Means};
 
-/// Moves of one search; another follows with a fresh tangent.
+/// Most moves of one search; another follows with a fresh tangent.
 const MOST_MOVES: u32 = 8;
-/// Searches of one step, after which it counts as failed.
+/// Most searches of one step, after which it counts as failed.
 const MOST_SEARCHES: u32 = 30;
-/// A last move of a search that is small in any case, as a part of the shortest edge; where there is contact, a
-/// hundredth of its clearance.
+/// Tolerance of the last move of a search, as a part of the shortest edge; the second one, with contact, is a hundredth
+/// of its clearance.
 const MOVE_OF_EDGE: f64 = 1e-9;
 const MOVE_IN_CONTACT: f64 = 1e-5;
-/// Where there is contact: moves of one search, and how many times as large its last move may be after them. What comes
-/// into contact or leaves it is not in the factor.
+/// Most moves of one search with contact, and the factor on its tolerance after them. Changes of the active set are not
+/// in the factor.
 const MOST_MOVES_IN_CONTACT: u32 = 12;
 const ROUGH: f64 = 10.0;
-/// Tangents of one step where there is contact: it ends where it has come to then, unless it would have been better to
-/// stand still, and says that it has not settled.
+/// Most tangents of one step with contact: it then ends at its present state, unless standing still has a lower
+/// potential, and reports that it has not settled.
 const SEARCHES_IN_CONTACT: u32 = 6;
-/// By how much the inertia of a factor may be off.
+/// Largest ratio of the inertia of a step to that of the factor, or its inverse.
 const INERTIA_RANGE: f64 = 1.5;
-/// How fast an anchor goes, in shortest edges per second: one edge in a step of 1/60 s. Where time is shown slower
-/// than the clock a hand is faster than life, and steps in which it drags a vertex across several voxels cost three
-/// times as many moves, which slows time further. At 240 the PneuNet template stayed at 0.16 of real time under a
-/// hand that turns once a second; at 60 it runs at 0.47.
+/// Speed of an anchor, in shortest edges per second: one edge in a step of 1/60 s. If the simulation is slower than
+/// real time, a hand is faster than life, and steps in which it drags a vertex across several voxels cost three times
+/// as many moves, which slows it further. At 240 the PneuNet template stayed at 0.16 of real time under a hand that
+/// turns once a second; at 60 it runs at 0.47.
 const ANCHOR_SPEED: f64 = 60.0;
-/// How often a step is halved before a run counts as diverged.
+/// Most halvings of a step before a run counts as diverged.
 const MAX_BACK_OFFS: u32 = 10;
-/// Good steps after which a halved one is doubled again.
+/// Successful steps after which a halved one is doubled again.
 const PATIENCE: u32 = 3;
-/// The tangent is factorized directly, whatever its size.
+/// Direct factorization of the tangent, whatever its size.
 const MEANS: Means = Means {
     solver: LinearSolver::Direct,
     memory: u64::MAX,
@@ -80,18 +80,17 @@ const MEANS: Means = Means {
 /// Rounds of a step in which vertices may touch the floor or leave it.
 const FLOOR_ROUNDS: u32 = 3;
 
-/// How an [`Implicit`] run steps.
+/// Settings of an [`Implicit`] run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImplicitSettings {
-    /// The length of a step in s.
+    /// Length of a step in s.
     pub step: f64,
     /// Damping of all motion.
     pub damping: Damping,
-    /// Retardation time in s of Kelvin–Voigt damping: the deviatoric stress of a hyperelastic voxel answers to
+    /// Retardation time in s of Kelvin–Voigt damping: the deviatoric stress of a hyperelastic voxel becomes
     /// `s + τ ds/dt`.
     pub retardation: f64,
-    /// Rest is where the relative residual force is below this, and the kinetic energy below this part of the
-    /// elastic energy.
+    /// Tolerance of rest: of the relative residual force, and of the kinetic energy over the elastic energy.
     pub tolerance: f64,
 }
 
@@ -139,31 +138,31 @@ pub struct Implicit {
     problem: Problem,
     settings: ImplicitSettings,
     hands: Hands,
-    /// Made at the first step; an error is told by it.
+    /// Tangent, created at the first step, which reports errors.
     lagged: Option<Lagged>,
     memory: Memory,
     pressures: Pressures,
     viscosity: Option<Viscosity>,
     state: State,
-    /// The state one step ago, from which the next one learns.
+    /// State one step ago, for the prediction of the next one.
     before: Option<State>,
-    /// Which part of the motion comes next.
+    /// Stage of the motion that comes next.
     stage: Stage,
     /// Potential, energy and forces at the state.
     value: Value,
     /// Vertices that the floor carries.
     carried: Vec<bool>,
-    /// Whether the last step went on to the end of its search.
+    /// True if the last step was minimized to its tolerance.
     settled: bool,
-    /// Whether anything was pressed during the last step, at its end or on the way there.
+    /// True if any sample was pressed during the last step, at its end or on the way there.
     met: bool,
-    /// Whether contact joins other vertices than the tangent has room for.
+    /// True if contact pairs have changed beyond the sparsity pattern of the tangent.
     pattern_changed: bool,
     damping_rate: f64,
     step: f64,
     steps: u64,
     back_offs: u32,
-    /// Good steps since the last halving.
+    /// Successful steps since the last halving.
     good: u32,
     /// Moves that the present factor has cost beyond those of a fresh one.
     excess: f64,
@@ -174,7 +173,7 @@ pub struct Implicit {
     shortest_edge: f64,
 }
 
-/// Why a step was not taken.
+/// Reasons why a step was not taken.
 enum Failure {
     /// No minimum was found.
     Lost,
@@ -223,7 +222,7 @@ impl Implicit {
         }
     }
 
-    /// The minimum of a step's potential.
+    /// Minimizes the potential of a step.
     fn minimize(
         &mut self,
         goal: Goal<'_>,
@@ -249,7 +248,7 @@ impl Implicit {
                     return Err(Failure::Cancelled);
                 }
                 if !lagged.factorize(inertia, &springs)? {
-                    // Compressed, or swollen on the way: without what stress adds it is positive definite.
+                    // Indefinite by compression or swelling: without the geometric stiffness it is positive definite.
                     let (time, within) = (goal.time, goal.within);
                     let tangent = Tangent::Stressless;
                     lagged.assemble(&self.problem, &positions, time, within, tangent);
@@ -328,13 +327,13 @@ impl Implicit {
             fresh = true;
         }
         if self.excess > self.lagged.as_ref().map_or(0.0, Lagged::factor_cost) {
-            // For the next step.
+            // A fresh tangent for the next step.
             self.assemble(&positions, goal, Tangent::Exact)?;
         }
         Ok((positions, value))
     }
 
-    /// Takes the tangent at `positions`, where what is faced was looked for last.
+    /// Assembles the tangent at `positions`, for which the facing of contact is up to date.
     fn assemble(
         &mut self,
         positions: &[Vec3],
@@ -352,8 +351,8 @@ impl Implicit {
         Ok(())
     }
 
-    /// Moves a body that nothing holds as a whole, until all forces on it account for its momentum: the search ends
-    /// before they do to the last digit.
+    /// Translates a body without any support until all forces on it account for its momentum: the search ends before
+    /// they do to the last digit.
     fn keep_momentum(&self, inertia: f64, positions: &mut [Vec3], value: &Value) {
         let held = self.problem.held().as_flattened().contains(&true);
         if held || self.carried.contains(&true) || !self.hands.grabs().is_empty() {
@@ -366,7 +365,7 @@ impl Implicit {
         }
     }
 
-    /// Something was changed: the body may move again.
+    /// Wakes the run after a change: the body may move again.
     fn wake(&mut self) {
         if self.status == LiveStatus::Diverged {
             self.step = self.settings.step;
@@ -394,7 +393,7 @@ impl Implicit {
         self.damping_rate = initial_rate(self.settings.damping);
         self.residual = f64::INFINITY;
         self.memory.clear();
-        // The tangent is that of the state from which the next step starts, whatever came before.
+        // The tangent is that of the state from which the next step starts, independent of earlier ones.
         if let Some(lagged) = &mut self.lagged {
             lagged.forget();
         }

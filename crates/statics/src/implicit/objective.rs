@@ -1,45 +1,45 @@
-//! What a step minimizes: `κ/2 |x − y|²_M` plus the energy of the body, its loads and the grabs.
+//! Objective of a step: `κ/2 |x − y|²_M` plus the energy of the body, its loads and the grabs.
 
 use voxsoft_solid::brick::Within;
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
 use voxsoft_solid::{Grab, Problem, elastic};
 
-/// What a step is about, besides the problem.
+/// Data of a step, besides the problem.
 #[derive(Clone, Copy)]
 pub(super) struct Goal<'a> {
-    /// The time at the end in s.
+    /// Time at the end in s.
     pub time: f64,
-    /// `κ` in 1/s².
+    /// Inertia per mass `κ` in 1/s².
     pub inertia: f64,
-    /// Where the body would be without forces, in m.
+    /// Force-free positions `y`, m.
     pub free: &'a [Vec3],
     pub grabs: &'a [Grab],
-    /// What every hyperelastic voxel answers with.
+    /// Pressure and viscous stress of every hyperelastic voxel within the step.
     pub within: &'a [Within],
-    /// The forces (N) of loads that have no potential, held for the step.
+    /// Forces (N) of loads without a potential, held constant for the step.
     pub dead: Option<&'a [Vec3]>,
 }
 
-/// The potential of one step, a function of the positions at its end.
+/// Potential of one step, a function of the positions at its end.
 pub(super) struct Objective<'a> {
     pub problem: &'a Problem,
     pub goal: Goal<'a>,
 }
 
-/// The potential at some positions and what it is made of.
+/// Potential at some positions and its parts.
 #[derive(Default, Clone)]
 pub(super) struct Value {
-    /// In J.
+    /// Potential, J.
     pub potential: f64,
-    /// The sum of the sizes of its parts, by which its rounding is measured, in J.
+    /// Sum of the magnitudes of its parts, by which its rounding is measured, in J.
     pub size: f64,
-    /// The elastic energy in J.
+    /// Elastic energy in J.
     pub energy: f64,
-    /// The forces of the body in N.
+    /// Forces of the body in N.
     pub elastic: Vec<Vec3>,
-    /// The pressures of its hyperelastic voxels in Pa.
+    /// Pressures of its hyperelastic voxels in Pa.
     pub pressures: Vec<f64>,
-    /// The external forces in N, grabs included.
+    /// External forces in N, grabs included.
     pub external: Vec<Vec3>,
     /// Minus the gradient, in N.
     pub net: Vec<Vec3>,

@@ -1,39 +1,39 @@
-//! The pressure of nearly incompressible voxels, an unknown of its own that follows within a few steps.
+//! Pressure of nearly incompressible voxels, an independent unknown that converges within a few steps.
 //!
-//! Rubber is some hundred times as stiff against a change of volume as against one of shape. A long step turns voxels,
-//! and whatever turns by `θ` in a straight line swells by `θ²`: with the bulk modulus `K` as it is, a search for the
-//! minimum would creep along a narrow valley. So a step answers to the ratio of volumes `J` with
+//! Rubber is some hundred times as stiff against a change of volume as against one of shape. A long step rotates
+//! voxels, and a rotation by `θ` along straight lines swells by `θ²`: with the bulk modulus `K` itself, a search for
+//! the minimum would creep along a narrow valley. So a step uses, with the ratio of volumes `J`,
 //!
 //! ```text
 //! p = k (J − 1 + pₙ/r),   1/k = 1/K + 1/r,
 //! ```
 //!
-//! which is what maximizes `p (J − 1) − p²/2K − (p − pₙ)²/2r`: the pressure of the material, that of the step before
-//! being hard to leave (the method of multipliers in its proximal form, Rockafellar 1976, doi 10.1287/moor.1.2.97).
-//! Where nothing changes, `p = pₙ` and therefore `p = K (J − 1)`: the rest is that of the material. On the way the
-//! volume is off by `(p − pₙ)/r`, and what is left shrinks by about `μ/r` in each step.
+//! which maximizes `p (J − 1) − p²/2K − (p − pₙ)²/2r`: the pressure of the material with a penalty on its change from
+//! the step before (the method of multipliers in its proximal form, Rockafellar 1976, doi 10.1287/moor.1.2.97). Where
+//! nothing changes, `p = pₙ` and therefore `p = K (J − 1)`: the rest is that of the material. On the way the volume is
+//! off by `(p − pₙ)/r`, and the remainder shrinks by about `μ/r` in each step.
 
 use voxsoft_solid::brick::{Pressure, Within};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Brick};
 
-/// `r` over the initial shear modulus: the stiffest bulk that does not hold up the search.
+/// Ratio of `r` to the initial shear modulus: the stiffest bulk that does not slow the search down.
 const BULK_OVER_SHEAR: f64 = 20.0;
 
-/// The pressures of all voxels in Pa, positive in tension.
+/// Pressures of all voxels in Pa, positive in tension.
 pub(super) struct Pressures {
     values: Vec<f64>,
 }
 
 impl Pressures {
-    /// No pressure anywhere.
+    /// Zero pressures.
     pub fn new(body: &Body) -> Self {
         Self {
             values: vec![0.0; body.bricks().len()],
         }
     }
 
-    /// Those of the material at `positions`.
+    /// Pressures of the material at `positions`.
     pub fn at(body: &Body, positions: &[Vec3]) -> Self {
         let pressure = |brick: &Brick| {
             let material = body.material_of(brick);
@@ -45,12 +45,12 @@ impl Pressures {
         }
     }
 
-    /// Takes those at the end of a step.
+    /// Sets the pressures at the end of a step.
     pub fn take(&mut self, values: &[f64]) {
         self.values.copy_from_slice(values);
     }
 
-    /// The answer of every voxel over a step, without viscous stress.
+    /// Pressure law of every voxel over a step, without viscous stress.
     pub fn start(&self, body: &Body) -> Vec<Within> {
         let bricks = body.bricks().iter().zip(&self.values);
         bricks

@@ -1,4 +1,4 @@
-//! Whether a run has come to rest, and the damping that brings it there soonest.
+//! Test for rest, and the critical damping that reaches it soonest.
 
 use voxsoft_solid::balance::{balance_of_forces, is_still_with};
 use voxsoft_solid::hands::loads_end;
@@ -9,7 +9,7 @@ use super::Implicit;
 use super::objective::Value;
 
 impl Implicit {
-    /// Finds out whether the body is at rest.
+    /// Tests whether the body is at rest, and sets the status.
     pub(super) fn judge(&mut self) {
         let positions = &self.state.positions;
         let sum = |forces: &[Vec3]| {
@@ -30,7 +30,7 @@ impl Implicit {
         {
             return;
         }
-        // Pressures and viscous stress may still be on their way: only the elastic forces say.
+        // Pressures and viscous stress may not have converged: only the elastic forces decide.
         let mut elastic = vec![[0.0; 3]; positions.len()];
         elastic::add_forces(self.problem.body(), positions, &mut elastic);
         self.residual = residual(sum(&elastic));
@@ -39,14 +39,14 @@ impl Implicit {
         }
     }
 
-    /// An estimate of the frequency (rad/s) that the present motion lives on: the change of all forces along the
-    /// motion over the motion's inertia is a Rayleigh quotient of `M⁻¹ K`.
+    /// Estimate of the frequency (rad/s) of the present motion: the change of all forces along the motion over the
+    /// motion's inertia is a Rayleigh quotient of `M⁻¹ K`.
     pub(super) fn frequency(&self, next: &State, value: &Value) -> f64 {
         if self.value.elastic.is_empty() {
             return 0.0;
         }
         let before = &self.state.positions;
-        // The loads as they are now, so that one that has changed counts as no stiffness.
+        // Present loads, so that a change of a load counts as no stiffness.
         let mut loads = vec![[0.0; 3]; before.len()];
         self.problem.add_soft_loads(before, next.time, &mut loads);
         let mut after = vec![[0.0; 3]; before.len()];

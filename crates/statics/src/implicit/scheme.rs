@@ -7,53 +7,53 @@
 //! x̂ = a₁ xₙ + a₂ xₙ₋₁,  v̂ likewise,   a₁ = (1 + ω)²/(1 + 2ω),   a₂ = −ω²/(1 + 2ω).
 //! ```
 //!
-//! A step that nothing goes before has `a₁ = 1`, `a₂ = 0`, `β = 1`: backward Euler, which is off by `g h²/2` where a body
+//! A step without a previous one has `a₁ = 1`, `a₂ = 0`, `β = 1`: backward Euler, whose error is `g h²/2` where a body
 //! begins to fall. A motion therefore begins by a step in two stages, the diagonally implicit method of second order of
-//! Alexander (1977, doi 10.1137/0714068): backward Euler over the part `γ` ([`FIRST_PART`]), then, with the part `c` of both
-//! that the first stage was,
+//! Alexander (1977, doi 10.1137/0714068): backward Euler over the part `γ` ([`FIRST_PART`]), then, with the part `c` of
+//! both that the first stage was,
 //!
 //! ```text
 //! σ = 1/((1 − b) h),   a₁ = b/c,   a₂ = 1 − a₁,   b = 1/(2 − 2c),
 //! ```
 //!
-//! where `h` is the length of both. What a step does not resolve is damped by both stages, as by backward Euler; a mean of
-//! old and new forces would let a load that is there at once ring for ever.
+//! where `h` is the length of both. Motions that a step does not resolve are damped by both stages, like by backward
+//! Euler; a mean of old and new forces would let a sudden load ring for ever.
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use voxsoft_solid::State;
 use voxsoft_solid::vector::{Vec3, add, scale};
 
-/// The part `γ` of the first step of a motion that its first stage is: both stages have the same `σ`.
+/// Fraction `γ` of the first stage in the first step of a motion: both stages have the same `σ`.
 pub(crate) const FIRST_PART: f64 = 1.0 - FRAC_1_SQRT_2;
-/// The second stage over the first, `(1 − γ)/γ`.
+/// Ratio of the second stage to the first, `(1 − γ)/γ`.
 pub(crate) const SECOND_OVER_FIRST: f64 = 1.0 + SQRT_2;
 
-/// Which part of a motion comes next.
+/// Stage of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Stage {
-    /// The first stage of the first step.
+    /// First stage of the first step.
     First,
-    /// Its second stage.
+    /// Second stage of the first step.
     Second,
     /// Any step after the first one, or after a failed one.
     Later,
 }
 
-/// What a step starts from.
+/// Start of a step: its rate and extrapolated state.
 pub(crate) struct Start {
-    /// `σ` in 1/s.
+    /// Rate `σ` in 1/s.
     pub rate: f64,
-    /// `a₁` and `a₂`.
+    /// Weights `a₁` and `a₂`.
     pub weights: [f64; 2],
-    /// `x̂` in m.
+    /// Extrapolated positions `x̂` in m.
     pub positions: Vec<Vec3>,
-    /// `v̂` in m/s.
+    /// Extrapolated velocities `v̂` in m/s.
     pub velocities: Vec<Vec3>,
 }
 
 impl Start {
-    /// A step of `step` seconds from `now`, with the state before it where there is one.
+    /// Starts a step of `step` seconds from `now`, with the state before it if there is one.
     pub fn new(now: &State, before: Option<&State>, step: f64, stage: Stage) -> Self {
         let Some(before) = before else {
             return Self {

@@ -1,4 +1,4 @@
-//! One step: its end is found, and taken if it is sound.
+//! One step: finds its end, and accepts it if it is sound.
 
 use voxsoft_solid::vector::{Vec3, scale, sub};
 use voxsoft_solid::{Ask, Breakdown, Damping, Load, State};
@@ -8,7 +8,7 @@ use super::scheme::{FIRST_PART, SECOND_OVER_FIRST, Stage, Start};
 use super::{ANCHOR_SPEED, Failure, Implicit, MAX_BACK_OFFS, PATIENCE};
 
 impl Implicit {
-    /// Takes one step, in halves of halves where a whole one fails.
+    /// Takes one step, halved repeatedly if a whole one fails.
     pub(super) fn take_step(&mut self, go_on: &mut dyn FnMut(Ask) -> bool) -> Result<(), Failure> {
         let least = self.settings.step * 0.5f64.powi(MAX_BACK_OFFS as i32);
         loop {
@@ -37,7 +37,7 @@ impl Implicit {
         }
     }
 
-    /// By the second-order formula, but for what touches; the first step in its two stages.
+    /// Takes a step by the second-order formula, except in contact; the first step in its two stages.
     fn try_step(&mut self, go_on: &mut dyn FnMut(Ask) -> bool) -> Result<(), Failure> {
         if self.stage == Stage::First {
             self.take_stage(FIRST_PART * self.step, go_on)?;
@@ -57,7 +57,8 @@ impl Implicit {
         let mut found = self.find(step, second_order, go_on);
         if second_order && self.met && !matches!(found, Err(Failure::Cancelled)) {
             self.go_back();
-            // The tangent resists where surfaces touched in the end, and would hold back what has yet to come there.
+            // The tangent has the contact stiffness of the final state, and would resist bodies that have yet to come
+            // there.
             if let Some(lagged) = &mut self.lagged {
                 lagged.forget();
             }
@@ -67,7 +68,7 @@ impl Implicit {
         self.accept(next, value)
     }
 
-    /// The end of a step that starts from the state, by the second-order formula or by backward Euler.
+    /// Finds the end of a step that starts from the state, by the second-order formula or by backward Euler.
     fn find(
         &mut self,
         step: f64,
@@ -119,7 +120,7 @@ impl Implicit {
         Ok((next, value))
     }
 
-    /// Goes on from the end of a step, if it is sound.
+    /// Accepts the end of a step, if it is sound.
     fn accept(&mut self, next: State, value: Value) -> Result<(), Failure> {
         let step = next.time - self.state.time;
         if let Some(place) =
@@ -148,7 +149,7 @@ impl Implicit {
             self.damping_rate = 2.0 * self.frequency(&next, &value);
         }
         let left = std::mem::replace(&mut self.state, next);
-        // The first stage is of first order, and no state that a later step may look back to.
+        // The first stage is of first order, and not used as a previous state by later steps.
         if self.stage != Stage::Second {
             self.before = Some(left);
         }
@@ -156,7 +157,7 @@ impl Implicit {
         Ok(())
     }
 
-    /// Forgets what contact has learned since the state.
+    /// Resets the memory of contact to the state.
     fn go_back(&mut self) {
         if let Some(contact) = self.problem.contact_mut() {
             contact.go_back();

@@ -1,4 +1,4 @@
-//! What a run of implicit steps answers to.
+//! Stepper interface of implicit runs.
 
 use voxsoft_solid::breakdown::Breakdown;
 use voxsoft_solid::hands::still_state;
@@ -8,7 +8,7 @@ use voxsoft_solid::{Ask, Grab, LiveStatus, Look, Method, Problem, ProblemError, 
 use super::pressures::Pressures;
 use super::{Failure, Implicit};
 
-/// The shortest and the longest step that can be asked for, in s.
+/// Shortest and longest step allowed, in s.
 pub(super) const STEPS: [f64; 2] = [1e-6, 0.1];
 
 impl Stepper for Implicit {
@@ -106,7 +106,7 @@ impl Stepper for Implicit {
         self.step = self.settings.step;
         (self.steps, self.back_offs, self.good) = (0, 0, 0);
         self.start_from(State::at_rest(self.problem.body()));
-        // Without the rounding of a volume.
+        // Zero pressures, without the rounding of a volume.
         self.pressures = Pressures::new(self.problem.body());
     }
 

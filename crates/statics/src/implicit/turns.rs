@@ -1,27 +1,27 @@
-//! How far the voxels around every vertex have turned since the tangent was taken.
+//! Rotations of the voxels around every vertex since the tangent was assembled.
 //!
-//! The tangent of a body that has turned by `R` is `R K Rᵀ`. Where parts turn by different angles, each vertex with
-//! the mean of its voxels, that is off by what one voxel turns against the next, not by how far the body has gone:
-//! so a factor lasts while a finger curls up.
+//! The tangent of a body that has rotated by `R` is `R K Rᵀ` (corotational). If parts rotate by different angles, each
+//! vertex with the mean of its voxels, its error depends on the rotation of one voxel against the next, not on the
+//! motion of the body: so a factor lasts while a finger curls up.
 
 use voxsoft_solid::Problem;
 use voxsoft_solid::matrix::{IDENTITY, Mat3, apply, apply_transposed, multiply, polar, transpose};
 use voxsoft_solid::vector::{Vec3, add, axpy, cross, dot, norm, scale, sub};
 
-/// The turns of all vertices.
+/// Rotations of all vertices.
 pub(super) struct Turns {
-    /// The rotation of each voxel when the tangent was taken.
+    /// Rotation of each voxel when the tangent was assembled.
     before: Vec<Mat3>,
-    /// The turn of each vertex since.
+    /// Rotation of each vertex since then.
     now: Vec<Mat3>,
-    /// Vertices that do not turn, because some of their axes are held.
+    /// Vertices that do not rotate, because some of their axes are held.
     fixed: Vec<bool>,
-    /// The positions when the tangent was taken: what is rigid turns from there.
+    /// Positions when the tangent was assembled: rigid bodies rotate from there.
     from: Vec<Vec3>,
 }
 
 impl Turns {
-    /// Axes that are held stay as they are.
+    /// Starts without rotations; vertices with held axes are fixed.
     pub fn new(problem: &Problem) -> Self {
         let (body, held) = (problem.body(), problem.held());
         Self {
@@ -32,7 +32,7 @@ impl Turns {
         }
     }
 
-    /// Counts from `positions` on.
+    /// Resets the rotations to start from `positions`.
     pub fn start(&mut self, problem: &Problem, positions: &[Vec3]) {
         self.from.copy_from_slice(positions);
         for (before, voxel) in self.before.iter_mut().zip(problem.body().voxels()) {
@@ -41,7 +41,7 @@ impl Turns {
         self.now.fill(IDENTITY);
     }
 
-    /// Takes the turns up to `positions`; vertices on the floor do not turn.
+    /// Updates the rotations to `positions`; vertices on the floor do not rotate.
     pub fn take(&mut self, problem: &Problem, positions: &[Vec3], carried: &[bool]) {
         self.now.fill([[0.0; 3]; 3]);
         for (before, voxel) in self.before.iter().zip(problem.body().voxels()) {
@@ -68,14 +68,14 @@ impl Turns {
         }
     }
 
-    /// `R` times vectors on vertices.
+    /// Applies `R` to vectors on vertices.
     pub fn forth(&self, vectors: &mut [Vec3]) {
         for (vector, turn) in vectors.iter_mut().zip(&self.now) {
             *vector = apply(turn, *vector);
         }
     }
 
-    /// `Rᵀ` times vectors on vertices.
+    /// Applies `Rᵀ` to vectors on vertices.
     pub fn back(&self, vectors: &mut [Vec3]) {
         for (vector, turn) in vectors.iter_mut().zip(&self.now) {
             *vector = apply_transposed(turn, *vector);
@@ -83,7 +83,7 @@ impl Turns {
     }
 }
 
-/// The rotation of a voxel: that of its mean deformation gradient.
+/// Rotation of a voxel: that of its mean deformation gradient.
 fn rotation(voxel: &[u32; 8], positions: &[Vec3]) -> Mat3 {
     let mut columns = [[0.0; 3]; 3];
     for (corner, &vertex) in voxel.iter().enumerate() {
@@ -99,7 +99,7 @@ fn rotation(voxel: &[u32; 8], positions: &[Vec3]) -> Mat3 {
     polar(&transpose(&columns)).0
 }
 
-/// A rotation near a sum of rotations; none at all where they cancel out.
+/// Rotation near a sum of rotations; the identity if they cancel out.
 fn orthonormal(sum: &Mat3) -> Mat3 {
     let [x, y, _] = transpose(sum);
     let first = norm(x);

@@ -6,17 +6,17 @@
 //! - Prony branches `(γ, τ)`: `q = e^(−h/τ) qₙ + γ e^(−h/2τ) (s − sₙ)` (Simo 1987,
 //!   doi 10.1016/0045-7825(87)90107-1, with the midpoint of the exponential).
 //!
-//! Over one step both are a share of `s` and a stress that is known at its start, so that the step keeps its
-//! potential: `s` is the gradient of the deviatoric energy, the other is linear in the strain.
+//! Over one step both are a share of `s` and a stress that is known at its start, so that the step keeps its potential:
+//! `s` is the gradient of the deviatoric energy, the other is linear in the strain.
 
 use voxsoft_solid::Body;
 use voxsoft_solid::brick::{BrickStress, Within};
 use voxsoft_solid::vector::Vec3;
 
-/// The memory of all voxels.
+/// Viscous memory of all voxels.
 pub(super) struct Viscosity {
     retardation: f64,
-    /// `sₙ`; empty until the first step.
+    /// Stress `sₙ` at the last step; empty until the first step.
     before: Vec<BrickStress>,
     branches: Vec<Vec<BrickStress>>,
 }
@@ -39,7 +39,7 @@ impl Viscosity {
         })
     }
 
-    /// Forgets everything: the body has been where it is for ever.
+    /// Resets the memory: the body has been at its positions for ever.
     pub fn restart(&mut self) {
         self.before.clear();
         for branches in &mut self.branches {
@@ -67,7 +67,7 @@ impl Viscosity {
         }
     }
 
-    /// Takes the end of that step.
+    /// Updates the memory at the end of that step.
     pub fn end(&mut self, body: &Body, positions: &[Vec3], step: f64) {
         let now = stresses(body, positions);
         let bricks = body.bricks().iter().zip(&self.before).zip(&now);

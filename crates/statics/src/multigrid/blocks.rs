@@ -6,21 +6,21 @@ use super::cells::Interpolation;
 use super::parallel;
 use super::values::Values;
 
-/// A block, row-major.
+/// Block, row-major.
 pub(crate) type Block = [f64; 9];
 
-/// A sparse matrix of 3 × 3 blocks by rows, with rising columns; every row has its diagonal.
+/// Sparse matrix of 3 × 3 blocks by rows, with rising columns; every row has its diagonal.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct BlockMatrix {
     pub starts: Vec<usize>,
     pub columns: Vec<u32>,
     pub values: Values,
-    /// Where the diagonal of each row is.
+    /// Index of the diagonal block of each row.
     pub diagonals: Vec<usize>,
 }
 
 impl BlockMatrix {
-    /// A matrix of zeros with the given columns in each row.
+    /// Matrix of zeros with the given columns in each row.
     pub fn with_pattern(starts: Vec<usize>, columns: Vec<u32>) -> Self {
         let diagonals = starts
             .windows(2)
@@ -38,7 +38,7 @@ impl BlockMatrix {
         }
     }
 
-    /// The pattern with node `n` renamed to `places[n]`, filled with zeros.
+    /// Pattern with node `n` renumbered to `places[n]`, filled with zeros.
     pub fn renumbered(&self, places: &[u32]) -> Self {
         let mut order = vec![0u32; places.len()];
         for (node, &place) in places.iter().enumerate() {
@@ -61,13 +61,13 @@ impl BlockMatrix {
         self.diagonals.len()
     }
 
-    /// The columns of a row and where their blocks start.
+    /// Columns of a row and the index of their first block.
     pub fn row(&self, row: usize) -> (usize, &[u32]) {
         let (start, end) = (self.starts[row], self.starts[row + 1]);
         (start, &self.columns[start..end])
     }
 
-    /// `y = A x`.
+    /// Computes `y = A x`.
     pub fn multiply(&self, x: &[Vec3], y: &mut [Vec3]) {
         parallel::for_each(y, |row, y| {
             let mut sum = [0.0; 4];
@@ -79,7 +79,7 @@ impl BlockMatrix {
         });
     }
 
-    /// The pattern of `Pᵀ A P`, with `fine_of`, the transpose of the interpolation `p`.
+    /// Pattern of `Pᵀ A P`, with `fine_of`, the transpose of the interpolation `p`.
     pub fn coarse_pattern(&self, p: &Interpolation, fine_of: &Interpolation) -> Self {
         let count = fine_of.starts.len() - 1;
         let mut rows: Vec<Vec<u32>> = vec![Vec::new(); count];
@@ -143,7 +143,7 @@ impl BlockMatrix {
     }
 }
 
-/// The transpose of an interpolation to `count` coarse nodes: for each the fine ones that hang on it.
+/// Transpose of an interpolation to `count` coarse nodes: the fine nodes interpolated from each of them.
 pub(crate) fn transposed(p: &Interpolation, count: usize) -> Interpolation {
     let mut starts = vec![0u32; count + 1];
     for &(coarse, _) in &p.entries {
@@ -164,14 +164,13 @@ pub(crate) fn transposed(p: &Interpolation, count: usize) -> Interpolation {
     Interpolation { starts, entries }
 }
 
-/// The inverse of a symmetric block on the axes that have stiffness, zero on the others: coordinates
-/// that are held, or that nothing hangs on, stay where they are.
+/// Inverse of a symmetric block on the axes that have stiffness, zero on the others: coordinates that are held, or
+/// without an interpolated node, stay in place.
 pub(crate) fn pseudo_inverse(block: &Block) -> Block {
     let mut a = *block;
     let mut inverse = [0.0; 9];
     let mut live = [false; 3];
-    // Sweeps that keep the block symmetric and end at minus the inverse; a pivot lost to cancellation
-    // counts as none.
+    // Sweeps that keep the block symmetric and end at minus the inverse; a pivot lost to cancellation counts as zero.
     for k in 0..3 {
         let pivot = a[4 * k];
         if !(pivot > 1e-12 * block[4 * k].abs()) {

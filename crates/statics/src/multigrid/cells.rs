@@ -1,16 +1,15 @@
-//! Voxels and ever larger cubes of them.
+//! Coarsening of voxels to ever larger cubes.
 //!
-//! Eight cells of a level, or those of them that exist, make a cell of the next, whose corners
-//! interpolate the nodes inside. Walls that do not touch must not share such corners, however close
-//! they are, or the coarse body would be welded where the fine one is open: cells of one cube that do
-//! not hang together make cubes of their own, with nodes of their own, and neighbors share a node only
-//! where they share a node of the finer level (after Nesme, Kry, Jeřábková and Faure 2009,
-//! doi 10.1145/1531326.1531358).
+//! Up to eight cells of a level make a cell of the next, whose corners interpolate the nodes inside. Walls that do not
+//! touch must not share such corners, however close they are, or the coarse body would be welded where the fine one is
+//! open: cells of one cube that are not connected make cubes of their own, with nodes of their own, and neighbors share
+//! a node only where they share a node of the finer level (after Nesme, Kry, Jeřábková and Faure 2009, doi
+//! 10.1145/1531326.1531358).
 
 use voxsoft_solid::Body;
 use voxsoft_solid::vector::{Vec3, dot, sub};
 
-/// A cube of a level: its place on the lattice of that level and its nodes; corner `c` lies at
+/// Cube of a level: its place on the grid of that level and its nodes; corner `c` lies at
 /// `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Cell {
@@ -18,7 +17,7 @@ pub(crate) struct Cell {
     pub nodes: [u32; 8],
 }
 
-/// For each node of a level the nodes of the next that it hangs on, and their weights.
+/// Interpolation of each node of a level from nodes of the next, with their weights.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Interpolation {
     pub starts: Vec<u32>,
@@ -31,10 +30,10 @@ impl Interpolation {
     }
 }
 
-/// The voxels of a body as cells; `None` where those that hang together are not of one size on one lattice.
+/// Voxels of a body as cells; `None` if connected ones are not of one size on one grid.
 ///
-/// Components that share no vertex have lattices of their own, of any size and direction: they share no node on any
-/// level either.
+/// Components that share no vertex have grids of their own, of any size and direction: they share no node on any level
+/// either.
 pub(crate) fn cells_of(body: &Body) -> Option<Vec<Cell>> {
     let voxels = body.voxels();
     let mut components = Classes::new(body.rest().len());
@@ -55,17 +54,17 @@ pub(crate) fn cells_of(body: &Body) -> Option<Vec<Cell>> {
     voxels.iter().map(&mut cell).collect()
 }
 
-/// Where the voxels of a component may be.
+/// Grid of the voxels of a component.
 #[derive(Debug, Clone)]
 struct Lattice {
-    /// A corner of a voxel, m.
+    /// Corner of a voxel, m.
     origin: Vec3,
-    /// The edges of that voxel, m.
+    /// Edges of that voxel, m.
     edges: [Vec3; 3],
 }
 
 impl Lattice {
-    /// The one of a voxel with these corners.
+    /// Grid of a voxel with these corners.
     fn of(corners: &[Vec3; 8]) -> Self {
         let edge = |axis: usize| sub(corners[4 >> axis], corners[0]);
         Self {
@@ -74,7 +73,7 @@ impl Lattice {
         }
     }
 
-    /// The place of a voxel; `None` where it does not fit.
+    /// Place of a voxel; `None` if it does not fit.
     fn place(&self, corners: &[Vec3; 8]) -> Option<[i32; 3]> {
         let along = |axis: usize, x: Vec3| {
             dot(x, self.edges[axis]) / dot(self.edges[axis], self.edges[axis])
@@ -90,12 +89,12 @@ impl Lattice {
     }
 }
 
-/// The cells of the next level, the number of its nodes, and how they interpolate `nodes` nodes.
+/// Cells of the next level, the number of its nodes, and the interpolation of `nodes` nodes.
 pub(crate) fn coarsen(cells: &[Cell], nodes: usize) -> (Vec<Cell>, usize, Interpolation) {
     let (mut coarse, member_of) = group(cells);
 
-    // The first coarse cell that holds a node, and the node's place in it. Every further one shares
-    // the corners that the node hangs on.
+    // First coarse cell that contains a node, and the node's place in it. Every further one shares the corners that
+    // interpolate the node.
     let mut home: Vec<Option<(u32, [i32; 3])>> = vec![None; nodes];
     let mut corners = Classes::new(8 * coarse.len());
     for (cell, &owner) in cells.iter().zip(&member_of) {
@@ -151,8 +150,7 @@ pub(crate) fn coarsen(cells: &[Cell], nodes: usize) -> (Vec<Cell>, usize, Interp
     (coarse, count as usize, interpolation)
 }
 
-/// Joins cells of the same larger cube that hang together; for each cell the one it is in. Nodes are
-/// not set yet.
+/// Merges connected cells of the same larger cube; returns the coarse cell of each cell too. Nodes are not set yet.
 fn group(cells: &[Cell]) -> (Vec<Cell>, Vec<u32>) {
     let cube_of = |index: u32| cells[index as usize].at.map(|x| x >> 1);
     let mut order: Vec<u32> = (0..cells.len() as u32).collect();
@@ -195,8 +193,8 @@ fn bit(corner: usize, axis: usize) -> usize {
     corner >> (2 - axis) & 1
 }
 
-/// The corners of a cube, and their trilinear weights at a node at `place`, in half sides; corners of
-/// weight zero are left out.
+/// Corners of a cube, and their trilinear weights at a node at `place`, in half sides; corners of weight zero are left
+/// out.
 fn weights(place: [i32; 3]) -> impl Iterator<Item = (usize, f64)> {
     (0..8).filter_map(move |corner| {
         let weight: f64 = (0..3)
@@ -213,7 +211,7 @@ fn weights(place: [i32; 3]) -> impl Iterator<Item = (usize, f64)> {
     })
 }
 
-/// Classes that are joined one pair after the other.
+/// Equivalence classes that are joined one pair after the other.
 struct Classes(Vec<u32>);
 
 impl Classes {
@@ -277,7 +275,7 @@ mod tests {
         }
     }
 
-    /// Interpolated linear functions stay linear: rigid motions and uniform strains are coarse.
+    /// Interpolation reproduces linear functions: rigid motions and uniform strains are coarse.
     #[test]
     fn linear_functions_are_reproduced() {
         let places: Vec<[i32; 3]> = block([4, 4, 4])
@@ -307,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn walls_with_a_slit_between_them_share_no_node_on_any_level() {
+    fn walls_beside_a_slit_share_no_node() {
         // Two plates, the slit one cell wide: welded by plain coarsening at once.
         let mut places = block([1, 8, 8]);
         places.extend(block([1, 8, 8]).into_iter().map(|[x, y, z]| [x + 2, y, z]));

@@ -4,21 +4,21 @@ use std::ops::Range;
 
 use super::blocks::BlockMatrix;
 
-/// Where each color starts in the numbering by colors, and the end.
+/// Start of each color in the numbering by colors, and the end.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Coloring {
     starts: Vec<usize>,
 }
 
 impl Coloring {
-    /// The nodes of each color.
+    /// Nodes of each color.
     pub fn ranges(&self) -> impl DoubleEndedIterator<Item = Range<usize>> + '_ {
         self.starts.windows(2).map(|ends| ends[0]..ends[1])
     }
 }
 
-/// Colors the nodes of a pattern one after the other, and numbers them color by color; the new place
-/// of each node comes along. On a full lattice these are the eight parities.
+/// Colors the nodes of a pattern one after the other, and numbers them color by color; returns the new place of each
+/// node too. On a full grid these are the eight parities.
 pub(crate) fn color(pattern: &BlockMatrix) -> (Coloring, Vec<u32>) {
     let count = pattern.rows();
     let mut colors = vec![u32::MAX; count];

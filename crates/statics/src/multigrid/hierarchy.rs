@@ -1,9 +1,9 @@
-//! The V-cycle in single precision: colored Gauss–Seidel sweeps on each level, Galerkin products between them.
+//! V-cycle in single precision: colored Gauss–Seidel sweeps on each level, Galerkin products between them.
 //!
-//! Coarse spaces hold the trilinear functions of ever larger cubes, so rigid motions and uniform
-//! strains, the slow part of an error, are theirs exactly; coarse matrices are `Pᵀ A P`, so anything a
-//! fine matrix knows (clamps, cut voxels, layers, pressure) arrives there. A forward sweep before and
-//! a backward one after the coarse correction make the cycle symmetric, as conjugate gradients want.
+//! Coarse spaces hold the trilinear functions of ever larger cubes, so they represent rigid motions and uniform
+//! strains, the slow part of an error, exactly; coarse matrices are `Pᵀ A P`, so they include everything in a fine
+//! matrix (clamps, cut voxels, layers, pressure). A forward sweep before and a backward one after the coarse correction
+//! make the cycle symmetric, as conjugate gradients require.
 
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, MatMut, Side};
@@ -15,32 +15,32 @@ use super::color::{Coloring, color};
 use super::parallel;
 use super::values::Single;
 
-/// A level of no more nodes than this is solved directly, by a dense factor.
+/// Largest level, in nodes, that is solved directly, by a dense factor.
 const COARSEST: usize = 250;
-/// A level must have fewer nodes than this part of the level before, or coarsening has stalled.
+/// Largest ratio of the nodes of a level to those of the level before; beyond it coarsening has stalled.
 const STALLED: f64 = 0.7;
-/// The most nodes of a coarsest level: a dense factor of 0.3 GB.
+/// Most nodes of a coarsest level: a dense factor of 0.3 GB.
 const LARGEST_DENSE: usize = 2000;
 
-/// What of the hierarchy does not depend on the matrix: interpolations and patterns.
+/// Part of the hierarchy that does not depend on the matrix: interpolations and patterns.
 pub(crate) struct Hierarchy {
-    /// From level `i` to `i + 1`, and back.
+    /// Interpolations from level `i` to `i + 1`, and back.
     down: Vec<Interpolation>,
     up: Vec<Interpolation>,
     colorings: Vec<Coloring>,
-    /// Of levels 1, 2, …; the finest belongs to the caller.
+    /// Patterns of levels 1, 2, …; the finest belongs to the caller.
     patterns: Vec<BlockMatrix>,
-    /// The inverses of the diagonals of all levels.
+    /// Inverses of the diagonals of all levels.
     inverses: Vec<Vec<Inverse>>,
 }
 
-/// The inverse of a block on the diagonal, by columns; three places more fill a register.
+/// Inverse of a block on the diagonal, by columns; three places more fill a register.
 type Inverse = [f32; 12];
 
-/// The factor of the coarsest matrix, where it has one.
+/// Factor of the coarsest matrix, if it has one.
 pub(crate) struct Coarsest(Option<Llt<f64>>);
 
-/// A V-cycle.
+/// V-cycle as a preconditioner.
 pub(crate) struct Preconditioner<'a> {
     hierarchy: &'a Hierarchy,
     finest: &'a BlockMatrix,
@@ -52,13 +52,13 @@ pub(crate) struct Workspace {
     sides: Vec<Vec<Single>>,
     answers: Vec<Vec<Single>>,
     residuals: Vec<Vec<Single>>,
-    /// Of the coarsest level, which is solved in double precision.
+    /// Vector of the coarsest level, which is solved in double precision.
     last: Vec<Vec3>,
 }
 
 impl Hierarchy {
-    /// From the cells of the finest level, whose nodes are numbered as the rows of `matrix`, which its
-    /// `coloring` sorts.
+    /// Builds the hierarchy from the cells of the finest level, whose nodes are numbered like the rows of `matrix`,
+    /// which its `coloring` sorts.
     pub fn new(mut cells: Vec<Cell>, matrix: &BlockMatrix, coloring: Coloring) -> Self {
         let mut hierarchy = Self {
             down: Vec::new(),
@@ -99,7 +99,7 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// Fills the matrices of all levels; the factor of the coarsest comes along.
+    /// Fills the matrices of all levels, and returns the factor of the coarsest.
     pub fn project(&mut self, finest: &BlockMatrix) -> Coarsest {
         for level in 0..self.patterns.len() {
             let (finer, coarser) = self.patterns.split_at_mut(level);
@@ -121,7 +121,7 @@ impl Hierarchy {
         Coarsest(small.then(|| dense_factor(last)).flatten())
     }
 
-    /// The preconditioner of the matrix that [`Hierarchy::project`] has seen last.
+    /// Preconditioner of the matrix that was last passed to [`Hierarchy::project`].
     pub fn preconditioner<'a>(
         &'a self,
         finest: &'a BlockMatrix,
@@ -153,7 +153,7 @@ impl Hierarchy {
 }
 
 impl Workspace {
-    /// What [`Preconditioner::apply`] found for a row.
+    /// Result of [`Preconditioner::apply`] for a row.
     #[inline(always)]
     pub fn answer(&self, row: usize) -> Vec3 {
         widened(self.answers[0][row])
@@ -161,7 +161,7 @@ impl Workspace {
 }
 
 impl Preconditioner<'_> {
-    /// About `A⁻¹ side`.
+    /// Approximates `A⁻¹ side`.
     pub fn apply(&self, side: &[Vec3], work: &mut Workspace) {
         parallel::for_each(&mut work.sides[0], |row, own| *own = rounded(side[row]));
         self.cycle(0, work);
@@ -202,7 +202,7 @@ impl Preconditioner<'_> {
         let (down, up) = (&self.hierarchy.down[level], &self.hierarchy.up[level]);
         let x = &mut work.answers[level];
         own.forward_from_zero(&work.sides[level], x);
-        // A sweep from zero leaves the residual of what it has not looked at: −U x.
+        // A forward sweep from zero leaves the residual −U x of the entries that it has not used.
         let residual = &mut work.residuals[level];
         parallel::for_each(residual, |row, r| {
             let after = own.pattern.diagonals[row] + 1..own.pattern.starts[row + 1];
@@ -228,7 +228,7 @@ impl Preconditioner<'_> {
     }
 }
 
-/// A level of the V-cycle.
+/// Level of the V-cycle.
 struct Level<'a> {
     pattern: &'a BlockMatrix,
     coloring: &'a Coloring,
@@ -236,7 +236,7 @@ struct Level<'a> {
 }
 
 impl Level<'_> {
-    /// The given blocks of one row times what `value` says for their columns.
+    /// Product of the given blocks of one row and the vectors that `value` returns for their columns.
     #[inline(always)]
     fn product<'a>(
         &self,
@@ -247,7 +247,7 @@ impl Level<'_> {
         values.rounded_product(&self.pattern.columns, places, value)
     }
 
-    /// Gauss–Seidel through the colors, from zero.
+    /// Forward Gauss–Seidel sweep through the colors, from zero.
     fn forward_from_zero(&self, side: &[Single], x: &mut [Single]) {
         let Self {
             pattern, inverses, ..
@@ -264,7 +264,7 @@ impl Level<'_> {
         }
     }
 
-    /// Gauss–Seidel back through the colors.
+    /// Backward Gauss–Seidel sweep through the colors.
     fn backward(&self, side: &[Single], x: &mut [Single]) {
         let Self {
             pattern, inverses, ..
@@ -285,7 +285,7 @@ impl Level<'_> {
     }
 }
 
-/// An inverse times a vector. Axes without stiffness get zero.
+/// Product of an inverse and a vector. Axes without stiffness get zero.
 #[inline(always)]
 fn solved(inverse: &Inverse, x: Single) -> Single {
     std::array::from_fn(|i| inverse[i] * x[0] + (inverse[3 + i] * x[1] + inverse[6 + i] * x[2]))
@@ -306,13 +306,13 @@ fn minus(a: Single, b: Single) -> Single {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-/// `a + factor b`.
+/// Computes `a + factor b`.
 #[inline(always)]
 fn plus(a: Single, factor: f32, b: Single) -> Single {
     std::array::from_fn(|i| a[i] + factor * b[i])
 }
 
-/// The dense Cholesky factor of the coarsest matrix, lifted on its diagonal as far as it must be.
+/// Dense Cholesky factor of the coarsest matrix, with its diagonal shifted as far as necessary.
 fn dense_factor(matrix: &BlockMatrix) -> Option<Llt<f64>> {
     let size = 3 * matrix.rows();
     let mut dense = Mat::<f64>::zeros(size, size);
@@ -332,7 +332,7 @@ fn dense_factor(matrix: &BlockMatrix) -> Option<Llt<f64>> {
             dense[(i, i)] = 1.0;
         }
     }
-    // Corners that hang on few nodes can depend on each other; rounding decides their sign.
+    // Corners with few fine nodes can be linearly dependent; rounding decides their sign.
     for lift in [1e-13, 1e-10, 1e-7, 1e-4, 1e-2, 1.0] {
         let mut lifted = dense.clone();
         for i in 0..size {

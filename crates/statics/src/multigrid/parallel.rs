@@ -3,7 +3,7 @@
 #[cfg(feature = "threads")]
 use rayon::prelude::*;
 
-/// Rows that one task handles.
+/// Rows per task.
 const CHUNK: usize = 512;
 
 /// Calls `each(index, item)` for all items.
@@ -21,7 +21,7 @@ pub(crate) fn for_each<T: Send>(items: &mut [T], each: impl Fn(usize, &mut T) + 
     items.chunks_mut(CHUNK).enumerate().for_each(run);
 }
 
-/// The same with something to write on, made by `scratch` for some items at a time.
+/// Calls `each(own, index, item)` for all items, with a buffer made by `scratch` for each chunk of items.
 pub(crate) fn for_each_with<T: Send, W>(
     items: &mut [T],
     scratch: impl Fn() -> W + Sync,
@@ -41,7 +41,7 @@ pub(crate) fn for_each_with<T: Send, W>(
     items.chunks_mut(CHUNK).enumerate().for_each(run);
 }
 
-/// Calls `each(index, item)` for few items that are much work each.
+/// Calls `each(index, item)` for few items with much work each.
 pub(crate) fn for_each_large<T: Send>(items: &mut [T], each: impl Fn(usize, &mut T) + Sync) {
     #[cfg(feature = "threads")]
     items
@@ -55,7 +55,7 @@ pub(crate) fn for_each_large<T: Send>(items: &mut [T], each: impl Fn(usize, &mut
         .for_each(|(index, item)| each(index, item));
 }
 
-/// The sum of `each(index)` over `0..count`, always added in the same order.
+/// Sum of `each(index)` over `0..count`, always added in the same order.
 pub(crate) fn sum(count: usize, each: impl Fn(usize) -> f64 + Sync) -> f64 {
     let chunks = count.div_ceil(CHUNK);
     let part = |chunk: usize| -> f64 {

@@ -1,18 +1,18 @@
-//! The blocks of a matrix, each number as the sum of two in single precision.
+//! Blocks of a matrix, each number as the sum of two in single precision.
 //!
-//! The first is the number rounded, with which the V-cycle works: a preconditioner need not be exact, and half the bytes are
-//! half the time where memory is what takes it. Both together have 48 binary digits, with which conjugate gradients work;
-//! what is left out is 10⁻¹⁵ of each number. So a matrix is kept once, for both.
+//! The first is the rounded number, with which the V-cycle works: a preconditioner need not be exact, and half the
+//! bytes are half the time where memory bandwidth is the limit. Both together have 48 binary digits, with which
+//! conjugate gradients work; the rest is 10⁻¹⁵ of each number. So a matrix is stored once, for both.
 
 use super::blocks::Block;
 use super::parallel;
 
-/// A vector on a node; the fourth place fills a register, and means nothing.
+/// Vector on a node; the fourth place fills a register, and has no meaning.
 pub(crate) type Single = [f32; 4];
 
 /// Numbers of a block.
 pub(crate) const BLOCK: usize = 9;
-/// Numbers that are read for a block: three columns of four, the last of which reaches into the next block.
+/// Numbers read for a block: three columns of four, the last of which reaches into the next block.
 const READ: usize = 12;
 
 /// Blocks one after the other, each column by column.
@@ -22,7 +22,7 @@ pub(crate) struct Values {
     low: Vec<f32>,
 }
 
-/// Some of them, to be changed.
+/// Mutable part of the blocks.
 pub(crate) struct Part<'a> {
     high: &'a mut [f32],
     low: &'a mut [f32],
@@ -34,14 +34,14 @@ fn split(value: f64) -> [f32; 2] {
     [high, (value - f64::from(high)) as f32]
 }
 
-/// Rows for columns.
+/// Transposes a block.
 #[inline(always)]
 fn transposed<T: Copy>(block: &[T; BLOCK]) -> [T; BLOCK] {
     std::array::from_fn(|k| block[3 * (k % 3) + k / 3])
 }
 
 impl Values {
-    /// As many blocks of zeros.
+    /// Allocates `count` blocks of zeros.
     pub fn zeros(count: usize) -> Self {
         let room = BLOCK * count + READ - BLOCK;
         Self {
@@ -50,7 +50,7 @@ impl Values {
         }
     }
 
-    /// Makes all of them zero.
+    /// Sets all blocks to zero.
     pub fn clear(&mut self) {
         for half in [&mut self.high, &mut self.low] {
             let (blocks, _) = half.as_chunks_mut::<BLOCK>();
@@ -58,13 +58,13 @@ impl Values {
         }
     }
 
-    /// Whether all of them are numbers.
+    /// Tests whether all numbers are finite.
     pub fn are_finite(&self) -> bool {
-        // A number that is none, or too large, leaves a low part that is none.
+        // A NaN or an overflow leaves a low part that is not finite.
         self.low.iter().all(|value| value.is_finite())
     }
 
-    /// A block.
+    /// Block at a place.
     #[inline(always)]
     pub fn block(&self, place: usize) -> Block {
         let range = BLOCK * place..BLOCK * (place + 1);
@@ -81,7 +81,7 @@ impl Values {
         [self.high[at], self.low[at]] = split(factor * value);
     }
 
-    /// Adds a block times `x`; the fourth place of the sum means nothing.
+    /// Adds a block times `x`; the fourth place of the sum has no meaning.
     #[inline(always)]
     pub fn add_product(&self, place: usize, x: [f64; 3], sum: &mut [f64; 4]) {
         let range = BLOCK * place..BLOCK * place + READ;
@@ -94,7 +94,7 @@ impl Values {
         }
     }
 
-    /// The sum of the given blocks of one row, rounded, times what `value` says for their columns.
+    /// Sum of the given blocks of one row, rounded, times the vectors that `value` returns for their columns.
     #[inline(always)]
     pub fn rounded_product<'a>(
         &self,
@@ -115,7 +115,7 @@ impl Values {
         std::array::from_fn(|i| sums[0][i] + (sums[1][i] + sums[2][i]))
     }
 
-    /// Parts of as many blocks as `counts` say, one after the other.
+    /// Splits into parts of `counts` blocks, one after the other.
     pub fn parts(&mut self, counts: impl Iterator<Item = usize>) -> Vec<Part<'_>> {
         let (mut high, mut low) = (self.high.as_mut_slice(), self.low.as_mut_slice());
         let mut parts = Vec::with_capacity(counts.size_hint().0);
@@ -161,7 +161,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sums_keep_48_digits_and_tell_what_is_no_number() {
+    fn sums_keep_48_digits_and_detect_nan() {
         let mut values = Values::zeros(2);
         let block: Block = std::array::from_fn(|k| (k as f64 + 1.0) / 3.0);
         for part in &mut values.parts([1, 1].into_iter()) {

@@ -1,4 +1,4 @@
-//! What a state comes to: forces, energies, rest.
+//! Forces and energies of a state, and the test for rest.
 
 use voxsoft_solid::balance::{NEGLIGIBLE_STRAIN, balance_of_forces, is_still_with};
 use voxsoft_solid::hands::loads_end;
@@ -7,27 +7,27 @@ use voxsoft_solid::{Problem, State, Term, elastic};
 
 use super::Run;
 
-/// The part of the energy that a step turns over by which it may end with more than it should: the work of loads that
-/// follow the body is known to second order only.
+/// Tolerance of energy gains, relative to the energy converted in a step: the work of loads that follow the body is
+/// known to second order only.
 const GAIN: f64 = 1e-2;
-/// The same of the energy of motion: that of a steady turn oscillates by the square of the angle of a step after any
-/// change of the step.
+/// Tolerance of energy gains, relative to the kinetic energy: that of a steady rotation oscillates by the square of the
+/// angle of a step after any change of the step.
 const GAIN_OF_MOTION: f64 = 1e-3;
-/// Energies are sums of many terms and known to about this part of their size.
+/// Relative rounding of energies, which are sums of many terms.
 const ROUNDING: f64 = 1e-9;
 
 /// Forces and energies at a state.
 #[derive(Default)]
 pub(super) struct Now {
-    /// Of everything but loads, N.
+    /// Internal forces: all but loads, N.
     pub internal: Vec<Vec3>,
-    /// Of loads, N.
+    /// Loads, N.
     pub external: Vec<Vec3>,
-    /// What supports answer with, inertia included, N.
+    /// Reactions of supports, inertia included, N.
     pub reactions: Vec<Vec3>,
-    /// J, without that of multipliers.
+    /// Elastic energy without contact, J.
     pub elastic: f64,
-    /// J.
+    /// Kinetic energy, J.
     pub kinetic: f64,
 }
 
@@ -62,8 +62,8 @@ impl Run<'_> {
         now
     }
 
-    /// Whether a state has more energy than the last one had and was given. A second stage gives back what the first one has
-    /// lost, so that both count as one step.
+    /// Tests whether a state has more energy than the last one had and received. A second stage returns the energy that
+    /// the first one has lost, so that both count as one step.
     pub(super) fn gains_energy(&self, next: &State, found: &Now) -> bool {
         let (from, then) = match (&self.begun, &self.before) {
             (Some(begun), Some(before)) => (before, begun),
@@ -76,7 +76,7 @@ impl Run<'_> {
             let mean = add(found.external[vertex], then.external[vertex]);
             work += dot(mean, way) / 2.0;
             for axis in (0..3).filter(|axis| held[vertex][*axis]) {
-                // What is met within a step pushes back for all of it.
+                // A contact that closes within a step acts with its final force for all of it.
                 let mean = (found.reactions[vertex][axis] + then.reactions[vertex][axis]) / 2.0;
                 let last = found.reactions[vertex][axis];
                 work += f64::max(mean * way[axis], last * way[axis]);
@@ -94,13 +94,14 @@ impl Run<'_> {
         kinetic + stored - work > allowed + negligible
     }
 
-    /// Makes materials those of a time in s.
+    /// Sets the materials to those at a time in s.
     pub(super) fn begin(&mut self, time: f64) {
         self.problem.begin(time);
         self.equilibrium.problem.begin(time);
     }
 
-    /// What materials that grow from a state on to a time in s have done, in J: what the body stores more where it is.
+    /// Work of growing materials from a state on to a time in s, in J: the increase of the stored energy at fixed
+    /// positions.
     fn work_of_growth(&self, from: &State, time: f64) -> f64 {
         if self.problem.body().growth_end() <= from.time {
             return 0.0;
@@ -114,10 +115,10 @@ impl Run<'_> {
         stored(time) - before
     }
 
-    /// An estimate of the frequency (rad/s) that the present motion lives on: the change of all forces along the
-    /// motion over the motion's inertia is a Rayleigh quotient of `M⁻¹ K`.
+    /// Estimate of the frequency (rad/s) of the present motion: the change of all forces along the motion over the
+    /// motion's inertia is a Rayleigh quotient of `M⁻¹ K`.
     pub(super) fn frequency(&self, next: &State, found: &Now) -> f64 {
-        // The loads as they are now, so that one that has changed counts as no stiffness.
+        // Present loads, so that a change of a load counts as no stiffness.
         let [mut before, mut after] = [(); 2].map(|()| vec![[0.0; 3]; next.positions.len()]);
         self.problem
             .add_soft_loads(&self.state.positions, next.time, &mut before);
@@ -138,7 +139,7 @@ impl Run<'_> {
         }
     }
 
-    /// The relative residual of an equilibrium without inertia.
+    /// Relative residual of an equilibrium without inertia.
     pub(super) fn residual(&self) -> f64 {
         let pairs = self.now.internal.iter().zip(&self.now.external);
         let net = pairs.map(|(a, b)| add(*a, *b)).collect();

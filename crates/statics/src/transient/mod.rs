@@ -1,23 +1,23 @@
-//! Motion over time with contact, by implicit steps.
+//! Implicit dynamics with contact.
 //!
-//! The end of a step is an equilibrium of the body, its loads and its contact with the forces of inertia, by the second-order
-//! backward difference formula ([`crate::implicit::scheme`]):
+//! The end of a step is an equilibrium of the body, its loads and its contact with the forces of inertia, by the
+//! second-order backward difference formula ([`crate::implicit::scheme`]):
 //!
 //! ```text
 //! M (a + c v) = f(x)   ⇔   x is an equilibrium with κ/2 |x − y|²_M,   κ = σ (σ + c),   y = x̂ + v̂/(σ + c).
 //! ```
 //!
-//! It is found as one of statics is: Newton's method on the exact tangent, contact corrected until it has settled. So no
-//! step ends with surfaces in each other, and what sticks stays where it is.
+//! It is found like one of statics: Newton's method on the exact tangent, contact corrected until it has settled. So no
+//! step ends with penetrating surfaces, and sticking samples stay in place.
 //!
 //! # Energy
 //!
-//! Of a vibration of the period `T` the formula takes `π (2π h/T)³` of its energy in each period, so it damps only what a
-//! step does not resolve. Where two things meet, velocities jump, and a formula that looks two steps back lets them
-//! rebound too fast. A step that would end with more energy than the last state had and the loads have given is
-//! therefore taken again by the backward Euler formula, which gains none where the potential is convex. What meets is
-//! inelastic then, vertex by vertex; what rebounds is the body behind. Both formulas keep momentum to the tolerance of
-//! a step.
+//! The formula takes `π (2π h/T)³` of the energy of a vibration of the period `T` in each period, so it damps only
+//! motions that a step does not resolve. Where two bodies meet, velocities jump, and a formula that looks two steps
+//! back makes them rebound too fast. A step that would end with more energy than the last state had and the loads have
+//! given is therefore taken again by the backward Euler formula, which gains none where the potential is convex. The
+//! impact is inelastic then, vertex by vertex; the body behind rebounds. Both formulas keep momentum to the tolerance
+//! of a step.
 
 mod energy;
 mod step;
@@ -38,30 +38,29 @@ use crate::inertia::Inertia;
 use crate::settings::LinearSolver;
 use crate::system::{FactorError, Means};
 
-/// How often a step is halved before a run counts as diverged.
+/// Most halvings of a step before a run counts as diverged.
 const MAX_BACK_OFFS: u32 = 10;
-/// Good steps after which a halved one is doubled again.
+/// Successful steps after which a halved one is doubled again.
 const PATIENCE: u32 = 3;
-/// A step that ends so near to the next record goes on to it.
+/// Relative distance from the next record within which a step is extended to it.
 const SAME_TIME: f64 = 1e-9;
 
-/// How a body moves through time.
+/// Settings of implicit dynamics with contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transient {
-    /// The length of a step in s.
+    /// Length of a step in s.
     pub step: f64,
     /// Damping of all motion.
     pub damping: Damping,
-    /// Rest is where the relative residual force is below this, and the kinetic energy below this part of the
-    /// elastic energy.
+    /// Tolerance of rest: of the relative residual force, and of the kinetic energy over the elastic energy.
     pub tolerance: f64,
-    /// The time in s to run to exactly; `None` runs to rest.
+    /// End time in s, reached exactly; `None` runs to rest.
     pub end_time: Option<f64>,
-    /// The time in s after which a run that does not come to rest is given up.
+    /// Time in s after which a run that does not come to rest is given up.
     pub max_time: f64,
-    /// The time between two records in s, which steps do not go beyond.
+    /// Time between two records in s, which steps do not exceed.
     pub record_interval: Option<f64>,
-    /// The bytes that the tangent may take.
+    /// Most bytes of the tangent.
     pub memory: u64,
 }
 
@@ -99,7 +98,7 @@ impl Solver for Transient {
 }
 
 impl Transient {
-    /// Moves a problem on from a state.
+    /// Integrates the motion of a problem from a state.
     pub fn follow(&self, problem: &Problem, start: State, observer: &mut Observer<'_>) -> Solution {
         let inertia = Arc::new(Inertia::new(problem.body().masses()));
         let mut problem = problem.clone().with_held_loads();
@@ -161,21 +160,21 @@ fn refused(state: State, memory: Memory, error: FactorError) -> Solution {
 }
 
 struct Run<'a> {
-    /// Without inertia, which that of `equilibrium` has.
+    /// Problem without inertia, which that of `equilibrium` has.
     problem: Problem,
     settings: &'a Transient,
     equilibrium: Equilibrium<'a>,
     inertia: &'a Inertia,
     state: State,
     now: Now,
-    /// The state one step ago.
+    /// State one step ago.
     before: Option<State>,
     stage: Stage,
-    /// Forces and energies where the step began of which the state is the first stage.
+    /// Forces and energies at the beginning of the step of which the state is the first stage.
     begun: Option<Now>,
     damping_rate: f64,
     step: f64,
-    /// Good steps since the last halving.
+    /// Successful steps since the last halving.
     good: u32,
     steps: u64,
     back_offs: u32,
@@ -250,7 +249,7 @@ impl Run<'_> {
         }
     }
 
-    /// Takes one step, in halves of halves where a whole one fails.
+    /// Takes one step, halved repeatedly if a whole one fails.
     fn take_step(&mut self, recorded: i64, observer: &mut Observer<'_>) -> Result<(), Stop> {
         let least = self.settings.step * 0.5f64.powi(MAX_BACK_OFFS as i32);
         loop {
@@ -285,7 +284,7 @@ impl Run<'_> {
         }
     }
 
-    /// As long as asked, but not beyond the end or the next record; and the stage of it that comes next.
+    /// Length of the next step, which does not exceed the end or the next record, and of its next stage.
     fn next_step(&self, recorded: i64) -> (f64, f64) {
         if let (Stage::Second, Some(before)) = (self.stage, &self.before) {
             let second = SECOND_OVER_FIRST * (self.state.time - before.time);
@@ -306,7 +305,7 @@ impl Run<'_> {
         (whole, if begins { FIRST_PART * whole } else { whole })
     }
 
-    /// A step by the second-order formula, or again by backward Euler if that one gains energy.
+    /// Takes a step by the second-order formula, or again by backward Euler if that one gains energy.
     fn try_step(&mut self, step: f64, observer: &mut Observer<'_>) -> Result<(), Stop> {
         if self.before.is_some() {
             let before = self.before.take();
@@ -322,7 +321,7 @@ impl Run<'_> {
         self.accept(next, found)
     }
 
-    /// Forgets what contact has learned since the last accepted state.
+    /// Resets the memory of contact to the last accepted state.
     fn go_back(&mut self) {
         if let Some(contact) = self.problem.contact_mut() {
             contact.go_back();
@@ -347,7 +346,7 @@ impl Run<'_> {
             self.damping_rate = 2.0 * self.frequency(&next, &found);
         }
         let left = std::mem::replace(&mut self.state, next);
-        // The first stage is of first order, and no state that a later step may look back to.
+        // The first stage is of first order, and not used as a previous state by later steps.
         if self.stage != Stage::Second {
             self.before = Some(left);
         }
@@ -361,11 +360,11 @@ impl Run<'_> {
     }
 }
 
-/// Why a run ends early.
+/// Reasons for an early end of a run.
 enum Stop {
-    /// A step was not found.
+    /// The end of a step was not found.
     Failed(Failure),
-    /// Something has gone too far away.
+    /// A body has moved too far away.
     Gone(Breakdown),
 }
 

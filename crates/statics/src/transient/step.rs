@@ -1,4 +1,4 @@
-//! One step: where it ends, with contact settled.
+//! One step: its end, with contact settled.
 
 use voxsoft_solid::Observer;
 use voxsoft_solid::State;
@@ -12,13 +12,13 @@ use crate::point::Point;
 use crate::settings::Settings;
 use crate::settle::AtLoad;
 
-/// What a step may leave of the forces that act in it.
+/// Relative residual of the equilibrium of a step.
 const STEP_TOLERANCE: f64 = 1e-7;
-/// The part of the momentum that a force may change in a step and does not matter.
+/// Negligible force, as the relative change of the momentum by it in a step.
 const NEGLIGIBLE_CHANGE: f64 = 1e-3;
 
 impl Run<'_> {
-    /// The state at the end of a step.
+    /// Finds the state at the end of a step.
     pub(super) fn find(
         &mut self,
         step: f64,
@@ -26,14 +26,14 @@ impl Run<'_> {
         observer: &mut Observer<'_>,
     ) -> Result<(State, Now), Stop> {
         let start = Start::new(&self.state, before, step, self.stage);
-        // Contact has one memory, which the problem with inertia borrows while it looks for the end.
+        // Contact has one memory, which the problem with inertia borrows while it finds the end.
         self.problem.exchange_contact(&mut self.equilibrium.problem);
         let positions = self.find_positions(step, before, &start, observer);
         self.problem.exchange_contact(&mut self.equilibrium.problem);
         self.state_at(positions?, step, &start)
     }
 
-    /// The positions at the end of a step.
+    /// Finds the positions at the end of a step.
     fn find_positions(
         &mut self,
         step: f64,
@@ -59,7 +59,7 @@ impl Run<'_> {
         Ok(positions)
     }
 
-    /// The state at the end of a step, with its forces and energies.
+    /// State at the end of a step, with its forces and energies.
     fn state_at(
         &self,
         positions: Vec<Vec3>,
@@ -90,18 +90,19 @@ impl Run<'_> {
         Ok((next, found))
     }
 
-    /// The norm of the momenta of all vertices, kg m/s.
+    /// Norm of the momenta of all vertices, kg m/s.
     fn momentum(&self) -> f64 {
         let masses = self.problem.body().masses();
         let pairs = self.state.velocities.iter().zip(masses);
         pairs.map(|(v, m)| m * m * dot(*v, *v)).sum::<f64>().sqrt()
     }
 
-    /// Where the search begins: where the motion as it was leads, or the velocity alone, or nothing moves, whichever has
-    /// the least potential. What meets something, or feels a load that has jumped, does not move on as it did, and
-    /// from deep inside an obstacle the way out takes more than twice the iterations.
+    /// Starting guess of a step: extrapolation with the acceleration, with the velocity alone, or standing still,
+    /// whichever has the lowest potential. Bodies that meet an obstacle, or feel a load that has jumped, do not
+    /// continue their motion, and from deep inside an obstacle the way out takes more than twice the iterations.
     ///
-    /// Each is judged by what it faces itself, and the search looks anew: what the last one faced is not what the best one does.
+    /// Each guess is evaluated with its own facing of contact, and the search updates it: the facing of the last guess
+    /// is not that of the best one.
     fn best_prediction(
         &mut self,
         step: f64,
@@ -134,7 +135,7 @@ impl Run<'_> {
         }
     }
 
-    /// Where the motion goes on as it did: at its acceleration since the state `before`, if that is given.
+    /// Extrapolates the motion: with its acceleration since the state `before`, if that is given.
     fn predicted(&self, step: f64, before: Option<&State>) -> Vec<Vec3> {
         let mut positions = self.state.positions.clone();
         for (x, v) in positions.iter_mut().zip(&self.state.velocities) {
@@ -150,7 +151,7 @@ impl Run<'_> {
         positions
     }
 
-    /// The equilibrium of a step, with contact settled.
+    /// Finds the equilibrium of a step, with contact settled.
     fn settle(
         &mut self,
         positions: &mut Vec<Vec3>,

@@ -10,7 +10,7 @@ use voxsoft_solid::{Body, Clamp, HyperelasticMaterial, Load, Material, Mesh, Pro
 use voxsoft_statics::{Answer, Settings, solve};
 use voxsoft_voxel::{Grid, tet_mesh};
 
-/// The mesh of all filled cells of a grid, part `p` as material `p − 1`.
+/// Mesh of all filled cells of a grid, part `p` as material `p − 1`.
 pub fn mesh_of(grid: &Grid) -> Mesh {
     let tets = tet_mesh(grid, u64::MAX).unwrap();
     Mesh {
@@ -39,7 +39,7 @@ pub fn rubber() -> HyperelasticMaterial {
     HyperelasticMaterial::neo_hookean(60e3, 0.49, 1070.0).unwrap()
 }
 
-/// A beam along x whose first two layers of voxels are held, under its own weight.
+/// Beam along x whose first two layers of voxels are held, under its own weight.
 pub fn cantilever(cells: [usize; 3], side: f64, material: impl Into<Material>) -> Problem {
     let mesh = block(cells, side);
     let body = Body::new(&mesh, &[material.into()]).unwrap();

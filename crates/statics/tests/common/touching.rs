@@ -1,4 +1,4 @@
-//! Bodies that touch.
+//! Bodies with contact.
 
 use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_contact::touch::{Carried, Description, PairReport, Surface, Touch};
@@ -8,12 +8,12 @@ use voxsoft_statics::Answer;
 
 use super::rubber;
 
-/// Of [`rubber`], Pa.
+/// Young's modulus of [`rubber`], Pa.
 pub const YOUNG: f64 = 60e3;
-/// The friction of what passes through each other.
+/// Coefficient of friction of surfaces that pass through each other.
 pub const NONE: f64 = f64::NAN;
 
-/// Appends a mesh of the same material; the number of its first vertex.
+/// Appends a mesh of the same material; returns the number of its first vertex.
 pub fn join(mesh: &mut Mesh, other: Mesh, shift: Vec3) -> u32 {
     let first = mesh.vertices.len() as u32;
     let blocks = mesh.tet_block.iter().max().map_or(0, |block| block + 1);
@@ -44,7 +44,7 @@ pub fn moved(vertices: Vec<u32>, axes: [bool; 3], displacement: Vec3) -> Clamp {
     }
 }
 
-/// The corners of a box.
+/// Corners of a box.
 pub fn corners_of(low: Vec3, high: Vec3) -> Vec<Vec3> {
     (0..8)
         .map(|c| [c >> 2 & 1, c >> 1 & 1, c & 1])
@@ -52,13 +52,13 @@ pub fn corners_of(low: Vec3, high: Vec3) -> Vec<Vec3> {
         .collect()
 }
 
-/// Adds a rigid box to a mesh; its surface.
+/// Adds a rigid box to a mesh; returns its surface.
 pub fn add_box(mesh: &mut Mesh, low: Vec3, high: Vec3) -> Surface {
     let corners = corners_of(low, high);
     add_rigid(mesh, &corners, &Frame::around(&corners))
 }
 
-/// Adds a rigid box that a frame carries, given by its corners; its surface.
+/// Adds a rigid box that a frame carries, given by its corners; returns its surface.
 pub fn add_rigid(mesh: &mut Mesh, corners: &[Vec3], frame: &Frame) -> Surface {
     let first = mesh.vertices.len() as u32;
     mesh.vertices.extend(frame.vertices());
@@ -70,7 +70,7 @@ pub fn add_rigid(mesh: &mut Mesh, corners: &[Vec3], frame: &Frame) -> Surface {
     }
 }
 
-/// A problem with contact.
+/// Problem with contact.
 pub fn touching(
     mesh: &Mesh,
     clamps: Vec<Clamp>,
@@ -93,13 +93,13 @@ pub fn touching(
     problem.with_contact(Box::new(touch)).unwrap()
 }
 
-/// The contact of a problem.
+/// Contact of a problem.
 pub fn touch_of(problem: &Problem) -> &Touch {
     let contact = problem.contact().unwrap();
     contact.found_by().downcast_ref().unwrap()
 }
 
-/// All that touches at an answer.
+/// Reports of all pairs in contact at a solution.
 pub fn pairs_at(problem: &Problem, answer: &Answer) -> Vec<PairReport> {
     let mut there = problem.clone();
     there.remember(&answer.memory);
