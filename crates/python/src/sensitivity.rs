@@ -77,6 +77,9 @@ fn touch_mut(problem: &mut Problem) -> Option<&mut Touch> {
 /// A varied problem, the offset of its parameter, and its weight in the derivative.
 type PyVaried<'py> = (PyRef<'py, PyProblem>, f64, f64);
 
+/// Positions (m) at the end of a path, and the problem with its memory there.
+type PyEnd<'py> = (Bound<'py, PyArray2<f64>>, PyProblem);
+
 /// First-order positions (m) of the body in varied problems at the end of the recorded load path of a problem, each
 /// with the problem there: for each parameter, for each of its varied problems. `factors` are the load factors of the
 /// steps.
@@ -88,7 +91,7 @@ pub fn sensitivities<'py>(
     factors: Vec<f64>,
     varied: Vec<Vec<PyVaried<'py>>>,
     memory: u64,
-) -> PyResult<Vec<Vec<(Bound<'py, PyArray2<f64>>, PyProblem)>>> {
+) -> PyResult<Vec<Vec<PyEnd<'py>>>> {
     let own = problem.own();
     problem.look_at_touch(|_| ())?;
     let mut inner = Problem::clone(&problem.now());

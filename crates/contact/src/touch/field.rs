@@ -61,7 +61,7 @@ impl Touch {
         let mut pressed = vec![0.0; count];
         let mut direction = vec![[0.0; 3]; count];
         let mut friction = vec![[0.0; 3]; count];
-        self.each_contact(&state, positions, |meeting, pressure, _| {
+        self.each_contact(state, positions, |meeting, pressure, _| {
             self.each_share(meeting.spot(), |vertex, sign, share| {
                 pressed[vertex] += share * pressure;
                 axpy(
@@ -71,7 +71,7 @@ impl Touch {
                 );
             });
         });
-        self.each_friction(&state, positions, |sample, found| {
+        self.each_friction(state, positions, |sample, found| {
             self.each_share(found.spot(sample), |vertex, sign, share| {
                 axpy(&mut friction[vertex], sign * share, found.force);
             });

@@ -62,12 +62,12 @@ impl Touch {
         let state = &self.state;
         let mut found: BTreeMap<[u32; 2], (PairReport, [f64; 2])> = BTreeMap::new();
         let mut pressed_samples = vec![false; self.samples.len()];
-        self.each_contact(&state, positions, |meeting, pressure, points| {
+        self.each_contact(state, positions, |meeting, pressure, points| {
             pressed_samples[meeting.sample as usize] = true;
             let sample = &self.samples[meeting.sample as usize];
             let of = self.surfaces_of(meeting);
             let memory = &state.now[meeting.sample as usize];
-            let friction = self.friction(&state, meeting.sample, points);
+            let friction = self.friction(state, meeting.sample, points);
             let mut force = scale(pressure, meeting.normal);
             let mut tangential = [0.0; 3];
             let (mut pressed, mut slipping) = (pressure, pressure);
@@ -97,12 +97,12 @@ impl Touch {
         for (point, twin) in self.twins.iter().enumerate() {
             pressed_samples[point] = pressed_samples[*twin as usize];
         }
-        self.each_between(&state, positions, &pressed_samples, |meeting, points| {
+        self.each_between(state, positions, &pressed_samples, |meeting, points| {
             if let Some((_, areas)) = found.get_mut(&self.surfaces_of(meeting)) {
                 areas[self.side(meeting)] += self.area_toward(meeting, points);
             }
         });
-        self.each_tie(&state, positions, |bond, tie, force| {
+        self.each_tie(state, positions, |bond, tie, force| {
             let mut of = bond.of;
             of.sort_unstable();
             let entry = found.entry(of);
