@@ -1,3 +1,5 @@
+mod memory;
+
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -6,9 +8,10 @@ use crate::fluid::Coupling;
 use crate::loads::Vertices;
 use crate::vector::Vec3;
 use crate::{
-    Body, Clamp, Contact, Floor, Fluid, History, Load, LoadKind, Memory, ProblemError, Rigid,
-    Tendon, Term,
+    Body, Clamp, Contact, Floor, Fluid, History, Load, LoadKind, ProblemError, Rigid, Term,
 };
+
+pub use memory::Memory;
 
 /// A body with clamps, loads, and optionally a floor, fluid or contact.
 #[derive(Debug, Clone)]
@@ -117,13 +120,6 @@ impl Problem {
         self.fluid.as_mut()
     }
 
-    /// Starts gas and liquid from `positions` (m): along a path of equilibria, or for a motion from a time in s on.
-    pub fn start_fluid(&mut self, positions: &[Vec3], time: Option<f64>) {
-        if let Some(fluid) = &mut self.fluid {
-            fluid.start(positions, time);
-        }
-    }
-
     /// The body, copied first if other problems share it.
     fn body_mut(&mut self) -> &mut Body {
         Arc::make_mut(&mut self.body)
@@ -172,19 +168,6 @@ impl Problem {
         // A body without contact is not copied for it.
         self.body.contact()?;
         Some(&mut **self.body_mut().contact_mut()?)
-    }
-
-    /// Swaps contact with that of another problem on the same vertices, memory included.
-    pub fn exchange_contact(&mut self, other: &mut Self) {
-        if self.body.contact().is_none() || other.body.contact().is_none() {
-            return;
-        }
-        if let (Some(own), Some(other)) = (
-            self.body_mut().contact_mut(),
-            other.body_mut().contact_mut(),
-        ) {
-            std::mem::swap(own, other);
-        }
     }
 
     /// The body.
@@ -301,108 +284,6 @@ impl Problem {
             *tendon = tendon.taut();
         }
         Cow::Owned(problem)
-    }
-
-    /// Its memory: the data that depend on the load path.
-    pub fn memory(&self) -> Memory {
-        let tendons = self.loads.iter().filter_map(|load| match &load.kind {
-            LoadKind::Tendon(tendon) => Some(tendon.memory().cloned()),
-            _ => None,
-        });
-        Memory {
-            time: self.time,
-            peaks: self.body.brick_term().peaks(),
-            tendons: tendons.collect(),
-            fluid: self.fluid.as_ref().map(|fluid| fluid.memory().clone()),
-            contact: self.contact().map(Contact::memory),
-        }
-    }
-
-    /// Restores a memory of this problem.
-    pub fn remember(&mut self, memory: &Memory) {
-        self.begin(memory.time);
-        if let Some(peaks) = &memory.peaks {
-            self.set_peaks(peaks);
-        }
-        for (tendon, kept) in self.tendons_mut().zip(&memory.tendons) {
-            tendon.remember(kept.clone());
-        }
-        if let (Some(fluid), Some(kept)) = (&mut self.fluid, &memory.fluid) {
-            fluid.remember(kept.clone());
-        }
-        if let (Some(contact), Some(kept)) = (self.contact_mut(), &memory.contact) {
-            contact.remember(kept);
-        }
-    }
-
-    /// Takes over the memory of another problem on the same body, except that of contact.
-    pub fn remember_but_contact(&mut self, other: &Self) {
-        self.begin(other.time);
-        if let Some(peaks) = other.body.brick_term().peaks() {
-            self.set_peaks(&peaks);
-        }
-        let kept = other.loads.iter().filter_map(|load| match &load.kind {
-            LoadKind::Tendon(tendon) => Some(tendon.memory().cloned()),
-            _ => None,
-        });
-        for (tendon, kept) in self.tendons_mut().zip(kept) {
-            tendon.remember(kept);
-        }
-        self.fluid.clone_from(&other.fluid);
-    }
-
-    /// Sets the free stretches of all materials to those at a time in s.
-    pub fn begin(&mut self, time: f64) {
-        self.time = time;
-        if self.body.growth_end() > 0.0 {
-            self.body_mut().begin(time);
-        }
-    }
-
-    /// Clears the memory of tendons and of materials that soften.
-    pub fn start_loads(&mut self) {
-        if self.body.brick_term().soften() {
-            let first = self.body.brick_term().first_peaks();
-            self.body_mut().set_peaks(&first);
-        }
-        self.tendons_mut().for_each(|tendon| tendon.remember(None));
-    }
-
-    /// Accepts `positions` as the state from which the load path continues, for tendons and materials that soften.
-    pub fn accept_loads(&mut self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) {
-        if self.body.brick_term().soften() {
-            let peaks = self.body.brick_term().peaks_after(positions);
-            self.body_mut().set_peaks(&peaks);
-        }
-        let body = &*self.body;
-        let positions = &*body.ties().seen(positions);
-        let on = Vertices {
-            rest: body.rest(),
-            positions,
-            masses: body.masses(),
-        };
-        for load in &mut self.loads {
-            let factor = factor_of(load);
-            if let LoadKind::Tendon(tendon) = &mut load.kind {
-                tendon.accept(on, factor);
-            }
-        }
-    }
-
-    fn tendons_mut(&mut self) -> impl Iterator<Item = &mut Tendon> {
-        self.loads
-            .iter_mut()
-            .filter_map(|load| match &mut load.kind {
-                LoadKind::Tendon(tendon) => Some(tendon),
-                _ => None,
-            })
-    }
-
-    /// Sets the largest isochoric energy (J/m³) so far of each hyperelastic voxel; does nothing if none softens.
-    pub fn set_peaks(&mut self, peaks: &[f64]) {
-        if self.body.brick_term().soften() {
-            self.body_mut().set_peaks(peaks);
-        }
     }
 
     /// Tests whether the solution depends on the load path.

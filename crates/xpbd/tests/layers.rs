@@ -211,7 +211,7 @@ fn free_body_keeps_its_momenta() {
 }
 
 #[test]
-fn bitwise_result_is_independent_of_threads() {
+fn bits_are_independent_of_threads() {
     let run = |threads: usize| {
         let mut live = Live::new(cantilever(rubber(), true, FABRIC), Dynamics::default());
         live.grab(0, 3, [0.0, 0.0, 0.03], 20.0).unwrap();

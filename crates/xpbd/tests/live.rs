@@ -295,7 +295,7 @@ fn seek_continues_from_given_positions() {
 /// Identical bits for any number of threads and any split into calls, on strips and with a grab; the deterministic mode
 /// differs from the fast one by rounding alone.
 #[test]
-fn bitwise_result_is_independent_of_threads_and_calls() {
+fn bits_are_independent_of_threads_and_calls() {
     // Sixteen layers make four slabs and more.
     let mesh = block([16, 4, 4], 5e-3);
     let clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));

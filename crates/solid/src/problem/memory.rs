@@ -1,0 +1,147 @@
+//! Memory of a problem: its data that depend on the load path.
+
+use super::Problem;
+use crate::fluid::FluidMemory;
+use crate::loads::{TendonMemory, Vertices};
+use crate::vector::Vec3;
+use crate::{Contact, ContactMemory, Load, LoadKind, Tendon};
+
+/// The path-dependent data of a problem: [`crate::Problem::memory`] reads them and [`crate::Problem::remember`]
+/// restores them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Memory {
+    /// The time in s of the present free stretches of all materials; infinite after all histories.
+    pub time: f64,
+    /// The largest isochoric energy (J/m³) so far of each hyperelastic voxel, if any softens.
+    pub peaks: Option<Vec<f64>>,
+    /// Friction of each tendon among the loads, in their order; `None` before a state was accepted.
+    pub tendons: Vec<Option<TendonMemory>>,
+    /// Gas and liquid in chambers.
+    pub fluid: Option<FluidMemory>,
+    /// Contact between surfaces.
+    pub contact: Option<ContactMemory>,
+}
+
+impl Problem {
+    /// Its memory: the data that depend on the load path.
+    pub fn memory(&self) -> Memory {
+        let tendons = self.loads.iter().filter_map(|load| match &load.kind {
+            LoadKind::Tendon(tendon) => Some(tendon.memory().cloned()),
+            _ => None,
+        });
+        Memory {
+            time: self.time,
+            peaks: self.body.brick_term().peaks(),
+            tendons: tendons.collect(),
+            fluid: self.fluid.as_ref().map(|fluid| fluid.memory().clone()),
+            contact: self.contact().map(Contact::memory),
+        }
+    }
+
+    /// Restores a memory of this problem.
+    pub fn remember(&mut self, memory: &Memory) {
+        self.begin(memory.time);
+        if let Some(peaks) = &memory.peaks {
+            self.set_peaks(peaks);
+        }
+        for (tendon, kept) in self.tendons_mut().zip(&memory.tendons) {
+            tendon.remember(kept.clone());
+        }
+        if let (Some(fluid), Some(kept)) = (&mut self.fluid, &memory.fluid) {
+            fluid.remember(kept.clone());
+        }
+        if let (Some(contact), Some(kept)) = (self.contact_mut(), &memory.contact) {
+            contact.remember(kept);
+        }
+    }
+
+    /// Takes over the memory of another problem on the same body, except that of contact.
+    pub fn remember_but_contact(&mut self, other: &Self) {
+        self.begin(other.time);
+        if let Some(peaks) = other.body.brick_term().peaks() {
+            self.set_peaks(&peaks);
+        }
+        let kept = other.loads.iter().filter_map(|load| match &load.kind {
+            LoadKind::Tendon(tendon) => Some(tendon.memory().cloned()),
+            _ => None,
+        });
+        for (tendon, kept) in self.tendons_mut().zip(kept) {
+            tendon.remember(kept);
+        }
+        self.fluid.clone_from(&other.fluid);
+    }
+
+    /// Sets the free stretches of all materials to those at a time in s.
+    pub fn begin(&mut self, time: f64) {
+        self.time = time;
+        if self.body.growth_end() > 0.0 {
+            self.body_mut().begin(time);
+        }
+    }
+
+    /// Clears the memory of tendons and of materials that soften.
+    pub fn start_loads(&mut self) {
+        if self.body.brick_term().soften() {
+            let first = self.body.brick_term().first_peaks();
+            self.body_mut().set_peaks(&first);
+        }
+        self.tendons_mut().for_each(|tendon| tendon.remember(None));
+    }
+
+    /// Accepts `positions` as the state from which the load path continues, for tendons and materials that soften.
+    pub fn accept_loads(&mut self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) {
+        if self.body.brick_term().soften() {
+            let peaks = self.body.brick_term().peaks_after(positions);
+            self.body_mut().set_peaks(&peaks);
+        }
+        let body = &*self.body;
+        let positions = &*body.ties().seen(positions);
+        let on = Vertices {
+            rest: body.rest(),
+            positions,
+            masses: body.masses(),
+        };
+        for load in &mut self.loads {
+            let factor = factor_of(load);
+            if let LoadKind::Tendon(tendon) = &mut load.kind {
+                tendon.accept(on, factor);
+            }
+        }
+    }
+
+    fn tendons_mut(&mut self) -> impl Iterator<Item = &mut Tendon> {
+        self.loads
+            .iter_mut()
+            .filter_map(|load| match &mut load.kind {
+                LoadKind::Tendon(tendon) => Some(tendon),
+                _ => None,
+            })
+    }
+
+    /// Sets the largest isochoric energy (J/m³) so far of each hyperelastic voxel; does nothing if none softens.
+    pub fn set_peaks(&mut self, peaks: &[f64]) {
+        if self.body.brick_term().soften() {
+            self.body_mut().set_peaks(peaks);
+        }
+    }
+
+    /// Starts gas and liquid from `positions` (m): along a path of equilibria, or for a motion from a time in s on.
+    pub fn start_fluid(&mut self, positions: &[Vec3], time: Option<f64>) {
+        if let Some(fluid) = &mut self.fluid {
+            fluid.start(positions, time);
+        }
+    }
+
+    /// Swaps contact with that of another problem on the same vertices, memory included.
+    pub fn exchange_contact(&mut self, other: &mut Self) {
+        if self.body.contact().is_none() || other.body.contact().is_none() {
+            return;
+        }
+        if let (Some(own), Some(other)) = (
+            self.body_mut().contact_mut(),
+            other.body_mut().contact_mut(),
+        ) {
+            std::mem::swap(own, other);
+        }
+    }
+}
