@@ -101,7 +101,7 @@ mod tests {
     use voxsoft_solid::conformance::check_term;
 
     #[test]
-    fn inertia_obeys_the_laws_of_terms() {
+    fn inertia_keeps_the_laws_of_terms() {
         let inertia = Inertia::new(&[0.1, 0.2]);
         inertia.set(40.0, vec![[0.1, 0.0, 0.2], [0.3, -0.1, 0.0]]);
         let rest = [[0.0; 3], [0.2, 0.1, 0.0]];

@@ -272,7 +272,7 @@ fn bond_carries_a_hanging_weight() {
 }
 
 #[test]
-fn ties_obey_the_laws_of_terms() {
+fn ties_keep_the_laws_of_terms() {
     let (mesh, low, high) = two_blocks(1e-4);
     let surfaces = vec![Surface::of_voxels(&low, 2), Surface::of_voxels(&high, 2)];
     let first = side(1, &surfaces[1], Solid::Voxels(&high));

@@ -64,7 +64,7 @@ fn sprung() -> Problem {
 }
 
 #[test]
-fn statics_obeys_the_laws_of_a_solver() {
+fn statics_keeps_the_laws_of_a_solver() {
     for problem in [
         sprung(),
         cantilever([10, 2, 2], 5e-3, rubber()),
@@ -89,7 +89,7 @@ fn statics_obeys_the_laws_of_a_solver() {
 }
 
 #[test]
-fn motion_to_rest_obeys_the_laws_of_a_solver() {
+fn motion_to_rest_keeps_the_laws_of_a_solver() {
     for problem in [
         cantilever([8, 2, 2], 5e-3, rubber()),
         cantilever([8, 2, 2], 5e-3, lattice()),
@@ -103,7 +103,7 @@ fn motion_to_rest_obeys_the_laws_of_a_solver() {
 }
 
 #[test]
-fn implicit_steps_obey_the_laws_of_a_stepper() {
+fn implicit_steps_keep_the_laws_of_a_stepper() {
     for problem in [
         cantilever([8, 2, 2], 5e-3, rubber()),
         cantilever([8, 2, 2], 5e-3, lattice()),

@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_obey_the_laws_of_terms() {
+    fn edges_keep_the_laws_of_terms() {
         // Penetrated by less than the pressure that the exact tangent accepts.
         let (apart, positions) = (crossed(0.05), crossed(-0.0004));
         let mut touch = touch(0.0, &crossed(0.0));

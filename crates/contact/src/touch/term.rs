@@ -113,7 +113,7 @@ impl Touch {
         self.each_tie(state, positions, |_, tie, _| self.visit_tie(tie, visit));
     }
 
-    /// Assembles a matrix on points, blockwise, into one on the vertices that carry them.
+    /// Assembles a matrix on points, block by block, into one on the vertices that carry them.
     fn visit_points(
         &self,
         points: &[u32],

@@ -61,7 +61,7 @@ fn apart(positions: &[Vec3]) -> Vec<Vec3> {
 }
 
 #[test]
-fn contact_obeys_the_laws_of_terms() {
+fn contact_keeps_the_laws_of_terms() {
     let (mut touch, positions) = pressed();
     let pairs = touch.pairs(&positions);
     assert_eq!(pairs.len(), 1);
