@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use voxsoft_contact::touch::Touch;
 use voxsoft_solid::vector::Vec3;
 
-use crate::simulate::from_rows;
+use crate::arrays::from_rows;
 use crate::touch::Touching;
 
 /// Contact pressure, friction and gap at the vertices of the body.

@@ -9,26 +9,15 @@ use voxsoft_frames::{Display, Field, FrameHead, Outline};
 use voxsoft_solid::State;
 use voxsoft_solid::vector::Vec3;
 
+use crate::arrays::{from_rows, of_vertices, rows};
 use crate::errors::to_python;
 use crate::handle::Handle;
-use crate::simulate::{PyProblem, from_rows, rows};
+use crate::simulate::PyProblem;
 
 pub(crate) fn field(id: u16) -> PyResult<Field> {
     let last = Field::ALL.len() - 1;
     let message = || PyValueError::new_err(format!("no field {id}: there are 0 to {last}"));
     Field::from_id(id).ok_or_else(message)
-}
-
-/// One row for each vertex of a mesh.
-pub(crate) fn of_vertices(
-    what: &str,
-    array: &PyReadonlyArray2<'_, f64>,
-    expected: usize,
-) -> PyResult<Vec<Vec3>> {
-    let read: Vec<Vec3> = rows(what, array)?;
-    let got = read.len();
-    let message = || PyValueError::new_err(format!("{what}: {got} rows, expected {expected}"));
-    (got == expected).then_some(read).ok_or_else(message)
 }
 
 /// A surface or tetrahedra of a mesh, which needs no problem.

@@ -8,8 +8,9 @@ use pyo3::prelude::*;
 use voxsoft_statics::{Ensemble, Variant};
 
 use crate::answer::PySettlement;
+use crate::arrays::rows;
 use crate::gate;
-use crate::simulate::{PyProblem, rows};
+use crate::simulate::PyProblem;
 
 /// A problem laid out for many candidates at a time.
 #[pyclass(frozen, name = "Ensemble", module = "voxsoft._core")]

@@ -13,8 +13,9 @@ use voxsoft_statics::{AdjointError, Control, LinearSolver, Settings, Start};
 use voxsoft_xpbd::{Answer, Status};
 
 use crate::answer::{PyAnswer, PyPath};
+use crate::arrays::from_rows;
 use crate::gate;
-use crate::simulate::{PyProblem, from_rows};
+use crate::simulate::PyProblem;
 use crate::watch::{Watch, collect_sensors};
 
 /// Adjoint states (k, n, 3) for gradients (k, n, 3) of scalar objectives at an equilibrium, over the vertices of the

@@ -8,8 +8,9 @@ use pyo3::types::PyDict;
 use voxsoft_solid::fields::{Field, Fields, Measure};
 use voxsoft_solid::{Body, State};
 
+use crate::arrays::from_rows;
 use crate::gate;
-use crate::simulate::{PyProblem, from_rows};
+use crate::simulate::PyProblem;
 
 /// Elements of a problem's body: voxels, or tetrahedra where it is not made of voxels.
 #[pyclass(frozen, name = "Fields", module = "voxsoft._core")]

@@ -2,6 +2,7 @@
 use pyo3::prelude::*;
 
 mod answer;
+mod arrays;
 mod contact;
 mod contact_field;
 mod display;

@@ -15,11 +15,12 @@ use voxsoft_solid::{Ask, Grab, Method, Problem, Stepper};
 use voxsoft_xpbd::Dynamics;
 
 use crate::answer::PyAdvance;
+use crate::arrays::{from_rows, rows};
 use crate::display::{PyDisplay, field as field_of};
 use crate::errors::to_python;
 use crate::gate;
 use crate::player::dynamics;
-use crate::simulate::{PyProblem, from_rows, rows};
+use crate::simulate::PyProblem;
 
 /// Interactive run of a problem. Any thread may call any method; calls are serialized.
 #[pyclass(frozen, name = "Live", module = "voxsoft._core")]

@@ -7,8 +7,8 @@ use voxsoft_solid::{
     Mullins, ProblemError, Share, Winding,
 };
 
+use crate::arrays::rows;
 use crate::errors::{exception, to_python};
-use crate::simulate::rows;
 
 /// A growth factor: times (s), stretches, their exponent, and the share of each block if it is a field.
 type Factor<'py> = (Vec<f64>, Vec<f64>, f64, Option<PyReadonlyArray2<'py, f64>>);

@@ -23,11 +23,12 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Problem, ProblemError};
 use voxsoft_xpbd::{Damping, Dynamics};
 
-use crate::display::{PyDisplay, field as field_of, of_vertices};
+use crate::arrays::{from_rows, of_vertices, rows};
+use crate::display::{PyDisplay, field as field_of};
 use crate::errors::to_python;
 use crate::gate;
 use crate::handle::Handle;
-use crate::simulate::{PyProblem, from_rows, rows};
+use crate::simulate::PyProblem;
 
 /// Settings of live dynamics.
 pub(crate) fn dynamics(

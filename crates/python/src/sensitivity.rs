@@ -9,9 +9,10 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Problem, RecordedContact};
 use voxsoft_statics::Varied;
 
+use crate::arrays::from_rows;
 use crate::equilibrium::to_python;
 use crate::gate;
-use crate::simulate::{PyProblem, from_rows};
+use crate::simulate::PyProblem;
 use crate::touch::touch_of;
 use crate::touch_answer::PyContact;
 

@@ -19,6 +19,7 @@ use voxsoft_solid::{
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
 
 use crate::answer::PyAnswer;
+use crate::arrays::{from_rows, rows};
 use crate::errors::to_python;
 use crate::gate;
 use crate::handle::Handle;
@@ -29,19 +30,6 @@ use crate::touch::{
     BodyPart, BondPart, Freedom, ObjectPart, TouchParts, Touching, Way, Whole, touch_of,
 };
 use crate::watch::{Watch, collect_sensors};
-
-pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
-    what: &str,
-    array: &PyReadonlyArray2<'_, T>,
-) -> PyResult<Vec<[T; N]>> {
-    let view = array.as_array();
-    if view.ncols() != N {
-        let message = format!("{what} must have {N} columns, got {}", view.ncols());
-        return Err(PyValueError::new_err(message));
-    }
-    let row = |row: numpy::ndarray::ArrayView1<'_, T>| std::array::from_fn(|i| row[i]);
-    Ok(view.rows().into_iter().map(row).collect())
-}
 
 /// A load history: times in s and factors.
 type HistoryArgument = Option<(Vec<f64>, Vec<f64>)>;
@@ -1042,13 +1030,4 @@ fn cut(frames: Vec<f64>, all: usize, own: usize) -> Vec<f64> {
         .chunks_exact(3 * all)
         .flat_map(|frame| &frame[..3 * own]);
     each.copied().collect()
-}
-
-pub(crate) fn from_rows<'py, const N: usize, T: numpy::Element + Copy>(
-    py: Python<'py>,
-    rows: &[[T; N]],
-) -> Bound<'py, PyArray2<T>> {
-    PyArray1::from_slice(py, rows.as_flattened())
-        .reshape([rows.len(), N])
-        .expect("a flattened array of rows has rows times N entries")
 }

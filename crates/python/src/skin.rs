@@ -8,9 +8,9 @@ use voxsoft_contact::skin::Skin;
 use voxsoft_shape::{FieldError, Shape};
 use voxsoft_solid::vector::Vec3;
 
+use crate::arrays::{from_rows, rows};
 use crate::gate;
 use crate::shapes::{PyShape, sample_error};
-use crate::simulate::{from_rows, rows};
 
 /// Smooth surface of a body of voxels, interpolated from their vertices.
 #[pyclass(frozen, name = "Skin", module = "voxsoft._core")]
