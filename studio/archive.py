@@ -4,8 +4,8 @@
     python studio/archive.py build   # build it in any case (`make studio`)
 
 The archive is python/voxsoft/studio/page.zip. It holds the page, the core that the page was built
-with (studio/public), and a hash of both in SOURCE. Entries are sorted, dated alike and not
-compressed, so that the same page gives the same bits and git stores only what changed.
+with (studio/public), and a hash of both in SOURCE. Entries are sorted, dated alike and compressed;
+an archive whose sources are as they were is not written again.
 """
 
 from __future__ import annotations
@@ -94,11 +94,11 @@ def unpack_core(archive: Mapping[str, bytes]) -> None:
 def pack(contents: Mapping[str, bytes]) -> None:
     """Write an archive, all at once."""
     partial = ARCHIVE.with_suffix(".partial")
-    with zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive:
+    with zipfile.ZipFile(partial, "w") as archive:
         for name in sorted(contents):
             entry = zipfile.ZipInfo(name)  # dated 1980
             entry.create_system, entry.external_attr = 3, 0o644 << 16
-            archive.writestr(entry, contents[name])
+            archive.writestr(entry, contents[name], zipfile.ZIP_DEFLATED, compresslevel=9)
     partial.replace(ARCHIVE)
 
 
