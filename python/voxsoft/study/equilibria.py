@@ -147,7 +147,7 @@ class Equilibria:
         self._used: int | None = None
 
     def keep(self, design_hash: str, equilibrium: Equilibrium) -> None:
-        """Write an equilibrium to disk; a failed write is ignored, as it costs only a later solution."""
+        """Write an equilibrium to disk; a failed write only costs a later solution."""
         beside = self._folder / f".{uuid.uuid4().hex}{_SUFFIX}"
         with suppress(OSError):
             self._folder.mkdir(parents=True, exist_ok=True)

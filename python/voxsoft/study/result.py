@@ -98,7 +98,7 @@ class StudyResult(Shown):
 
     @cached_property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Warnings that trials cannot be compared: they are one body, or a cavity index switches."""
+        """Warnings against comparing trials: they are one body, or a cavity index switches."""
         return (*switched_cavities(self.trials), *repeated(self.trials))
 
     @cached_property

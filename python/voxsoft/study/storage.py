@@ -108,7 +108,7 @@ class TrialStorage:
         return stored
 
     def _refuse_a_folder_of_another_name(self) -> None:
-        """Raise if the folder holds a study of another name, with tables and pictures of its own."""
+        """Raise if the folder holds the tables and pictures of a study of another name."""
         if not isinstance(self._place, Path):
             return
         with StudyJournal(self._place / JOURNAL_NAME, write=False) as journal:
