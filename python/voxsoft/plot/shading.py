@@ -82,7 +82,7 @@ def mesh_lines(seen: Raster, flat_corners: Floats) -> Floats:
 
 
 def outlines(seen: Raster) -> Floats:
-    """Return the brightness of covered pixels, (p,), less than 1 where the surface ends or jumps."""
+    """Return the brightness of covered pixels, (p,), below 1 where the surface ends or jumps."""
     depth = seen.spread(seen.depth, _FAR)
     # A face at a grazing angle changes depth by several pixels a pixel; a jump is more than that.
     jump = _JUMP * max(seen.width, seen.height)
