@@ -176,7 +176,7 @@ class Calibration(Shown):
     history
         Generations of the search.
     profiles
-        Profile likelihood of each parameter; empty if not asked for.
+        Profile likelihood of each parameter; empty if not requested.
     evaluations
         Number of candidates simulated in search, refinement and profiles.
     free_scale

@@ -73,9 +73,9 @@ def error_bars(
     Parameters
     ----------
     result
-        The run. The design's ``solver.error`` and ``solver.accuracy`` say which voxels are tried.
+        The run. The design's ``solver.error`` and ``solver.accuracy`` select the voxels.
     progress
-        As for :func:`voxsoft.simulate`.
+        See :func:`voxsoft.simulate`.
     announce
         Called before each further run with its voxel size in m, number of voxels, and seconds.
     solve
@@ -85,7 +85,7 @@ def error_bars(
     Returns
     -------
     ErrorBars
-        None, with the reason, where the numbers say nothing of their error: without an
+        No error bars, with the reason, where they cannot be estimated: without an
         equilibrium, in motion over time and for lattices unless `error` or `accuracy` asks for
         them, or where voxels of no other size can be solved. Those of a motion are of its end, with
         the same steps in time.

@@ -15,7 +15,7 @@ YOUNG: Final = 1e5
 class DeckUnits:
     """Units of length and stress; the unit of force follows.
 
-    CalculiX takes a residual of 10⁻⁸ for zero, whatever the forces are (it stops there also where
+    CalculiX takes a residual of 10⁻⁸ for zero, at any size of the forces (it stops there also where
     that is far above the relative tolerance that it was given). In N and mm that is the whole load
     of a small soft body. In these units the edge of a brick is 1 and Young's modulus of the softest
     part 10⁵, so that 10⁻⁸ is the force of a strain of 10⁻¹³ on a face of a brick.

@@ -65,9 +65,9 @@ class Confirmation:
     materials
         Replaced cards by name, with their replacements; empty where nothing was exchanged.
     voxel_sizes
-        In m, falling.
+        Sizes in m, falling.
     designs
-        In the order of the study.
+        Designs in the order of the study.
     maximize
         True if more is better.
     """

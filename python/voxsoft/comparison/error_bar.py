@@ -157,7 +157,7 @@ class ErrorBars:
     volumes
         Error bar of the volume of each cavity, in the order of the mesh's cavities.
     voxel_sizes
-        In m, falling; empty if there are no error bars.
+        Sizes in m, falling; empty if there are no error bars.
     voxels
         Number of voxels at each size.
     regular

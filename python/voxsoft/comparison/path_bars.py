@@ -21,7 +21,7 @@ def path_error_bars(
     Parameters
     ----------
     path
-        The path. Its design's ``solver.error`` and ``solver.accuracy`` say which voxels are tried.
+        The path. Its design's ``solver.error`` and ``solver.accuracy`` select the voxels.
     progress, announce
         See :func:`voxsoft.error_bars`.
 

@@ -43,7 +43,7 @@ def refined(result: Result, share: float = SHARE) -> Design:
     Returns
     -------
     Design
-        The same design with ``refine``.
+        Design with ``refine``.
 
     Raises
     ------

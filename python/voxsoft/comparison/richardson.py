@@ -17,7 +17,7 @@ Above 2 the elements cannot converge: where three sizes show more than 2.2, the 
 coarsest was no part of a convergence yet, and the other two assume the order 1 as if alone.
 
 An estimate is not a bound. It is multiplied by a safety factor, as in Roache's grid convergence
-index (doi 10.1115/1.2910291). Two sizes say nothing of their order, and Roache takes 3 for them;
+index (doi 10.1115/1.2910291). Two sizes do not show their order, and Roache takes 3 for them;
 halved sizes then hold the error of any order from 0.42 on. A smaller factor of 1.25, which holds
 orders from 0.85 on, was tried first and failed where the coarser size has one element through a
 wall. Where three sizes show the order it is 2. Roache takes 1.25 there; where a second term of the
@@ -27,9 +27,9 @@ error is as large as the first at the coarsest, that holds three cases of four, 
 If both sizes hold the same body, and at least two voxels through each wall, two sizes are
 *regular*: their error falls with an order of 0.5 or more, known or not. With the change
 ``d = v₂ - v₁`` the limit then is between ``v₂``, for a very high order, and ``v₂ + d/(r^0.5 - 1)``.
-Two sizes cannot tell a value that nears its limit from one that has passed it, as terms of the
-error cancel: the change itself is added on the near side. The middle of that range is the limit,
-half its width the error.
+Two sizes cannot distinguish a value that nears its limit from one that has passed it, as terms of
+the error cancel: the change itself is added on the near side. The middle of that range is the
+limit, half its width the error.
 """
 
 from __future__ import annotations

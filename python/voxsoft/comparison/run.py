@@ -71,7 +71,7 @@ def compare(
         ``"calculix"``, ``"scikit-fem"``, ``"auto"`` (the first of the two that is installed;
         default), or ``"none"``.
     voxel_sizes
-        Sizes of voxels, in m or with their unit, that the last solver answers on besides the
+        Sizes of voxels, in m or with their unit, that the last solver uses in addition to the
         design's own; default: one half as large. An empty list for none.
     splits
         Bricks along the edge of a voxel, rising; default 1 and 2.
@@ -90,7 +90,7 @@ def compare(
     MeasurementError
         A measurement that does not fit the design.
     MissingPackageError
-        The outside code that is asked for is not installed.
+        The requested outside code is not installed.
     SimulationError
         No solver at all, or splits that do not rise from 1.
 

@@ -52,8 +52,8 @@ def run_scikit_fem(model: BrickModel, *, time_limit: float = 600.0) -> OutsideAn
 
     Returns
     -------
-    The answer, at the last equilibrium where the whole load was not reached.
-        With the last equilibrium where the whole load was not reached.
+    OutsideAnswer
+        The answer, at the last equilibrium where the whole load was not reached.
 
     Raises
     ------

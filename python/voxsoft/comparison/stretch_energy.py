@@ -95,14 +95,14 @@ def stretch_derivatives(terms: Sequence[Term], stretches: Floats) -> tuple[Float
     Parameters
     ----------
     terms
-        From :func:`terms_of`.
+        Terms from :func:`terms_of`.
     stretches
         Positive, (..., 3).
 
     Returns
     -------
     energy, gradient, hessian
-        In J/m³ (Pa): (...), (..., 3), (..., 3, 3).
+        Energy density and derivatives in J/m³ (Pa): (...), (..., 3), (..., 3, 3).
 
     Examples
     --------

@@ -23,14 +23,14 @@ def account_of_surface(path: Path, surface: Surface, unit: str | None, ask: str)
     path, surface
         Path of the file, and its triangles.
     unit
-        Unit of the numbers, None where the file should say it.
+        Unit of the numbers, None where the file should give it.
     ask
         Option by which a caller gives the unit: ``--unit`` or ``unit=``.
 
     Raises
     ------
     UnitError
-        If neither the file nor the caller says the unit.
+        If neither the file nor the caller gives the unit.
     """
     points = surface.points[np.unique(surface.triangles)]
     contents = read_contents(path)

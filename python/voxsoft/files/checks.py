@@ -68,7 +68,7 @@ def check_mesh(
         ``.stl``, ``.obj``, ``.glb``, ``.vtu``, ``.inp``, ``.msh`` or another mesh file.
     unit
         Unit of the numbers in the file: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``; not needed where
-        the file says it.
+        the file gives it.
     voxel_size
         Text with a unit, or a number in m; default: a 50th of the longest side.
     nested

@@ -135,7 +135,7 @@ def read_mesh_file(path: str | os.PathLike[str], *, unit: str | None = None) -> 
     unit
         Unit of its numbers: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``. Files that were written here,
         and
-        formats that say their unit, need none.
+        formats that state their unit, need none.
 
     Returns
     -------

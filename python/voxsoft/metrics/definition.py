@@ -193,7 +193,7 @@ class State(Protocol):
 
 
 class SlopeState(State, Protocol):
-    """State with the forces that the slope of a metric reads besides."""
+    """State with the further forces that the slope of a metric reads."""
 
     @property
     def elastic_forces(self) -> Floats:
@@ -225,10 +225,10 @@ class Metric:
         Keys of the target without which it has no place, and those that it can do without. Others
         are refused.
     is_peak
-        Whether it is the largest or smallest of all voxels unless the target has a percentile. At
+        True if it is the largest or smallest of all voxels unless the target has a percentile. At
         a sharp corner such a number grows as voxels get smaller, without a limit.
     is_costly
-        Whether it takes about as long as the run itself, so that it is found only where asked for.
+        True if it takes about as long as the run itself, so that it is computed only on request.
     is_of
         Predicate: a result lists the metric unasked only for states where it holds. Default: all.
     home

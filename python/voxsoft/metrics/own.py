@@ -52,8 +52,8 @@ def metric(
         The kind of quantity, a key of :data:`voxsoft.units.KINDS`: ``"length"``, ``"force"``,
         ``"angle"``, ...; default: a number without a unit.
     needs, takes
-        Which of ``"probe"``, ``"base"``, ``"axis"``, ``"cavity"``, ``"percentile"`` and
-        ``"object"`` must or may stand beside it. A function of such a metric takes a second
+        Keys of a target that are required or optional: ``"probe"``, ``"base"``, ``"axis"``,
+        ``"cavity"``, ``"percentile"``, ``"object"``. A function of such a metric takes a second
         argument, the objective or constraint that asks.
     slope
         Function of the same arguments that returns the derivative of the value by the positions of

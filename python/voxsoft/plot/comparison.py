@@ -64,7 +64,7 @@ def plot_agreement(comparison: Comparison) -> Figure:
         names = kinds.setdefault(runs[0].quantities[name].kind, [])
         if len(names) < _MOST:
             names.append(name)
-    # Displacements first, whatever is largest as a number.
+    # Displacements come first, at any size of the numbers.
     kinds = dict(sorted(kinds.items(), key=lambda item: _ORDER.get(item[0], len(_ORDER))))
     heights = [1.1 + 0.34 * len(names) for names in kinds.values()] or [2.0]
     figure = empty_figure(8.4, 0.5 + sum(heights))
@@ -201,7 +201,7 @@ def plot_convergence(comparison: Comparison) -> Figure | None:
             axes.plot(
                 edges, values, marker=_MARKERS[index], color=color, label=each.series, linewidth=1.2
             )
-            # Series end at the same size: side by side, their bars can be told apart.
+            # Series end at the same size: side by side, their bars can be distinguished.
             place = edges[-1] + _ASIDE * edges[0] * (index - (len(chosen) - 1) / 2)
             bar = estimate.error * unit.factor
             axes.errorbar([place], [values[-1]], yerr=bar, color=color, capsize=4, linewidth=1.2)

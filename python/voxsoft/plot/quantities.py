@@ -30,7 +30,7 @@ def scale_for(values: ArrayLike, kind: str) -> Scale:
         Numbers in SI units; those that are not finite do not count.
     kind
         Kind of quantity, a key of :data:`voxsoft.units.KINDS`, or ``""`` where it is not known:
-        then the numbers stay as they are and the axis says SI.
+        then the numbers stay as they are and the axis is labeled SI.
 
     Returns
     -------

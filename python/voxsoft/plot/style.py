@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # Okabe and Ito's palette, https://jfly.uni-koeln.de/color/: eight colors that readers with any
-# of the common kinds of color blindness tell apart.
+# of the common kinds of color blindness distinguish.
 BLACK: Final = "#000000"
 ORANGE: Final = "#e69f00"
 SKY: Final = "#56b4e9"

@@ -52,7 +52,7 @@ class Genetic:
     mutation
         Probability m with which a gene is drawn afresh, 0 to 1.
     seed
-        The same seed and the same fitness give the same generations, bit for bit. None draws a
+        Seed; with the same fitness it gives the same generations, bit for bit. None draws a
         seed from the operating system.
 
     Attributes

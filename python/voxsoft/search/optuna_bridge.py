@@ -173,7 +173,7 @@ class StoredStudy:
         self._study.sampler = sampler
 
     def room(self, room: Callable[[optuna.Study], int]) -> int:
-        """Call a sampler's count of free individuals on the study."""
+        """Return a sampler's room, the trials that it can suggest now, in the study."""
         return room(self._study)
 
     def ask(self, space: Distributions) -> tuple[int, dict[str, Any]]:

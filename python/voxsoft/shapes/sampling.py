@@ -61,7 +61,7 @@ def inside(
     ------
     ShapeError
         If the shape cannot be built, has no value (NaN) at some center, or the cells do not fit in
-        the memory that is available (said before anything is allocated).
+        the memory that is available (raised before anything is allocated).
 
     Examples
     --------

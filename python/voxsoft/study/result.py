@@ -51,7 +51,7 @@ class StudyResult(Shown):
         Names of the parameters, in the order of the space.
     kinds
         Kind of quantity of each parameter by name (a key of :data:`voxsoft.units.KINDS`); empty
-        where the family is a function, which does not say.
+        where the family is a function, for which they are unknown.
     over
         Path that each design was followed along; None where each was solved once.
     """

@@ -88,7 +88,7 @@ class StudyRun:
             self._learn(read_trial(stored, self.objectives, self.constraints), outcome_of(record))
 
     def evaluate_all(self, batches: Iterable[Iterable[Proposal]]) -> None:
-        """Evaluate batch after batch; each is asked for once the one before is stored."""
+        """Evaluate batch after batch; each is drawn once the one before is stored."""
         with Interrupts() as interrupts:
             for batch in batches:
                 for proposal in batch:

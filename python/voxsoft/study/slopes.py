@@ -120,7 +120,7 @@ def answers_of(
                 np.array(limits),
                 np.array(slopes).reshape(len(limits), len(parameters)),
             )
-        except KeyError:  # the outcome of another sampler, which asked for no slopes
+        except KeyError:  # the outcome of another sampler, which computed no slopes
             return None
 
     return answer

@@ -190,7 +190,7 @@ class Study:
             A range without a step; a storage that is full, damaged or in use; workers that do
             not start.
         KeyboardInterrupt
-            After Ctrl-C; finished trials are stored, and the message says how to go on.
+            After Ctrl-C; finished trials are stored, and the message explains how to go on.
         """
         space, total = self._distributions, self.grid_size
         return self._run(
@@ -247,7 +247,7 @@ class Study:
         MissingPackageError
             ``"gp"`` without PyTorch.
         KeyboardInterrupt
-            After Ctrl-C; finished trials are stored, and the message says how to go on.
+            After Ctrl-C; finished trials are stored, and the message explains how to go on.
         """
         if budget < 1 or (batch is not None and batch < 1):
             raise StudyError("budget" if budget < 1 else "batch", "expected at least 1")

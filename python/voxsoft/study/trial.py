@@ -48,7 +48,7 @@ class Trial:
     cavities
         Centers of the cavities, if the design selects any by an index.
     path
-        In a study along a path: the values of the varied key, and the objectives and constraints
+        Values of the varied key in a study along a path, and the objectives and constraints
         beside them, in SI units.
     """
 

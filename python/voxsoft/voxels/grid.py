@@ -84,7 +84,7 @@ class Voxels:
         ------
         VoxelError
             If a size is not positive, or the cells do not fit in the memory that is available
-            (said before anything is allocated).
+            (raised before anything is allocated).
 
         Examples
         --------
@@ -603,7 +603,7 @@ class Voxels:
         Raises
         ------
         MeshError
-            If no cell is filled, or the mesh does not fit in the memory that is available (said
+            If no cell is filled, or the mesh does not fit in the available memory (raised
             before it is allocated).
 
         Examples

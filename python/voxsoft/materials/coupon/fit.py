@@ -47,9 +47,9 @@ def fit_coupons(
 
     Parameters
     ----------
-    Stress-strain curves, at least one, or one of `cycles`; tests of several kinds may be mixed,
+    curves
+        Stress-strain curves, at least one, or one of `cycles`; tests of several kinds may be mixed,
         and several specimens of one kind.
-        of one kind.
     observed
         Young's moduli from other tests.
     cycles
