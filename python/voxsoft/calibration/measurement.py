@@ -104,7 +104,7 @@ seen
         MeasurementError
             Text that is not UTF-8, or a table that cannot be used, with the line.
         """
-        # `files` lies above `calibrate` in the layers; like `Design.save`, this convenience
+        # `files` lies above `calibration` in the layers; like `Design.save`, this convenience
         # reaches up when it is called, so that no import runs in a circle.
         from voxsoft.files.measurements import load_measurement
 
