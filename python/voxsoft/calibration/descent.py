@@ -1,4 +1,4 @@
-"""The gradient method: a look around, then weighted Gauss-Newton steps with the exact slopes."""
+"""Gradient method: initial samples, then weighted Gauss-Newton steps with the exact slopes."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from voxsoft.calibration.misfit import Evaluation, Linearized, Misfit
 
 Floats = NDArray[np.float64]
 
-# Candidates of the look around, for one constant and for each further one.
+# Number of initial samples, for one constant and for each further one.
 _FIRST: Final = 5
 _EACH: Final = 4
-# Longest step of a constant: a factor of 4. Shorter than this part of it, the descent has arrived.
+# Longest step of a constant: a factor of 4. A step below the other one ends the descent.
 _LONGEST: Final = float(np.log(4.0))
 _ARRIVED: Final = 1e-5
 # Residuals below this part of their mean weigh no more: the weights of a sum of lengths are their
 # inverses, which have no bound.
 _FLOOR: Final = 1e-3
-# Damping of the first step and its bounds, in parts of the diagonal (Levenberg and Marquardt).
+# Damping of the first step with its bounds, in parts of the diagonal (Levenberg and Marquardt).
 _DAMPING: Final = (1e-9, 1e-3, 1e6)
 
 
@@ -38,18 +38,18 @@ def descend(
     Parameters
     ----------
     misfit
-        What is minimized, solved by statics.
+        Function to minimize, solved by statics.
     generations
-        The look around and the most steps after it.
+        Number of batches: the initial samples and the most steps after them.
     population
-        Most candidates of the look around.
+        Most initial samples.
     seed
-        Of the look around.
+        Seed of the initial samples.
 
     Yields
     ------
     sequence of Evaluation
-        The look around, then one candidate at a time.
+        Initial samples, then one candidate at a time.
     """
     count = len(misfit.space)
     looks = min(population, _FIRST + _EACH * (count - 1))
@@ -86,7 +86,7 @@ def descend(
 
 
 def _step(misfit: Misfit, here: Linearized, damping: float) -> Floats:
-    """One weighted, damped step in the logarithms of the constants, (k,)."""
+    """Solve one weighted, damped step in the logarithms of the constants, (k,)."""
     count = len(misfit.space)
     unknowns = count + (len(here.deviations) if misfit.free_scale else 0)
     rows, sides = [], []

@@ -1,4 +1,4 @@
-"""An experiment: a design and what was measured on the real thing."""
+"""Experiment: a design and the measurement of its real body."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ from voxsoft.simulation.places import place_of, voxel_size
 from voxsoft.simulation.touching import refuse_bodies
 from voxsoft.units import format_quantity
 
-# Real bodies neither stretch nor travel farther than this many of their own lengths at rest.
+# Limit of stretch and travel of a real body, in its own lengths at rest.
 _FARTHEST = 2.0
-# A body whose farthest station is nearer than this share of its free length was not measured
-# along the body, or in other units.
+# Least distance of the farthest station, as a share of the free length: a nearer one was not
+# measured along the body, or in other units.
 _NEAREST = 0.02
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Experiment(Shown):
-    """A design together with a measurement of the body it describes.
+    """Design together with a measurement of the body it describes.
 
     Parameters
     ----------
     design
-        The body as it was clamped and loaded in the laboratory. All its parts are of one
-        material, the one to be calibrated; the constants it has now do not matter.
+        Body as it was clamped and loaded in the laboratory. All its parts are of one material, the
+        one to be calibrated; its present constants do not matter.
     measurement
-        Where its stations were seen.
+        Measured positions or displacements of its stations.
     line
-        The line of the body on which arc positions lie: ``lower-edge`` (default, as on the
+        Line of the body on which arc positions lie: ``lower-edge`` (default, as on the
         paper's photographs), ``centerline`` or ``upper-edge``, at the middle of the width. Stations
         that name a probe do not use it.
 
@@ -55,7 +55,7 @@ class Experiment(Shown):
 
     Notes
     -----
-    The clamp face is where the clamped vertices end toward the free part of the body; arcs and
+    The clamp face is the end of the clamped vertices toward the free part of the body; arcs and
     positions are counted from there, along and relative to the chosen line.
 
     Examples
@@ -79,18 +79,18 @@ class Experiment(Shown):
 
     @property
     def name(self) -> str:
-        """What the measurement is called."""
+        """Name of the measurement."""
         return self.measurement.name
 
     @cached_property
     def setup(self) -> Setup:
-        """The design made ready for the solver."""
+        """Design prepared for the solver."""
         refuse_bodies(self.design, "calibrations")
         return Setup.of(self.design)
 
     @cached_property
     def material(self) -> Material:
-        """The material all parts are of."""
+        """Material of all parts."""
         first, *others = (self.design.material_of(part) for part in self.design.parts)
         if any(other != first for other in others):
             raise MeasurementError(
@@ -102,12 +102,12 @@ class Experiment(Shown):
 
     @cached_property
     def voxel_size(self) -> float:
-        """In m."""
+        """Voxel size in m."""
         return voxel_size(self.setup.mesh)
 
     @cached_property
     def station_line(self) -> StationLine:
-        """The line that arcs and positions are counted along."""
+        """Line that arcs and positions are counted along."""
         clamped = np.concatenate([np.zeros(0, np.uint32), *self.setup.clamped])
         return StationLine.along(
             self.setup.mesh.vertices,
@@ -125,7 +125,7 @@ class Experiment(Shown):
 
     @cached_property
     def places(self) -> tuple[Place, ...]:
-        """What each station averages over."""
+        """Weighted vertices that each station averages over."""
         if self.measurement.probes is not None:
             return tuple(self._probe(name) for name in self.measurement.probes)
         assert self.measurement.arcs is not None  # a measurement has one or the other
@@ -139,15 +139,15 @@ class Experiment(Shown):
 
     @cached_property
     def points(self) -> NDArray[np.float64]:
-        """The stations on the undeformed body, (n, 3), m."""
+        """Stations on the undeformed body, (n, 3), m."""
         rest = self.setup.mesh.vertices
         return np.array([place.weights @ rest[place.vertices] for place in self.places])
 
     @cached_property
     def offsets(self) -> NDArray[np.float64]:
-        """What the undeformed body has for each measured number, (n, q), m.
+        """Value of each measured number on the undeformed body, (n, q), m.
 
-        The position relative to the clamp face, and zero for displacements.
+        Position relative to the clamp face, and zero for displacements.
         """
         measurement = self.measurement
         if not measurement.are_positions.any():
@@ -160,9 +160,9 @@ class Experiment(Shown):
 
     @cached_property
     def sag(self) -> float:
-        """How far the body was seen to sag, in m: the largest measured displacement.
+        """Measured sag of the body in m: the largest measured displacement.
 
-        Along gravity if that was measured, else in all measured axes together.
+        Measured along gravity if possible, else in all measured axes together.
         """
         moved = self.measurement.values - self.offsets
         down = np.flatnonzero(
@@ -172,17 +172,17 @@ class Experiment(Shown):
         return float(np.linalg.norm(seen, axis=1).max())
 
     def seen_at(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return what would be measured on a simulated body.
+        """Return the numbers that would be measured on a simulated body.
 
         Parameters
         ----------
         positions
-            Its vertices at rest under load, (v, 3), m.
+            Vertices at rest under load, (v, 3), m.
 
         Returns
         -------
         ndarray of shape (n, q)
-            In m, in the order of the measurement.
+            Numbers in m, in the order of the measurement.
         """
         rest = self.setup.mesh.vertices
         moved = np.array(

@@ -1,4 +1,4 @@
-"""Whether the data could tell a parameter at all: its profile and its likelihood interval."""
+"""Identifiability of a parameter from the data: its profile and its likelihood interval."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ WIDEST: Final = 3.0
 # 95 % quantile of the chi-square distribution with one degree of freedom.
 _THRESHOLD: Final = 3.841458820694124
 
-# First step away from the optimum in natural logarithms; each further one is twice as long.
+# First step away from the optimum in natural logarithms; each further step is twice as long.
 _FIRST_STEP: Final = 0.05
-# The end of an interval is found to this part of the threshold, and in so many cuts.
+# Tolerance of an interval's end, as a part of the threshold, and most cuts to find it.
 _END_FOUND: Final = 0.02
 _MOST_CUTS: Final = 5
-# The inner minimum: first step and size of the last simplex, in natural logarithms. The error is
+# Inner minimum: first step and size of the last simplex, in natural logarithms. The error is
 # flat there, so that half a percent off changes it by parts in 10⁵.
 _INNER_STEP: Final = 0.1
 _INNER_FOUND: Final = 5e-3
@@ -32,9 +32,9 @@ _INNER_FOUND: Final = 5e-3
 
 @dataclass(frozen=True)
 class Profile:
-    r"""What the data say about one parameter.
+    r"""Profile likelihood of one parameter.
 
-    The error is minimized over everything else, scales included, for values of this parameter
+    The error is minimized over all other parameters, scales included, for values of this parameter
     away from its best. With an error vector of :math:`d` numbers at each of :math:`n` stations
     and the probability density of an error falling as :math:`b^{-d} e^{-|r|/b}`, the likelihood
     that belongs to a sum of lengths, the noise :math:`b` estimated from the residuals
@@ -48,7 +48,7 @@ class Profile:
     Attributes
     ----------
     name, best
-        The parameter and its best value, SI.
+        Name of the parameter and its best value, SI.
     low, high
         Ends of the 95 % interval, SI; None where the interval reaches the end of the search range.
     values, errors
@@ -56,14 +56,14 @@ class Profile:
     kind
         Kind of quantity of the parameter.
     identifiable
-        Whether the interval ends on both sides within the range, and its ends are less than a
+        True if the interval ends on both sides within the range, and its ends are less than a
         factor of 3 apart.
 
     Notes
     -----
     Residuals of a model that does not fit are no independent noise: neighboring stations err
-    alike, so that true intervals are wider. The converse is safe: what is not identifiable here
-    is not identifiable.
+    alike, so that true intervals are wider. The converse is safe: a parameter that is not
+    identifiable here is not identifiable.
     """
 
     name: str
@@ -76,12 +76,12 @@ class Profile:
 
     @property
     def identifiable(self) -> bool:
-        """Whether the data tell this parameter."""
+        """True if the data determine this parameter."""
         return self.low is not None and self.high is not None and self.high < WIDEST * self.low
 
     @property
     def sentence(self) -> str:
-        """What the data say, in words."""
+        """Interval of the parameter in words."""
         low, high = (None if end is None else self._shown(end) for end in (self.low, self.high))
         if low and high:
             within = f"between {low} and {high} (95 %)"
@@ -102,9 +102,9 @@ def profiles(misfit: Misfit, best: Evaluation) -> tuple[Profile, ...]:
     Parameters
     ----------
     misfit
-        The function that was minimized.
+        Function that was minimized.
     best
-        Its minimum.
+        Minimum of the function.
     """
     sides = [(index, side) for index in range(len(misfit.space)) for side in (-1, 1)]
     walked = misfit.side_by_side(lambda way: _Walk(misfit, best, *way).run(), sides)
@@ -128,7 +128,7 @@ class _Walked:
 
 
 class _Walk:
-    """From the optimum along one parameter, one way, to the end of its interval."""
+    """Walk from the optimum along one parameter, in one direction, to the end of its interval."""
 
     def __init__(self, misfit: Misfit, best: Evaluation, index: int, side: int) -> None:
         self.misfit, self.best, self.index, self.side = misfit, best, index, side
@@ -157,7 +157,7 @@ class _Walk:
             yield log
 
     def _cut(self, inside: _Point, outside: _Point, points: list[_Point]) -> float:
-        """Find where the statistic crosses its threshold.
+        """Find the point at which the statistic crosses its threshold.
 
         Its root is nearly linear in the parameter, so that a cut by proportion lands close.
         """
@@ -172,7 +172,7 @@ class _Walk:
         return middle.log
 
     def _at(self, log: float, nearby: NDArray[np.float64]) -> _Point:
-        """Minimize over all other parameters with this one held."""
+        """Minimize over all other parameters at a fixed value of this one."""
         held = float(np.clip(log / self.spans[self.index], 0.0, 1.0))
         others = np.delete(np.arange(len(self.spans)), self.index)
 
@@ -194,7 +194,7 @@ class _Walk:
         return _Point(log, genes, self.misfit.at(genes).error)
 
     def _statistic(self, point: _Point) -> float:
-        # A fit without residuals leaves no noise to estimate: 1 nm stands for it.
+        # A fit without residuals leaves no noise to estimate: 1 nm is the least.
         floor = max(self.best.error, 1e-9)
         error = min(max(point.error, floor), 1e3)
         return float(2.0 * self.misfit.numbers * np.log(error / floor))

@@ -1,4 +1,4 @@
-"""The line of stations along a clamped body: where "30 mm from the clamp" is."""
+"""Line of stations along a clamped body, where arc positions are counted from the clamp."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from voxsoft.errors import MeasurementError
 
-#: Which line along the body the stations lie on.
+#: Name of the line along the body on which the stations lie.
 LineName = Literal["lower-edge", "centerline", "upper-edge"]
 
 _SHARES = {"lower-edge": 0.0, "centerline": 0.5, "upper-edge": 1.0}
@@ -24,7 +24,7 @@ class StationLine:
     Attributes
     ----------
     axis, direction
-        The body leaves the clamp along this axis (0 to 2), toward +1 or -1.
+        Axis along which the body leaves the clamp (0 to 2), and its sign, +1 or -1.
     face
         Coordinate of the clamp face on that axis, m.
     length
@@ -55,15 +55,15 @@ class StationLine:
         Parameters
         ----------
         vertices
-            The undeformed body, (n, 3), m.
+            Vertices of the undeformed body, (n, 3), m.
         clamped
             Indices of its clamped vertices.
         line
             ``lower-edge``, ``centerline`` or ``upper-edge``, at the middle of the width.
         gravity
-            Which way is down; zero stands for -z.
+            Direction of gravity; zero stands for -z.
         voxel_size
-            In m.
+            Voxel size in m.
 
         Raises
         ------
@@ -104,12 +104,12 @@ class StationLine:
         )
 
     def points(self, arcs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points at these distances from the clamp face, (n,) → (n, 3), all in m."""
+        """Return points at these distances from the clamp face, (n,) → (n, 3), all in m."""
         return np.array([self._point(float(arc)) for arc in arcs])
 
     @property
     def foot(self) -> NDArray[np.float64]:
-        """The point of the line on the clamp face, (3,), m."""
+        """Point of the line on the clamp face, (3,), m."""
         return self._point(0.0)
 
     def _point(self, arc: float) -> NDArray[np.float64]:

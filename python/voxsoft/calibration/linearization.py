@@ -1,4 +1,4 @@
-"""How what would be measured changes with the constants, by the adjoint of the equilibrium."""
+"""Derivatives of the simulated measurements by the constants, by the adjoint of the equilibrium."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ Floats = NDArray[np.float64]
 def seen_slopes(
     experiment: Experiment, space: Space, material: Material, positions: Floats
 ) -> Floats:
-    """Derivatives of the simulated numbers by the logarithms of the constants, (n, q, k), m.
+    """Differentiate the simulated numbers by the logarithms of the constants, (n, q, k), m.
 
     Parameters
     ----------
     experiment
-        What is measured.
+        Experiment with the measured stations.
     space
-        The constants.
+        Space of the constants.
     material
-        The material at hand.
+        Current material.
     positions
-        Its equilibrium, (v, 3), m.
+        Equilibrium with that material, (v, 3), m.
     """
     refuse_contact(experiment.design, "calibration along gradients")
     setup, parts = experiment.setup, len(experiment.design.parts)

@@ -1,4 +1,4 @@
-"""A measurement: where a real body was seen to be, and who saw it."""
+"""Measurement: positions or displacements of a real body, and their source."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from voxsoft._shown import Shown, counted
 from voxsoft.errors import MeasurementError
 
-#: What can be measured at a station: positions relative to the clamp face, and displacements.
+#: Quantities of a station: positions relative to the clamp face, and displacements.
 QUANTITIES: Final = ("x", "y", "z", "dx", "dy", "dz")
 
 
@@ -24,19 +24,19 @@ class Measurement(Shown):
     Parameters
     ----------
     quantities
-        What was measured at every station, of ``x y z`` (position relative to the clamp face, in
+        Measured quantities at every station, of ``x y z`` (position relative to the clamp face, in
         the axes of the design) and ``dx dy dz`` (displacement); at most one of the two for each
         axis.
     values
-        The numbers in m, (n, q): a row for each station, a column for each quantity.
+        Numbers in m, (n, q): a row for each station, a column for each quantity.
     arcs
         Distance of each station from the clamp face along the undeformed body in m, (n,); or
     probes
         names of the design's probes, one for each station. Give one of the two.
     name
-        What to call it, such as the material's name.
+        Name of the measurement, such as that of the material.
     source
-        Where the numbers come from, and under which license they may be used.
+        Source of the numbers, and the license under which they may be used.
 
     Raises
     ------
@@ -93,9 +93,9 @@ seen
         Parameters
         ----------
         path
-            The file; :func:`voxsoft.calibration.read_measurement` says what it may hold.
+            Path of the file; see :func:`voxsoft.calibration.read_measurement` for its format.
         select
-            The material to take from a table of several.
+            Name of the material to take from a table of several.
 
         Raises
         ------
@@ -104,7 +104,7 @@ seen
         MeasurementError
             Text that is not UTF-8, or a table that cannot be used, with the line.
         """
-        # `files` lies above `calibrate` in the layers; like `Design.save`, this convenience
+        # `files` lies above `calibration` in the layers; like `Design.save`, this convenience
         # reaches up when it is called, so that no import runs in a circle.
         from voxsoft.files.measurements import load_measurement
 
@@ -120,7 +120,7 @@ seen
 
     @property
     def station_names(self) -> tuple[str, ...]:
-        """What to call each station: its probe, or its arc position."""
+        """Name of each station: its probe, or its arc position."""
         if self.probes is not None:
             return self.probes
         arcs = np.zeros(0) if self.arcs is None else self.arcs
@@ -128,12 +128,12 @@ seen
 
     @property
     def axes(self) -> NDArray[np.intp]:
-        """The axis of each quantity, 0 to 2, (q,)."""
+        """Axis of each quantity, 0 to 2, (q,)."""
         return np.array(["xyz".index(quantity[-1]) for quantity in self.quantities])
 
     @property
     def are_positions(self) -> NDArray[np.bool_]:
-        """Whether each quantity is a position rather than a displacement, (q,)."""
+        """True for each quantity that is a position rather than a displacement, (q,)."""
         return np.array([len(quantity) == 1 for quantity in self.quantities])
 
     def _check(self) -> None:

@@ -1,4 +1,4 @@
-"""Methods of search: the paper's genetic algorithm, gradients, CMA-ES, and Optuna's samplers."""
+"""Search methods: the paper's genetic algorithm, gradients, CMA-ES, and Optuna's samplers."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from voxsoft.search.samplers import SAMPLERS
 #: One generation of candidates, evaluated.
 Batch = Sequence[Evaluation]
 
-#: From a misfit, generations, population and seed to batches of evaluated candidates.
+#: Function from a misfit, generations, population and seed to batches of evaluated candidates.
 Method = Callable[[Misfit, int, int, int], Iterator[Batch]]
 
 # Standard deviation of the first CMA-ES generation: it covers the space without crowding the
 # bounds, as its authors advise for a range of 1 (Hansen 2016, arXiv:1604.00772, section B.4).
 _FIRST_SPREAD: Final = 0.3
 
-# What CMA-ES and Optuna are told of a candidate that failed, in m: worse than any beam.
+# Error that CMA-ES and Optuna get for a candidate that failed, in m: worse than any beam.
 _FAILED: Final = 1e3
 
 
 def method_named(name: str) -> Method:
-    """Return a method of search by name.
+    """Return a search method by name.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def method_named(name: str) -> Method:
 
 
 def _genetic(misfit: Misfit, generations: int, population: int, seed: int) -> Iterator[Batch]:
-    """Algorithm 4 of the paper."""
+    """Search by Algorithm 4 of the paper."""
     search = Genetic(len(misfit.space), population=population, seed=seed)
     for _ in range(generations):
         batch = misfit.many(search.ask())
@@ -64,11 +64,11 @@ def _genetic(misfit: Misfit, generations: int, population: int, seed: int) -> It
 
 
 def _cma_es(misfit: Misfit, generations: int, population: int, seed: int) -> Iterator[Batch]:
-    """Covariance matrix adaptation on the error itself; stops early when it has converged."""
+    """Search by covariance matrix adaptation on the error itself; stop when it has converged."""
     from cmaes import CMA
 
     count = len(misfit.space)
-    # The package wants two dimensions or more: one modulus gets a companion without effect.
+    # The package requires two dimensions or more: one modulus gets a companion without effect.
     width = max(count, 2)
     search = CMA(
         mean=np.full(width, 0.5),
@@ -89,7 +89,7 @@ def _cma_es(misfit: Misfit, generations: int, population: int, seed: int) -> Ite
 def _optuna(
     misfit: Misfit, generations: int, population: int, seed: int, *, sampler: str
 ) -> Iterator[Batch]:
-    """Ask an Optuna sampler for a population at a time, so that workers change nothing."""
+    """Search by an Optuna sampler, a population at a time, so that workers change nothing."""
     from optuna.distributions import FloatDistribution
 
     from voxsoft.search.optuna_bridge import ask_in_memory
@@ -115,10 +115,10 @@ _METHODS: Final[dict[str, Method]] = {
     "cma-es": _cma_es,
 }
 
-#: What can be named. A grid needs a step, which a modulus does not have.
+#: Names of all methods. A grid needs a step, which a modulus does not have.
 METHODS: Final = (*_METHODS, *(name for name in SAMPLERS if name not in (*_METHODS, "grid")))
 
 
 def errors_of(batch: Batch) -> NDArray[np.float64]:
-    """Errors of a batch in m, infinite where a simulation failed."""
+    """Return the errors of a batch in m, infinite where a simulation failed."""
     return np.array([candidate.error for candidate in batch])

@@ -1,4 +1,4 @@
-"""How far a simulated body is from the measured one, and the fitness made of it."""
+"""Misfit between a simulated and a measured body, and its fitness."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from voxsoft.simulation.many import settled_of
 T = TypeVar("T")
 U = TypeVar("U")
 
-#: k of the paper's fitness, for errors in m.
+#: Factor k of the paper's fitness, for errors in m.
 FITNESS_FACTOR: Final = -10.0
 
 #: Relative residual at which a candidate counts as at rest.
@@ -32,20 +32,20 @@ TOLERANCE: Final = 1e-6
 # edges than in bulk would take millions, and no data call for one.
 _MAX_STEPS: Final = 30_000
 
-# Photographs are scaled wrong by some percent; a factor beyond these is another mistake.
+# Range of a free scale: photographs are scaled wrong by some percent, not by more than this.
 _SCALES: Final = (0.5, 2.0)
 
 
 @dataclass(frozen=True)
 class Deviation:
-    """A simulated body beside the measured one.
+    """Simulated numbers beside the measured ones.
 
     Attributes
     ----------
     simulated, measured
-        What is and what would be measured, (n, q), m; `simulated` is scaled already.
+        Simulated and measured numbers, (n, q), m; `simulated` is scaled already.
     scale
-        The factor on the simulated shape; 1 unless it was freed.
+        Factor on the simulated shape; 1 unless it was freed.
     positions
         Vertices of the simulated body at rest under load, before scaling, (v, 3), m.
     """
@@ -64,14 +64,14 @@ class Deviation:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """One candidate and what it was worth.
+    """One candidate with its error and fitness.
 
     Attributes
     ----------
     genes
-        Where it lies in the space, each from 0 to 1.
+        Coordinates in the search space, each from 0 to 1.
     status
-        How its simulations ended; the first that is not ``ok`` counts.
+        Status of its simulations; the first that is not ``ok`` counts.
     error
         Mean over the experiments of the mean error, m; infinite if a simulation failed.
     fitness
@@ -89,14 +89,14 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class Linearized:
-    """A candidate, and how it changes with the logarithms of the constants.
+    """Candidate with its derivatives by the logarithms of the constants.
 
     Attributes
     ----------
     evaluation
-        What it was worth.
+        Error and fitness of the candidate.
     deviations
-        Each experiment beside what was measured.
+        Deviation from the measurement in each experiment.
     slopes
         Derivatives of the simulated numbers before scaling, (n, q, k) for each experiment, m.
     """
@@ -106,9 +106,9 @@ class Linearized:
     slopes: tuple[NDArray[np.float64], ...]
 
 
-#: Each experiment beside its measurement with the state that was found, or how the first failed.
+#: Deviation and state of each experiment, or the status of the first that failed.
 _Solved = list[tuple[Deviation, Settled]] | Status
-#: Runs a task for each input, in some order.
+#: Function that runs a task for each input, in some order.
 _Runner = Callable[
     [Callable[[Material], Settled], Sequence[Material]],
     list[Settled],
@@ -120,7 +120,7 @@ def _one_by_one(task: Callable[[Material], Settled], inputs: Sequence[Material])
 
 
 def best_scale(simulated: NDArray[np.float64], measured: NDArray[np.float64]) -> float:
-    """Factor ``s`` that minimizes the sum over stations of ``|s simulated - measured|``.
+    """Find the factor ``s`` that minimizes the sum over stations of ``|s simulated - measured|``.
 
     The sum is convex in ``s``, so that a search along one line finds it.
 
@@ -145,26 +145,26 @@ def best_scale(simulated: NDArray[np.float64], measured: NDArray[np.float64]) ->
 
 
 class Misfit:
-    r"""The function that a calibration minimizes, with a memory of what it has seen.
+    r"""Function that a calibration minimizes, with a cache of evaluated candidates.
 
     Parameters
     ----------
     experiments
-        What is compared; each has the same weight.
+        Experiments to compare; each has the same weight.
     space
         Ranges of the constants.
     free_scale
-        Whether each experiment has a factor of its own on the simulated shape.
+        True if each experiment has a factor of its own on the simulated shape.
     workers
-        Simulations at a time; the answers do not depend on it.
+        Number of simulations at a time; the answers do not depend on it.
     tolerance
         Relative residual at which a body counts as at rest.
     statics
-        Whether to solve by statics in place of relaxation; both find the same state.
+        True to solve by statics in place of relaxation; both find the same state.
     lanes
-        Whether to solve several candidates at a time by statics, one in each lane of the
-        processor, where that is quicker (:class:`voxsoft.simulation.Ensemble`). What is left open
-        is solved as without.
+        True to solve several candidates at a time by statics, one in each lane of the processor,
+        where that is quicker (:class:`voxsoft.simulation.Ensemble`). Candidates left open are
+        solved as without.
 
     Notes
     -----
@@ -201,12 +201,12 @@ class Misfit:
 
     @property
     def evaluations(self) -> int:
-        """Candidates that were simulated; equal genes count once."""
+        """Number of candidates that were simulated; equal genes count once."""
         return len(self._seen)
 
     @property
     def numbers(self) -> int:
-        """Measured numbers in all experiments together."""
+        """Number of measured numbers in all experiments together."""
         return sum(experiment.measurement.values.size for experiment in self.experiments)
 
     @contextmanager
@@ -249,7 +249,7 @@ class Misfit:
         return known
 
     def compare(self, genes: ArrayLike) -> list[Deviation] | Status:
-        """Simulate every experiment and lay it beside what was measured.
+        """Simulate every experiment and compare it with its measurement.
 
         Returns the status of the first simulation that failed, if one did.
         """
@@ -257,7 +257,7 @@ class Misfit:
         return solved if isinstance(solved, str) else [deviation for deviation, _ in solved]
 
     def linearized(self, genes: ArrayLike) -> Linearized | Status:
-        """Evaluate one candidate, (n,), and its slopes; or return how its simulation failed."""
+        """Evaluate one candidate, (n,), and its slopes; return the status of a failed one."""
         key = _key(genes)
         solved = self._solved(key)
         evaluation = self._worth(key, solved)
@@ -274,7 +274,7 @@ class Misfit:
 
     @property
     def ways(self) -> tuple[str, ...]:
-        """How each experiment is solved."""
+        """Solver of each experiment, in words."""
         alone = "statics" if self.statics else "xpbd relaxation"
         return tuple("statics in lanes" if each else alone for each in self._ensembles)
 
@@ -288,7 +288,7 @@ class Misfit:
         for index, key in enumerate(keys):
             try:
                 materials[index] = self.space.material_at(key)
-            except MaterialError:  # constants that are possible each, and not together
+            except MaterialError:  # constants that are valid each, and not together
                 found[index] = "failed"
         for experiment, ensemble in zip(self.experiments, self._ensembles, strict=True):
             settled = self._settled(experiment, ensemble, list(materials.values()), run)

@@ -1,4 +1,4 @@
-"""Local refinement: from what a search found to the bottom of the valley it lies in."""
+"""Local refinement: from the result of a search to the nearest minimum."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ _LARGEST_ERROR: Final = 1e3
 def refine(misfit: Misfit, start: Evaluation) -> Evaluation:
     """Minimize the error from a candidate on, by the simplex method of Nelder and Mead.
 
-    The simplex lives on the log scale of the moduli, inside their ranges, and starts afresh at
-    what it found until that gains nothing: a valley that ends at a bound flattens the simplex.
+    The simplex lives on the log scale of the moduli, inside their ranges, and restarts at its
+    result until that gains nothing: a valley that ends at a bound flattens the simplex.
     The same start gives the same answer, whatever the number of workers.
 
     Source: Nelder and Mead 1965, doi:10.1093/comjnl/7.4.308.
@@ -31,14 +31,14 @@ def refine(misfit: Misfit, start: Evaluation) -> Evaluation:
     Parameters
     ----------
     misfit
-        What is minimized.
+        Function to minimize.
     start
-        Where to start.
+        Candidate to start from.
 
     Returns
     -------
     Evaluation
-        Never worse than `start`.
+        Candidate that is never worse than `start`.
     """
     best = start
     for _ in range(_RESTARTS):
@@ -61,12 +61,12 @@ def minimized(
     first_step: float = _FIRST_STEP,
     converged: float = _CONVERGED,
 ) -> NDArray[np.float64]:
-    """Genes near `start` at which an error is smallest.
+    """Find the genes near `start` at which an error is smallest.
 
     Parameters
     ----------
     error
-        From genes (n,) to an error in m; may be infinite.
+        Function from genes (n,) to an error in m; may be infinite.
     start
         Genes, (n,).
     spans

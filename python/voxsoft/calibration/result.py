@@ -1,4 +1,4 @@
-"""The answer of a calibration: moduli, errors, history, and what the data could tell."""
+"""Result of a calibration: moduli, errors, history, and identifiability."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class Generation:
     Attributes
     ----------
     best_fitness, mean_fitness
-        Of this generation; a candidate that failed counts as zero.
+        Best and mean fitness of this generation; a candidate that failed counts as zero.
     best_error
         Smallest mean error of this generation, m; infinite if all failed.
     parameters
-        Of its best candidate, SI.
+        Parameters of its best candidate, SI.
     spread
         Smallest and largest value of each parameter among its candidates, SI.
     """
@@ -54,7 +54,7 @@ class Candidate:
     fitness
         The paper's fitness.
     evaluations
-        Candidates simulated so far.
+        Number of candidates simulated so far.
     """
 
     parameters: Mapping[str, float]
@@ -65,7 +65,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Fit:
-    """How one experiment fits (the paper's Fig. 4).
+    """Fit of one experiment (the paper's Fig. 4).
 
     Attributes
     ----------
@@ -85,16 +85,16 @@ class Fit:
 
     @property
     def percent(self) -> NDArray[np.float64]:
-        """The same in percent of the measured tip sag, (n,).
+        """Length of the error vector at each station in percent of the measured tip sag, (n,).
 
-        The largest of them is the figure that the paper prints for each beam.
+        The largest of them is the number that the paper prints for each beam.
         """
         share: NDArray[np.float64] = 100.0 * self.errors / self.experiment.sag
         return share
 
     @property
     def correlation(self) -> float:
-        r"""How alike the error vectors of neighboring stations are, from -1 to 1.
+        r"""Correlation of the error vectors of neighboring stations, from -1 to 1.
 
         :math:`\sum r_i \cdot r_{i+1} / \sum |r_i|^2`: zero in the mean where the misfit is noise;
         near 1 where it is systematic.
@@ -108,7 +108,7 @@ class Fit:
 
     @property
     def is_systematic(self) -> bool:
-        """Whether the misfit is more than noise that is independent at each station.
+        """True if the misfit is more than noise that is independent at each station.
 
         The correlation of such noise varies by ``1/sqrt(n q)`` for n stations of q numbers; beyond
         twice that it is one time in forty. A misfit below 0.1 % of the sag is left to the solver.
@@ -118,7 +118,7 @@ class Fit:
 
     @property
     def caution(self) -> str:
-        """A sentence on a misfit that is systematic; empty where there is none."""
+        """Warning about a systematic misfit; empty where there is none."""
         if not self.is_systematic:
             return ""
         known = self.experiment.measurement.arcs is not None
@@ -154,35 +154,35 @@ class Fit:
 
 @dataclass(frozen=True, repr=False)
 class Calibration(Shown):
-    """A material fitted to experiments.
+    """Material fitted to experiments.
 
     Attributes
     ----------
     material
-        The material that fits best.
+        Material that fits best.
     parameters
-        The constants that were searched, SI.
+        Constants that were searched, SI.
     bounds
-        Their ranges, SI.
+        Search ranges of the constants, SI.
     kinds
-        Their kinds of quantity.
+        Kind of quantity of each constant.
     fits
         Each experiment with its simulated shape.
     fitness
         ``exp(-10 Σ|r|)`` with error vectors in m, summed over the stations: a mean error of
         5.7 mm at nine stations is 0.60.
     search
-        What the method found, before refinement.
+        Result of the method, before refinement.
     history
-        The generations of the search.
+        Generations of the search.
     profiles
-        What the data say about each parameter; empty if not asked for.
+        Profile likelihood of each parameter; empty if not requested.
     evaluations
-        Candidates simulated in search, refinement and profiles.
+        Number of candidates simulated in search, refinement and profiles.
     free_scale
-        Whether each experiment had a factor of its own on the simulated shape.
+        True if each experiment had a factor of its own on the simulated shape.
     method, seed, settings
-        How it was found.
+        Method, seed and settings of the search.
     """
 
     material: Material
@@ -225,7 +225,7 @@ class Calibration(Shown):
 
     @property
     def identifiable(self) -> dict[str, bool]:
-        """Whether the data tell each parameter."""
+        """True for each parameter that the data determine, by its name."""
         return {profile.name: profile.identifiable for profile in self.profiles}
 
     @property
@@ -246,7 +246,7 @@ class Calibration(Shown):
         return self.fits[0].experiment.voxel_size
 
     def summary(self) -> dict[str, Any]:
-        """Everything a record needs, as plain data in SI units (the ``--json`` of ``calibrate``).
+        """Return all results as plain data in SI units (the ``--json`` of ``calibrate``).
 
         Errors are lengths of vectors in m. Percent are of the measured tip sag.
         """
@@ -293,18 +293,18 @@ class Calibration(Shown):
         Parameters
         ----------
         name
-            What designs call the material.
+            Name of the material in designs.
         title
-            What people call it; default: the name of the first experiment.
+            Title for people; default: the name of the first experiment.
         source
-            Where the data come from; default: what the measurements say.
+            Source of the data; default: the sources of the measurements.
         caution
-            What the numbers are not good for, added to what the calibration found itself.
+            Limits of the numbers, added to those the calibration found itself.
 
         Returns
         -------
         Card
-            With the constants rounded to 4 digits, and a record of the calibration.
+            Card with the constants rounded to 4 digits, and a record of the calibration.
         """
         sources = dict.fromkeys(fit.experiment.measurement.source for fit in self.fits)
         return Card(
@@ -317,7 +317,7 @@ class Calibration(Shown):
         )
 
     def _rounded(self) -> Material:
-        """Round to 4 digits: all moduli of a lattice, and whatever else was searched."""
+        """Round to 4 digits: all moduli of a lattice, and the other searched constants."""
         rounded = {name: float(f"{value:.4g}") for name, value in self.parameters.items()}
         if isinstance(self.material, Lattice):
             own = {"edge": self.material.edge, "bulk": self.material.bulk}

@@ -1,4 +1,4 @@
-"""One call from experiments to a material."""
+"""Calibration of a material by experiments."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ from voxsoft.errors import MeasurementError, SimulationError, StudyError
 from voxsoft.materials import Hyperelastic, Material
 from voxsoft.simulation.choice import check_settings_of
 
-#: What of an experiment's solver counts, and why nothing else does.
+#: Solver settings of an experiment that count, and why no others do.
 _USED: Final = frozenset({"refine"})
 _SOLVES: Final = "calibrations, which bring every candidate to rest with settings of their own"
 
 
 @dataclass(frozen=True)
 class CalibrationEvent:
-    """Where a calibration stands.
+    """Progress of a calibration.
 
     Attributes
     ----------
     stage
         ``search``, then ``refinement`` and ``profiles`` (once each, as they start).
     done, total
-        Generations of the search.
+        Number of finished generations of the search, and of all.
     evaluations
-        Candidates simulated so far.
+        Number of candidates simulated so far.
     mean_error
-        Smallest so far, m.
+        Smallest mean error so far, m.
     generation
-        The generation that has just finished; None at the start of a further stage.
+        Generation that has just finished; None at the start of a further stage.
     fits
-        Simulates the best candidate so far and lays it beside the measurements; empty where none
-        came to rest.
+        Function that simulates the best candidate so far and compares it with the measurements;
+        empty where none came to rest.
     """
 
     stage: Literal["search", "refinement", "profiles"]
@@ -78,9 +78,9 @@ def calibrate(
     """Fit the constants of one material to measurements.
 
     Three stages follow each other. *Search*: the method explores the whole range; with
-    ``genetic`` this is the paper's Algorithm 4 to the letter; ``gradient`` looks around and then
-    descends along exact slopes. *Refinement*: a simplex walks to the bottom of the valley that
-    the search found. *Profiles*: the error along each constant tells which of them the data
+    ``genetic`` this is the paper's Algorithm 4 to the letter; ``gradient`` takes initial samples
+    and then descends along exact slopes. *Refinement*: a simplex walks to the bottom of the valley
+    that the search found. *Profiles*: the error along each constant shows which of them the data
     determine.
 
     Parameters
@@ -94,27 +94,27 @@ def calibrate(
         Range of each constant that is fitted, as text with a unit or in SI units, positive, by
         a name of :func:`voxsoft.materials.constants_of`: ``edge``, ``c10``, ``mu.1`` ... Default:
         for a lattice ``edge`` from 1 kPa to 1 MPa and ``bulk`` from 2 kPa to 1 MPa
-        (:data:`voxsoft.calibration.DEFAULT_BOUNDS` says why); for a hyperelastic model ``young``
-        from 5 kPa to 2 MPa, which scales all its moduli. What is left out stays as the design has
-        it.
+        (:data:`voxsoft.calibration.DEFAULT_BOUNDS` gives the reason); for a hyperelastic model
+        ``young`` from 5 kPa to 2 MPa, which scales all its moduli. Other constants stay as the
+        design has them.
     free_scale
-        Whether each experiment has a factor of its own on the simulated shape, for photographs
+        True if each experiment has a factor of its own on the simulated shape, for photographs
         whose scale is doubtful. Errors stay in the data's own meters.
     seed
-        The same seed gives the same answer.
+        Seed of the search; the same seed gives the same answer.
     workers
-        Simulations at a time; default: the number of cores. The answer does not depend on it.
+        Number of simulations at a time; default: of cores. The answer does not depend on it.
     generations, population
         Budget of the search; the paper's 50 and 30 by default. CMA-ES may need fewer;
         ``gradient`` stops by itself.
     refine
-        Whether to refine after the search.
+        True to refine after the search.
     identify
-        Whether to profile the error.
+        True to profile the error.
     lanes
-        Whether slender lattice bodies in dead loads are solved by statics with several candidates
-        at a time, one in each lane of the processor; without, each is relaxed by itself. Both find
-        the same states, within the tolerance. ``gradient`` has its candidates one by one.
+        True to solve slender lattice bodies in dead loads by statics with several candidates at a
+        time, one in each lane of the processor; without, each is relaxed by itself. Both find the
+        same states, within the tolerance. ``gradient`` has its candidates one by one.
     progress
         Called after each generation and at the start of each further stage.
 
@@ -136,9 +136,9 @@ def calibrate(
 
     Notes
     -----
-    Why the refinement: with ``exp(k S)`` as fitness the wheel of Algorithm 4 gives a candidate
-    that is 0.1 mm better at nine stations a chance only 0.9 % larger, so that the search stops at
-    random in a valley a few percent wide. :attr:`Calibration.search` keeps what it found.
+    Refinement is needed because, with ``exp(k S)`` as fitness, the wheel of Algorithm 4 gives a
+    candidate that is 0.1 mm better at nine stations only a 0.9 % larger chance: the search stops at
+    random in a valley a few percent wide. :attr:`Calibration.search` keeps its result.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The space of a calibration: a range with units for each modulus, searched on a log scale."""
+"""Search space of a calibration: a range with units for each modulus, on a log scale."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ HYPERELASTIC_BOUNDS: Final[Mapping[str, Bounds]] = {"young": ("5 kPa", "2 MPa")}
 
 
 def usual_ranges(model: type[Material]) -> Mapping[str, Bounds]:
-    """The constants that are fitted unless others are named, with their ranges.
+    """Return the constants that are fitted by default, with their ranges.
 
     Examples
     --------
@@ -55,11 +55,11 @@ class Space:
     Attributes
     ----------
     names
-        Constants of the material model.
+        Names of the constants of the material model.
     low, high
-        Their ranges in SI units, (n,).
+        Ranges of the constants in SI units, (n,).
     base
-        The material that the other constants come from.
+        Material that the other constants come from.
 
     Examples
     --------
@@ -76,7 +76,7 @@ class Space:
 
     @classmethod
     def of(cls, parameters: Mapping[str, Bounds] | None, material: Material) -> Space:
-        """Read the ranges that a calibration was asked for.
+        """Read the ranges given to a calibration.
 
         Raises
         ------
@@ -107,7 +107,7 @@ class Space:
         return len(self.names)
 
     def values(self, genes: ArrayLike) -> NDArray[np.float64]:
-        """Constants in SI units at these genes, (n,) → (n,)."""
+        """Return the constants in SI units at these genes, (n,) → (n,)."""
         share = np.asarray(genes, dtype=np.float64)
         low, high = np.log(self.low), np.log(self.high)
         found: NDArray[np.float64] = np.exp(low + share * (high - low))
@@ -115,12 +115,12 @@ class Space:
         return np.where(share <= 0.0, self.low, np.where(share >= 1.0, self.high, found))
 
     def spans(self) -> NDArray[np.float64]:
-        """Length of each range in the natural logarithm, (n,)."""
+        """Return the length of each range in the natural logarithm, (n,)."""
         lengths: NDArray[np.float64] = np.log(self.high) - np.log(self.low)
         return lengths
 
     def parameters(self, genes: ArrayLike) -> dict[str, float]:
-        """Constants in SI units by name."""
+        """Return the constants in SI units by name."""
         return dict(zip(self.names, (float(v) for v in self.values(genes)), strict=True))
 
     def values_of(self, material: Material) -> dict[str, float]:

@@ -38,12 +38,12 @@ def read_measurement(text: str, *, name: str = "table", select: str | None = Non
     Beside semicolons and tabs, numbers may have decimal commas, as spreadsheets write them in much
     of Europe.
 
-    Lines that start with ``#`` are comments; they say where the data come from and become the
+    Lines that start with ``#`` are comments; they name the source of the data and become the
     measurement's source. The first other line names the columns:
 
     - the station: ``probe`` (a probe of the design) or ``arc_position_from_clamp_m``, on the
       lower edge unless a calibration is given another line;
-    - what was seen: ``x_m``, ``y_m``, ``z_m``, positions relative to the clamp face, and
+    - the measured numbers: ``x_m``, ``y_m``, ``z_m``, positions relative to the clamp face, and
       ``dx_m``, ``dy_m``, ``dz_m``, displacements; either may be ``_mm`` or ``_cm``;
     - ``material``, where one table holds several; ``note``, which is not read, as columns without
       a name are not.
@@ -51,16 +51,16 @@ def read_measurement(text: str, *, name: str = "table", select: str | None = Non
     Parameters
     ----------
     text
-        The table.
+        Content of the table.
     name
-        What an error calls it: the file's name.
+        Name of the table in errors: the file's name.
     select
-        The material to take from a table of several; upper and lower case are alike.
+        Name of the material to take from a table of several; upper and lower case are alike.
 
     Returns
     -------
     Measurement
-        In SI units, named after its material if the table has one.
+        Measurement in SI units, named after its material if the table has one.
 
     Raises
     ------

@@ -35,7 +35,7 @@ __all__ = [
     "refined",
 ]
 
-# Loaded when first used: a job knows what a comparison is asked without its solvers.
+# Imported when first used: a job reads the arguments of a comparison without its solvers.
 _HOMES = {
     "Comparison": "voxsoft.comparison.comparison",
     "Confirmation": "voxsoft.comparison.confirmation",

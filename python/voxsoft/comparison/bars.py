@@ -1,8 +1,8 @@
-"""Error bars: how far the numbers of a run are from those of ever smaller voxels.
+"""Error bars: discretization errors of the numbers of a run, from runs on voxels of another size.
 
 The run is made again on voxels of another size, and each number that both give is extrapolated
-(:mod:`voxsoft.comparison.richardson`). Voxels half as large tell more and cost about twelve times
-the run; voxels twice as large cost a tenth of it, and tell something only while they still are
+(:mod:`voxsoft.comparison.richardson`). Voxels half as large show more and cost about twelve times
+the run; voxels twice as large cost a tenth of it, and show something only while they still are
 the same body. So small bodies get finer voxels and large ones coarser.
 """
 
@@ -29,11 +29,11 @@ from voxsoft.simulation import Result, Setup, simulate
 from voxsoft.simulation.choice import kind_of, settings_at_rest
 from voxsoft.simulation.touching import has_contact
 
-#: Voxels that finer ones may be without being asked for: some 10 s for a body of rubber.
+#: Most voxels of a finer run that was not asked for: some 10 s for a body of rubber.
 FINER_UP_TO: Final = 20_000
-#: The same where steps take ten times as long: with contact, tendons that rub, and supplies.
+#: Same limit where steps take ten times as long: with contact, friction of tendons, and supplies.
 FINER_UP_TO_IF_SLOW: Final = 2_000
-#: Voxels that an accuracy may take.
+#: Most voxels of a run for a requested accuracy.
 ACCURATE_UP_TO: Final = 400_000
 #: Two sizes hold the same body if volumes are the same to this part: those of cut voxels follow
 #: the shape to second order, and a wall that is off by more counts in the third power.
@@ -44,11 +44,11 @@ REGULAR_WALL: Final = 2
 #: off. Of the chambers, plates and fins of `benchmarks/make_estimate_truths.py` those with two
 #: voxels through a wall were 2 to 29 % off, seven of eight by less than this.
 HIDDEN: Final = 0.25
-#: What two sizes cannot know of a number: errors of corners and of free sides have either sign, and
-#: may cancel in both. Of 70 bodies whose truth is known those that two sizes missed agreed within
-#: 0.4 %, and all but one were less than this off.
+#: Least error from two sizes, as a part of the number: errors of corners and of free sides have
+#: either sign, and may cancel in both. Among 70 bodies with known truth those that two sizes missed
+#: agreed within 0.4 %, and all but one were less than this off.
 UNKNOWN: Final = 0.01
-#: Changes below this part of a number are rounding: what equilibrium or the shape alone decides.
+#: Relative change that is rounding: equilibrium or the shape alone sets such a number.
 UNCHANGED: Final = 1e-6
 #: The part of a vector below which components are rounding.
 ROUNDING: Final = 1e-9
@@ -57,7 +57,7 @@ ROUNDING: Final = 1e-9
 #: about how many seconds it takes.
 Announce = Callable[[float, int, float], None]
 
-#: Solves a design, given the run on voxels twice as large where that is known.
+#: Function that solves a design, given the run on voxels twice as large where that is known.
 Solve = Callable[[Design, Result | None], Result]
 
 
@@ -73,11 +73,11 @@ def error_bars(
     Parameters
     ----------
     result
-        The run. The design's ``solver.error`` and ``solver.accuracy`` say which voxels are tried.
+        The run. The design's ``solver.error`` and ``solver.accuracy`` select the voxels.
     progress
-        As for :func:`voxsoft.simulate`.
+        See :func:`voxsoft.simulate`.
     announce
-        Called before each further run with what it will cost.
+        Called before each further run with its voxel size in m, number of voxels, and seconds.
     solve
         Solves the design on other voxels, given the run on voxels twice as large if that is known;
         default: :func:`voxsoft.simulate`.
@@ -85,7 +85,7 @@ def error_bars(
     Returns
     -------
     ErrorBars
-        None, with the reason, where the numbers say nothing of their error: without an
+        No error bars, with the reason, where they cannot be estimated: without an
         equilibrium, in motion over time and for lattices unless `error` or `accuracy` asks for
         them, or where voxels of no other size can be solved. Those of a motion are of its end, with
         the same steps in time.
@@ -112,7 +112,7 @@ def error_bars(
 
 
 def _of_equilibrium(result: Result) -> Result:
-    """A design of motion may have been brought to rest all the same, as the studio does."""
+    """Return the result with settings at rest if its design of motion was solved by statics."""
     design = result.design
     if result.solver["method"] != "statics" or kind_of(design, design.solver).to_rest:
         return result
@@ -121,7 +121,7 @@ def _of_equilibrium(result: Result) -> Result:
 
 
 def _refusal(result: Result) -> tuple[str, str] | None:
-    """Why numbers of a run say nothing of their error, and what to do, if so."""
+    """Return why a run has no error bars, with a hint; None if it can have them."""
     design = result.design
     if design.solver.error == "off":
         return 'the solver\'s error is "off"', 'write error = "auto"'
@@ -141,10 +141,10 @@ def _refusal(result: Result) -> tuple[str, str] | None:
 
 @dataclass
 class _Run:
-    """A run and what tells whether another one holds the same bodies."""
+    """Run with the data that decide if another run holds the same bodies."""
 
     result: Result
-    #: Of the voxels in m; of several bodies that of the design, which all keep their ratio to.
+    #: Voxel size in m; with several bodies the design's, to which all sizes keep their ratio.
     size: float
 
     @cached_property
@@ -159,7 +159,7 @@ class _Run:
         return min(map(_thinnest_wall, alone)) * design.solver.refine
 
     def is_like(self, other: _Run) -> bool:
-        """Whether both hold the same body, as far as volumes and extents can tell."""
+        """Return True if both hold the same body, as far as volumes and extents show."""
         a, b = self.result, other.result
         if len(a.mesh.cavities) != len(b.mesh.cavities):
             return False
@@ -183,7 +183,7 @@ def _thinnest_wall(design: Design) -> int:
 
 
 class _Search:
-    """The further runs of one result."""
+    """Further runs of one result."""
 
     def __init__(
         self,
@@ -198,7 +198,7 @@ class _Search:
         self._seconds = 0.0
 
     def pair(self) -> ErrorBars:
-        """From one other size."""
+        """Make error bars from one other size."""
         design = self.own.result.design
         asked = design.solver.error
         rubs = any(tendon.friction > 0.0 for tendon in design.tendons)
@@ -226,7 +226,7 @@ class _Search:
         return ErrorBars.none("; ".join(reasons), hint)
 
     def until_accurate(self) -> ErrorBars:
-        """From ever smaller voxels, until all errors are within what is asked for."""
+        """Make error bars from ever smaller voxels, until all errors are within the accuracy."""
         runs = [self.own]
         while True:
             if 8 * runs[-1].voxels > ACCURATE_UP_TO:
@@ -249,7 +249,7 @@ class _Search:
                 return bars
 
     def _solved(self, size: float, coarser: _Run | None) -> _Run | str:
-        """The run on other voxels, from that on voxels twice as large, or what went wrong."""
+        """Solve on other voxels, from the run on voxels twice as large; a text if that fails."""
         design = self.own.result.design
         factor = size / self.own.size
         if self._announce is not None:
@@ -272,7 +272,7 @@ class _Search:
         return _Run(result, size) if result.status == "ok" else result.message
 
     def _bars(self, runs: Sequence[_Run], missing: str = "", hint: str = "") -> ErrorBars:
-        """The bars of runs on falling sizes, of which one is that of the design."""
+        """Make the bars of runs on falling sizes, of which one is that of the design."""
         last = runs[-2:]
         regular = last[0].is_like(last[1]) and last[0].wall >= REGULAR_WALL
         sizes = [run.size for run in runs]
@@ -292,7 +292,7 @@ class _Search:
             return ErrorBar.within(values[own], found.limit, error, kind, bounds)
 
         def bars(values: Sequence[NDArray[np.float64]]) -> tuple[ErrorBar, ErrorBar, ErrorBar]:
-            # What is left of components that symmetry makes zero is rounding.
+            # Components that symmetry makes zero hold only rounding.
             rounding = ROUNDING * float(np.abs(values).max())
             kept = [np.where(np.abs(v) > rounding, v, 0.0) for v in values]
             x, y, z = (bar([float(v[axis]) for v in kept], "length") for axis in range(3))
@@ -304,7 +304,7 @@ class _Search:
         names = [name for name in first.metrics if not _is_peak(name, asked)]
         volumes = [result.cavity_volumes for result in results]
         same = len({len(each) for each in volumes}) == 1
-        # What hides in a volume is a part of its growth.
+        # The hidden error of a volume is a part of its growth.
         cavities = results[-1].mesh.cavities
         grown = [v - float(cavity.volume) for v, cavity in zip(volumes[-1], cavities, strict=True)]
         hidden = {"mass": 0.0, "volume": 0.0, "cavity_volume": float(np.abs(grown).sum())}
@@ -335,7 +335,7 @@ class _Search:
 
 
 def _path(result: Result) -> tuple[object, ...]:
-    """What of the solver's settings decides which state a run ends in, and on which voxels."""
+    """Return the solver settings that decide which state a run ends in, and on which voxels."""
     used = result.solver
     control = used["way"] if used["way"] in ("volume", "arc-length") else "load"
     return control, used.get("volume_ratio"), used.get("refine")
@@ -363,13 +363,13 @@ def _is_peak(name: str, asked: _Asked) -> bool:
 
 
 def _wants_accuracy(design: Design) -> bool:
-    """Whether the design, or one of its goals, asks for an accuracy."""
+    """Return True if the design, or one of its goals, asks for an accuracy."""
     goals = any(target.accuracy is not None for target in _asked(design).values())
     return goals or design.solver.accuracy is not None
 
 
 def _is_accurate(bars: ErrorBars, design: Design) -> bool:
-    """Whether errors are small enough: of goals by their own accuracy, else by the design's.
+    """Return True if errors are small enough: goals by their own accuracy, else by the design's.
 
     Probes, or without them and without goals the largest displacement, are held to the design's.
     """
@@ -389,5 +389,5 @@ def _is_accurate(bars: ErrorBars, design: Design) -> bool:
     if not pairs and not _asked(design):
         moved = bars.metrics["max_displacement"]
         pairs = [(abs(moved.estimate), moved.error)]
-    # A comparison with NaN, which stands for what is not known, does not hold.
+    # NaN stands for unknown, and a comparison with it does not hold.
     return all(error <= design.solver.accuracy * size for size, error in pairs)

@@ -1,7 +1,7 @@
-"""What touches what, for an outside code: faces of voxels and rigid objects.
+"""Contact for an outside code: faces of voxels and rigid objects.
 
 Outside codes are given pairs of surfaces. The body meets an object with all of its faces, and
-itself where two of its walls look at each other across a slit or a chamber of the unloaded body.
+itself where two of its walls face each other across a slit or a chamber of the unloaded body.
 """
 
 from __future__ import annotations
@@ -23,25 +23,24 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: Pairs of walls beyond which a body is refused: a lattice of struts has more, and each costs a
-#: search of its own.
+#: Most pairs of walls of a body: a strut lattice has more, and each costs a search of its own.
 _MOST_PAIRS: Final = 400
 
 
 @dataclass(frozen=True, eq=False)
 class RigidTool:
-    """An object that is held or moved.
+    """Rigid object that is held or moved.
 
     Attributes
     ----------
     name
-        Of the object.
+        Name of the object.
     vertices, triangles
-        Its surface in m, (n, 3), and its triangles, outward, (t, 3).
+        Vertices of its surface in m, (n, 3), and its triangles, outward, (t, 3).
     way
-        How far it goes in m, (3,).
+        Displacement in m, (3,).
     friction
-        With the body.
+        Friction coefficient with the body.
     """
 
     name: str
@@ -53,18 +52,18 @@ class RigidTool:
 
 @dataclass(frozen=True, eq=False)
 class BrickContact:
-    """What touches what.
+    """Surfaces in contact.
 
     Attributes
     ----------
     outer
         All faces of the body, rows (brick, face).
     walls
-        Pairs of walls of the body that look at each other, likewise.
+        Pairs of walls of the body that face each other, likewise.
     friction
-        Of the body with itself.
+        Friction coefficient of the body with itself.
     tools
-        The objects that it touches.
+        Objects that it touches.
     """
 
     outer: Ints = field(repr=False)
@@ -96,7 +95,7 @@ def check_contact(setup: Setup) -> None:
 
 
 def tools_of(touching: Touching) -> tuple[RigidTool, ...]:
-    """The objects that the body touches."""
+    """List the objects that the body touches."""
     found = []
     pairs = zip(touching.design.objects, touching.surfaces, strict=True)
     for index, (each, surface) in enumerate(pairs):
@@ -112,25 +111,25 @@ def tools_of(touching: Touching) -> tuple[RigidTool, ...]:
 
 
 def facing_walls(cells: Ints) -> tuple[Ints, list[tuple[Ints, Ints]]]:
-    """All faces of a body of voxels, and the pairs of its walls that look at each other.
+    """Return all faces of a body of voxels, and the pairs of its walls that face each other.
 
-    A wall is a part of a plane in which faces of voxels hang together by their edges. Two look at
-    each other where a line across both meets nothing between them.
+    A wall is a part of a plane in which faces of voxels are connected by their edges. Two face each
+    other where a line across both meets nothing between them.
 
     Parameters
     ----------
     cells
-        The voxels on their lattice, (n, 3).
+        Cells of the voxels in their grid, (n, 3).
 
     Returns
     -------
     faces, walls
-        Rows (voxel, axis, whether it looks along the axis); of all, and of both walls of each pair.
+        Rows (voxel, axis, 1 if it looks along the axis); of all, and of both walls of each pair.
 
     Raises
     ------
     SimulationError
-        So many pairs that an outside code would take for ever.
+        Too many pairs for an outside code.
 
     Examples
     --------
@@ -169,7 +168,7 @@ def facing_walls(cells: Ints) -> tuple[Ints, list[tuple[Ints, Ints]]]:
 
 
 def _seen(full: NDArray[np.bool_], down: Ints, up: Ints) -> list[tuple[int, int]]:
-    """Labels of walls that look along the first axis, and of those that they see, against it."""
+    """Pair the labels of walls along the first axis with those of the walls across from them."""
     index = np.arange(len(full))[:, None, None]
     next_full = np.where(full, index, len(full))  # at a cell or after it
     next_full = np.minimum.accumulate(next_full[::-1])[::-1]
@@ -181,10 +180,10 @@ def _seen(full: NDArray[np.bool_], down: Ints, up: Ints) -> list[tuple[int, int]
 
 
 def passed_through(setup: Setup, positions: Floats) -> str:
-    """What passed through what in an answer, in words; empty where nothing did.
+    """Describe the surfaces that passed through each other in an answer; empty if none did.
 
-    Pairs of surfaces are chosen on the unloaded body. What meets beside them is found here: where
-    anything is more than a quarter of a voxel deep.
+    Pairs of surfaces are chosen on the unloaded body. Other contact is found here, if anything is
+    more than a quarter of a voxel deep.
     """
     touching = setup.touching
     if touching is None:

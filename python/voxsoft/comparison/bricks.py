@@ -31,7 +31,7 @@ from voxsoft.simulation.touching import refuse_bodies
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: Nodes of a brick: corners; with the middles of edges; with those of faces and of the brick too.
+#: Nodes of a brick: corners; with midpoints of edges; with those of faces and of the brick too.
 NodeCount = Literal[8, 20, 27]
 
 #: Corners of a brick in units of its edge: bottom counter-clockwise, then top.
@@ -76,7 +76,7 @@ _HALVES: Final = np.concatenate(
 
 @dataclass(frozen=True, eq=False)
 class FacePressure:
-    """A pressure in Pa that follows some faces of bricks: rows (brick, face)."""
+    """Pressure in Pa that follows some faces of bricks: rows (brick, face)."""
 
     faces: Ints
     value: float
@@ -84,7 +84,7 @@ class FacePressure:
 
 @dataclass(frozen=True, eq=False)
 class BrickModel:
-    """A mechanical problem on bricks: what an outside code is given.
+    """Mechanical problem on bricks, as an outside code takes it.
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ class BrickModel:
     parts, materials
         The part of each brick (m,), counted from 0, and the material of each part.
     fixed, values
-        Which components are prescribed (n, 3), and to what displacement in m.
+        Mask of the prescribed components, (n, 3), and their displacement in m.
     forces
         Dead forces in N, (n, 3); weight is not among them.
     gravity
@@ -103,15 +103,15 @@ class BrickModel:
     pressures
         Pressures on faces.
     vertex_nodes
-        The node at each vertex of the voxel mesh.
+        Node at each vertex of the voxel mesh.
     clamp_nodes
-        The nodes that each clamp holds.
+        Nodes that each clamp holds.
     edge
         Edge of a brick in m.
     split
         Bricks along each edge of a voxel.
     contact
-        What touches, if anything does.
+        Surfaces in contact, if there are any.
     """
 
     nodes: Floats = field(repr=False)
@@ -145,7 +145,7 @@ class BrickModel:
         Raises
         ------
         SimulationError
-            A mesh that is not made of full voxels, or what no outside code is given: a floor,
+            A mesh that is not made of full voxels, or a feature unknown to outside codes: a floor,
             layers, springs, fibers, activations, objects that are free or turn, bonds.
 
         Examples
@@ -305,7 +305,7 @@ _FACE_NODES: Final = _face_nodes()
 
 
 def prescribed(clamp: Clamp, points: Floats) -> Floats:
-    """Displacement in m that a clamp ends up giving to points in m, (n, 3)."""
+    """Displacement in m that a clamp gives to points in m at its end, (n, 3)."""
     moved = np.zeros_like(points)
     motion = clamp.motion
     if motion is None:
@@ -322,7 +322,7 @@ def prescribed(clamp: Clamp, points: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class _Lattice:
-    """Voxels and vertices on the integer lattice of a mesh."""
+    """Voxels and vertices on the integer grid of a mesh."""
 
     origin: Floats
     size: float
@@ -360,7 +360,7 @@ class _Lattice:
 
 
 class _Spread:
-    """From flags and forces at vertices of voxels to nodes of the split grid."""
+    """Transfer of flags and forces from vertices of voxels to nodes of the split grid."""
 
     def __init__(self, grid: _Lattice, places: Ints, split: int) -> None:
         self._count = len(places)
@@ -384,12 +384,12 @@ class _Spread:
         return np.flatnonzero((inside[self._corners] | (self._weights == 0)).all(axis=1))
 
     def interpolate(self, values: Floats, nodes: Ints) -> Floats:
-        """Values at vertices, trilinear at nodes."""
+        """Interpolate values at vertices to nodes, trilinearly."""
         filled: Floats = (self._weights[nodes] * values[self._corners[nodes]]).sum(axis=1)
         return filled
 
     def share(self, vertices: NDArray[np.integer], total: Floats) -> Floats:
-        """A force shared by vertices, spread over the edges, faces and voxels that they span."""
+        """Spread a force shared by vertices over the edges, faces and voxels that they span."""
         nodes = self.where_all(vertices)
         corners, weights = self._corners[nodes], self._weights[nodes]
         sums = np.zeros(self._corners.max() + 2)
@@ -401,7 +401,7 @@ class _Spread:
 
 
 class _BrickLoads(LoadReceiver):
-    """Loads on bricks, forces shared by what the nodes' shape functions say."""
+    """Loads on bricks; forces are shared by the shape functions of the nodes."""
 
     def __init__(self, mesh: Mesh, bricks: BrickModel, grid: _Lattice, spread: _Spread) -> None:
         super().__init__(mesh)
@@ -435,7 +435,7 @@ class _BrickLoads(LoadReceiver):
 
 
 def split_faces(faces: Ints, split: int) -> Ints:
-    """Rows (brick, face) of faces of voxels, rows (voxel, axis, whether it looks along)."""
+    """Split faces of voxels, rows (voxel, axis, 1 if it looks along), into rows (brick, face)."""
     fine = np.arange(split**3).reshape(split, split, split)
     rows: list[tuple[int, int]] = []
     for voxel, axis, up in faces.tolist():

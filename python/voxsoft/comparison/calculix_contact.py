@@ -1,8 +1,8 @@
 """Contact in CalculiX's input files: surfaces, pairs, and objects as shells that move rigidly.
 
 Surfaces meet face to face with a linear penalty of 500 Young's moduli for each edge of a brick: at
-a pressure of a tenth of Young's modulus they are 0.0002 edges in each other. What sticks gives way
-25 times as easily. There is no stabilization and no adjustment of the unloaded mesh.
+a pressure of a tenth of Young's modulus they are 0.0002 edges in each other. The stick slope is
+25 times smaller. There is no stabilization and no adjustment of the unloaded mesh.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from voxsoft.comparison.brick_contact import RigidTool
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.calculix_units import YOUNG, DeckUnits
 
-#: The penalty: the edge of a brick is 1 in these units.
+#: Penalty stiffness, where the edge of a brick is 1.
 _SLOPE: Final = 1000.0 * YOUNG
-#: How far the shell of an object goes in behind its surface, as a part of a triangle's size.
+#: Depth of the shell of an object behind its surface, as a part of a triangle's size.
 _DEPTH: Final = 0.3
 
-#: Names of the surfaces of the body: all of it, and walls that look at each other.
+#: Names of the surfaces of the body: all of it, and walls that face each other.
 _BODY: Final = "BODY"
 
 
 def wall_names(index: int) -> tuple[str, str]:
-    """Names of two walls that look at each other."""
+    """Names of two walls that face each other."""
     return f"WALL{index}A", f"WALL{index}B"
 
 
@@ -67,7 +67,7 @@ def shell_of(tool: RigidTool) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     depth = _DEPTH / np.sqrt(sizes[full])
     inner = corners[full].mean(axis=1) - depth[:, None] * normals[full]
     first = len(tool.vertices)
-    # Of a tetrahedron of CalculiX the fourth node is where the first three, in turn, look to.
+    # The fourth node of a CalculiX tetrahedron lies on the side that the first three face.
     a, b, c = tool.triangles[full].astype(np.int64).T
     tets = np.column_stack([a, c, b, np.arange(first, first + len(inner))])
     return np.concatenate([tool.vertices, inner]), tets
@@ -97,7 +97,7 @@ def contact_lines(model: BrickModel) -> Iterator[str]:
 
 
 def printed_contact(model: BrickModel, units: DeckUnits) -> Iterator[str]:
-    """Move the objects, and ask for the forces between all pairs."""
+    """Write the motion of the objects, and the request for forces between all pairs."""
     if model.contact is None:
         return
     for index, tool in enumerate(model.contact.tools):

@@ -1,4 +1,4 @@
-"""The input file of CalculiX for a problem on bricks.
+"""Input file of CalculiX for a problem on bricks.
 
 Keywords and element names are those of the manual of CalculiX CrunchiX 2.20 (Dhondt,
 http://www.dhondt.de); :class:`~voxsoft.comparison.calculix_units.DeckUnits` has the units.
@@ -144,10 +144,10 @@ def _mooney_rivlin(values: Constants, d1: float, stress: float) -> tuple[str, Co
 
 
 def _volumetric(d1: float, terms: int) -> Constants:
-    """D1, and higher terms that count for nothing.
+    """Return D1 and higher terms that are negligible.
 
-    A zero would do in the manual's formula. In the program it changes the answer by what depends on
-    the units, 0.4 % of the displacement of a drawn bar of Yeoh's rubber; these values do not.
+    A zero would do in the manual's formula. The program's answer then depends on the units, by 0.4
+    % of the displacement of a drawn bar of Yeoh's rubber; these values have no such effect.
     """
     return [d1, *[1e8 * d1] * (terms - 1)]
 

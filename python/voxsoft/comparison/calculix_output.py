@@ -1,4 +1,4 @@
-"""What CalculiX prints: displacements and forces of node sets, and forces of contact."""
+"""Reader of CalculiX's output: displacements and forces of node sets, and contact forces."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LONG_EXPONENT: Final = re.compile(r"(\d)([+-]\d{3})\b")
 
 @dataclass(frozen=True, eq=False)
 class Printed:
-    """The rows of one set at one time: node numbers counted from 0 (k,), values (k, 3)."""
+    """Rows of one set at one time: node numbers counted from 0 (k,), values (k, 3)."""
 
     quantity: str
     name: str
@@ -92,7 +92,7 @@ def read_totals(text: str) -> dict[tuple[str, float], Floats]:
         if head:
             key = (head[1] or head[2], float(head[3]))
         elif key is not None:
-            # Of surfaces moments follow on the same line; a line of words comes before it.
+            # Rows of surfaces hold moments on the same line; a line of words comes before them.
             row = _row(line, 3) or _row(line, 6)
             if row is not None:
                 found[key], key = np.array(row[:3]), None

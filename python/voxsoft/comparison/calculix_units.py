@@ -13,9 +13,9 @@ YOUNG: Final = 1e5
 
 @dataclass(frozen=True)
 class DeckUnits:
-    """Units of length and stress; that of force follows.
+    """Units of length and stress; the unit of force follows.
 
-    CalculiX takes a residual of 10⁻⁸ for none, whatever the forces are (it stops there also where
+    CalculiX takes a residual of 10⁻⁸ for zero, at any size of the forces (it stops there also where
     that is far above the relative tolerance that it was given). In N and mm that is the whole load
     of a small soft body. In these units the edge of a brick is 1 and Young's modulus of the softest
     part 10⁵, so that 10⁻⁸ is the force of a strain of 10⁻¹³ on a face of a brick.
@@ -23,9 +23,9 @@ class DeckUnits:
     Attributes
     ----------
     length
-        In m.
+        Unit of length in m.
     stress
-        In Pa.
+        Unit of stress in Pa.
 
     Examples
     --------
@@ -48,10 +48,10 @@ class DeckUnits:
 
     @property
     def force(self) -> float:
-        """In N."""
+        """Unit of force in N."""
         return self.stress * self.length**2
 
     @property
     def density(self) -> float:
-        """In kg/m³, where accelerations are in m/s²."""
+        """Unit of density in kg/m³, with accelerations in m/s²."""
         return self.stress / self.length

@@ -1,4 +1,4 @@
-"""Where an estimate of the discretization error is known to say too little."""
+"""Warnings where an estimate of the discretization error is known to be too small."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _STEP: Final = np.radians(15.0)
 #: they are 0.6 to 0.8 of it; rounded edges of a box are less.
 _MOSTLY: Final = 0.3
 
-#: How far off the faces of voxels a smooth surface counts as another one, in voxels.
+#: Distance in voxels from the faces of voxels at which a smooth surface counts as another one.
 _SMOOTH: Final = 0.01
 
 Floats = NDArray[np.float64]
@@ -41,7 +41,7 @@ def cautions_of(design: Design, mesh: Mesh) -> Iterator[Diagnostic]:
     Parameters
     ----------
     design, mesh
-        What is compared, and its mesh.
+        The compared design, and its mesh.
     """
     pressed: set[int] = set()
     for number, load in enumerate(readings(design)):
@@ -67,7 +67,7 @@ def cautions_of_contact(setup: Setup) -> Iterator[Diagnostic]:
     Parameters
     ----------
     setup
-        What is compared. Outside codes, and voxels that are split, touch with faces of voxels.
+        The compared design. Outside codes, and voxels that are split, touch with faces of voxels.
     """
     if setup.touching is None:
         return
@@ -101,7 +101,7 @@ def steps_of_wall(
     Returns
     -------
     share, place
-        Between 0 and 1, by area; and the center of the step that turns most, m.
+        Area share between 0 and 1; and the center of the step that turns most, m.
     """
     corners = mesh.vertices[cavity.triangles]
     a, b, c = corners.transpose(1, 0, 2)

@@ -27,30 +27,30 @@ _SPLIT = "split voxels"
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One answer.
+    """One run of a comparison, by a solver or an outside code.
 
     Attributes
     ----------
     label
-        Who answered, and on which voxels.
+        Solver or outside code, and its voxels, in words.
     code
         A solver of our own, ``calculix`` or ``scikit-fem``.
     voxel_size, split
         Size of the voxels in m, and bricks or voxels along the edge of each.
     status, message
-        How it ended; ``ok`` is the only status whose numbers count.
+        Final status in a word and a sentence; ``ok`` is the only status whose numbers count.
     seconds
         Wall-clock time of the solution.
     cells
-        How many voxels or bricks were solved.
+        Number of voxels or bricks that were solved.
     detail
         Residual, or version and element.
     quantities
-        The numbers by name.
+        Numbers by name.
     stations
-        What each measurement would have seen, in m; empty on other voxels.
+        Computed values at the stations of each measurement, in m; empty on other voxels.
     result
-        The whole result of a run of our own.
+        Whole result of a run of our own.
     """
 
     label: str
@@ -68,17 +68,17 @@ class Run:
 
     @property
     def ok(self) -> bool:
-        """Whether its numbers count."""
+        """True if the run succeeded, so that its numbers count."""
         return self.status == "ok"
 
     @property
     def edge(self) -> float:
-        """Edge in m of what was solved."""
+        """Edge in m of the voxels or bricks that were solved."""
         return self.voxel_size / self.split
 
 
 class SeriesEstimate(NamedTuple):
-    """The error estimate of one quantity from one series of runs."""
+    """Error estimate of one quantity from one series of runs."""
 
     quantity: str
     series: str
@@ -88,7 +88,7 @@ class SeriesEstimate(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A measurement that runs are judged by: its name, stations, and values in m."""
+    """Measurement that runs are judged by: its name, stations, and values in m."""
 
     name: str
     source: str
@@ -99,7 +99,7 @@ class Judged:
 
     @classmethod
     def of(cls, experiment: Experiment) -> Self:
-        """Take from an experiment what a report says of it."""
+        """Take the fields of an experiment that a report shows."""
         measurement = experiment.measurement
         return cls(
             measurement.name,
@@ -113,24 +113,24 @@ class Judged:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison(Shown):
-    """What :func:`voxsoft.compare` found.
+    """Result of :func:`voxsoft.compare`.
 
     Attributes
     ----------
     design
-        What was compared.
+        The compared design.
     runs
-        The answers, in the order they were made.
+        Runs in the order they were made.
     solver
-        The solver that the estimates are for.
+        Solver that the estimates are for.
     outside
-        The outside code, or an empty text.
+        Name of the outside code; empty without one.
     measured
         The measurements.
     note
-        What is missing, if anything.
+        Note on missing parts, if any.
     warnings
-        Why an estimate may say too little, and what of the design was not used.
+        Reasons why an estimate may be too small, and parts of the design that were not used.
     """
 
     design: Design
@@ -152,7 +152,7 @@ class Comparison(Shown):
 
     @property
     def base(self) -> Run:
-        """The run of the solver on the design's own voxels."""
+        """Run of the solver on the design's own voxels."""
         return next(
             run
             for run in self.runs
@@ -163,7 +163,7 @@ class Comparison(Shown):
 
     @property
     def yardstick(self) -> Run | None:
-        """The outside code's answer on the finest split, if there is one."""
+        """Run of the outside code on the finest split, if there is one."""
         found = [run for run in self.runs if run.code == self.outside and run.ok]
         return max(found, key=lambda run: run.split, default=None)
 
@@ -221,7 +221,7 @@ class Comparison(Shown):
 
     @cached_property
     def estimates(self) -> tuple[SeriesEstimate, ...]:
-        """The discretization error of each quantity, from each series."""
+        """Discretization error of each quantity, from each series."""
         return tuple(
             SeriesEstimate(
                 name,
@@ -238,7 +238,7 @@ class Comparison(Shown):
 
     @property
     def distinguished(self) -> tuple[SeriesEstimate, ...]:
-        """The estimates without those of voxel sizes whose voxels are the split ones."""
+        """Estimates without those of voxel sizes whose voxels are the split ones."""
         split = {e.quantity: e.estimate.values for e in self.estimates if e.series == _SPLIT}
         return tuple(
             each
@@ -269,7 +269,7 @@ class Comparison(Shown):
         return gap / other.scale if other.scale > 0 else None
 
     def agrees(self, quantity: str) -> bool | None:
-        """Whether solver and outside code are within their estimated errors of each other.
+        """Return True if solver and outside code agree within their estimated errors.
 
         The solver's error is that of its split voxels, as the outside code sees the same body.
         """
@@ -282,7 +282,7 @@ class Comparison(Shown):
         return gap <= own + (outer.error if outer else 0.0)
 
     def errors(self, run: Run, index: int) -> Floats | None:
-        """Distance in m of each station of a measurement from what a run says, (n,)."""
+        """Distance in m between measurement and run at each station, (n,)."""
         if not run.ok or len(run.stations) <= index:
             return None
         gaps = run.stations[index] - self.measured[index].values

@@ -1,7 +1,7 @@
 """The best designs of a study solved again: as rubber, on finer voxels, with error bars.
 
-A study ranks by what is quick: the paper's spring lattice, few voxels. Whether its best design is
-the best is another question, which this answers for the first few of its ranking.
+A study ranks by quick runs: the paper's spring lattice, few voxels. These slower runs check for
+the first few of its ranking if the best design stays the best.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from voxsoft.simulation import Result, simulate
 from voxsoft.simulation.touching import refuse_bodies
 from voxsoft.study import StudyResult, Trial
 
-#: How a card of the paper's material ends; without it stands the rubber of the same silicone.
+#: Suffix of a card of the paper's material; the name without it is the rubber of the same silicone.
 _LATTICE: Final = "-lattice"
 
 #: Called before each run with how many are done and how many there are.
@@ -38,9 +38,9 @@ class Confirmed:
         The study's first objective on the study's voxels and on finer ones, and the error of the
         finest; None if a run failed.
     message
-        Why there is no estimate; empty if there is one.
+        Reason why there is no estimate; empty if there is one.
     warnings
-        What is doubtful about the finest result.
+        Warnings about the finest result.
     """
 
     trial: Trial
@@ -63,13 +63,13 @@ class Confirmation:
     objective
         Name of the objective that ranks them.
     materials
-        Which card took the place of which, by name; empty where nothing was exchanged.
+        Replaced cards by name, with their replacements; empty where nothing was exchanged.
     voxel_sizes
-        In m, falling.
+        Sizes in m, falling.
     designs
-        In the order of the study.
+        Designs in the order of the study.
     maximize
-        Whether more is better.
+        True if more is better.
     """
 
     objective: str
@@ -87,7 +87,7 @@ class Confirmation:
 
     @property
     def within_the_error(self) -> bool:
-        """Whether the best cannot be told from the second: their error bars overlap."""
+        """True if the error bars of the best and the second overlap."""
         first = [found.estimate for found in self.ranking[:2] if found.estimate is not None]
         if len(first) < 2:
             return False
@@ -96,7 +96,7 @@ class Confirmation:
 
     @property
     def sentence(self) -> str:
-        """What it says of the study's ranking."""
+        """Sentence on the study's ranking."""
         failed = [found for found in self.designs if found.estimate is None]
         if len(self.designs) == 1 and not failed:
             return "the design was solved again; one alone has no ranking"
@@ -143,7 +143,7 @@ def as_rubber(design: Design) -> tuple[Design, dict[str, str]]:
     Returns
     -------
     design, materials
-        The design, and which card took the place of which.
+        The design, and the replaced cards with their replacements.
 
     Examples
     --------
@@ -179,11 +179,11 @@ def confirm(
     design
         The study's family.
     study
-        What was found.
+        Result of the study.
     count
-        How many of the first designs, at least 1. Trials of the same design count once.
+        Number of designs, from the best on, at least 1. Trials of the same design count once.
     halvings
-        How often the voxels are halved; the error is estimated from all sizes
+        Number of times the voxels are halved; the error is estimated from all sizes
         (:func:`voxsoft.comparison.discretization_error`).
     progress
         Called before each run.

@@ -1,4 +1,4 @@
-"""What a comparison is made of unless it is asked otherwise."""
+"""Default solvers, splits and time limit of a comparison."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A number with its error, and all those of a run."""
+"""Error bar of one number, and the error bars of a run."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ class ErrorBar:
     Attributes
     ----------
     value
-        On the voxels of the design, in SI units.
+        Number on the voxels of the design, in SI units.
     estimate
-        What it comes to on ever smaller voxels.
+        Extrapolation to ever smaller voxels.
     error
-        How far that may be off, to either side.
+        Error of the estimate, to either side.
     kind
         A key of :data:`voxsoft.units.KINDS`.
     unknown
-        Why there is no estimate; estimate and error are NaN then. Empty where there is one.
+        Reason why there is no estimate; estimate and error are NaN then. Empty where there is one.
     """
 
     value: float
@@ -38,9 +38,9 @@ class ErrorBar:
     def within(
         cls, value: float, estimate: float, error: float, kind: str, bounds: tuple[float, float]
     ) -> ErrorBar:
-        """Return a bar, or none where the estimate is what the number cannot be.
+        """Return a bar, or an unknown one where the estimate is outside the bounds of the number.
 
-        A value that is beyond already, as by rounding, says nothing against the estimate.
+        A value that is outside already, as by rounding, is no reason to reject the estimate.
 
         Examples
         --------
@@ -58,7 +58,7 @@ class ErrorBar:
         return cls(value, math.nan, math.nan, kind, why)
 
     def __str__(self) -> str:
-        """The estimate with its error, in a unit that suits both.
+        """Write the estimate with its error, in a unit that suits both.
 
         Examples
         --------
@@ -73,7 +73,7 @@ class ErrorBar:
         return f"{self.in_unit(factor)} {unit}".rstrip()
 
     def in_unit(self, factor: float) -> str:
-        """Both numbers in a unit: two digits of the error, and five of the estimate at most."""
+        """Write both numbers in a unit: two digits of the error, at most five of the estimate."""
         if self.estimate == self.error == 0.0:
             return "0"
         largest = max(abs(self.estimate), self.error) / factor
@@ -85,7 +85,7 @@ class ErrorBar:
         return f"{shown[0]:.{digits}f} ± {shown[1]:.{digits}f}"
 
     def summary(self) -> dict[str, Any]:
-        """Plain data in SI units; estimate and error are None, with the reason, if not known."""
+        """Return plain data in SI units; estimate and error are None, with a reason, if unknown."""
         if self.unknown:
             return {"value": self.value, "estimate": None, "error": None, "reason": self.unknown}
         return {"value": self.value, "estimate": self.estimate, "error": self.error}
@@ -113,8 +113,8 @@ def share_of(components: Sequence[ErrorBar], beside: float = 0.0) -> float | Non
     components
         One number, or the components of a vector.
     beside
-        What of a single number is there without load, such as the volume of a chamber at rest: the
-        size is how far it is from that.
+        Part of a single number that is there without load, such as the volume of a chamber at rest:
+        the size is the distance from it.
 
     Examples
     --------
@@ -131,7 +131,7 @@ def share_of(components: Sequence[ErrorBar], beside: float = 0.0) -> float | Non
 
 
 def _unit_of(bars: Sequence[ErrorBar]) -> tuple[str, float]:
-    """A unit that suits the largest of some numbers, and its factor."""
+    """Return a unit that suits the largest of some numbers, and its factor."""
     kind = bars[0].kind
     largest = max(max(abs(bar.estimate), bar.error) for bar in bars)
     units = KINDS[kind].units
@@ -146,29 +146,29 @@ def _unit_of(bars: Sequence[ErrorBar]) -> tuple[str, float]:
 
 @dataclass(frozen=True)
 class ErrorBars:
-    """The discretization errors of a run.
+    """Discretization errors of a run.
 
     Attributes
     ----------
     probes
-        Of the components of each probe's displacement.
+        Error bars of the components of each probe's displacement.
     metrics
-        Of each metric; without those that grow without a limit at sharp corners.
+        Error bar of each metric; without those that grow without a limit at sharp corners.
     volumes
-        Of the volume of each cavity, in the order of the mesh's cavities.
+        Error bar of the volume of each cavity, in the order of the mesh's cavities.
     voxel_sizes
-        In m, falling; empty if there are no error bars.
+        Sizes in m, falling; empty if there are no error bars.
     voxels
-        How many there are of each size.
+        Number of voxels at each size.
     regular
-        Whether all sizes hold the same body with two voxels or more through each wall; if not,
+        True if all sizes hold the same body with two voxels or more through each wall; if not,
         the bars are wide, and may be too small where walls are single voxels.
     missing
-        Why there are no error bars, or why an accuracy was not reached; empty otherwise.
+        Reason why there are no error bars, or why an accuracy was not reached; empty otherwise.
     hint
-        What to do about that.
+        Hint to the user for that reason.
     seconds
-        That the further runs took.
+        Time of the further runs in s.
     """
 
     probes: Mapping[str, tuple[ErrorBar, ErrorBar, ErrorBar]]
@@ -183,12 +183,12 @@ class ErrorBars:
 
     @classmethod
     def none(cls, missing: str, hint: str) -> ErrorBars:
-        """No error bars, and why."""
+        """Make empty error bars with a reason and a hint."""
         return cls({}, {}, (), missing=missing, hint=hint)
 
     @property
     def sentence(self) -> str:
-        """Where the error bars come from, or why there are none."""
+        """Sentence on the runs behind the error bars, or on why there are none."""
         if not self.voxel_sizes:
             return f"no error bars: {self.missing}. Try: {self.hint}"
         lengths = [format_quantity(float(f"{size:.4g}"), "length") for size in self.voxel_sizes]

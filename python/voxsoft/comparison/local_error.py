@@ -1,4 +1,4 @@
-"""Where in a body the voxels are too large: an estimate of the error in each."""
+"""Local error indicator: an estimate of the discretization error in each voxel."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from voxsoft.simulation.places import voxel_size
 
 Floats = NDArray[np.float64]
 
-#: Which end of each axis a corner of a voxel lies at, -1 or 1, in the order of the mesh's corners.
+#: Position of each corner of a voxel along each axis, -1 or 1, in the order of the mesh's corners.
 _ENDS = 2.0 * np.indices((2, 2, 2)).reshape(3, -1).T - 1.0
 
 
@@ -20,19 +20,19 @@ def local_errors(result: Result) -> Floats:
 
     The strain in the middle of a voxel is compared with the strain at its corners, which is the
     mean of all voxels of the same part around each (Zienkiewicz and Zhu 1987,
-    doi 10.1002/nme.1620240206). What bends within a single voxel is no error: a plate of one voxel
+    doi 10.1002/nme.1620240206). Bending within a single voxel is no error: a plate of one voxel
     has no neighbors across.
 
     Parameters
     ----------
     result
-        Of a design of rubber on voxels of one size.
+        Run of a design of rubber on voxels of one size.
 
     Returns
     -------
     numpy.ndarray
-        J, (n,), for the voxels in the order of the mesh; zero in rigid ones. Only their ratios mean
-        something.
+        Error energy in J, (n,), for the voxels in the order of the mesh; zero in rigid ones. Only
+        ratios have a meaning.
 
     Examples
     --------

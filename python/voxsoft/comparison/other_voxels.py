@@ -1,4 +1,4 @@
-"""A design on voxels of another size, and what that costs."""
+"""Design on voxels of another size, and the cost of solving it."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import Final, NamedTuple
 
 from voxsoft.design import Design
 
-#: How the time of a run grows as voxels get half as large (:mod:`voxsoft.simulation.cost`).
+#: Growth of the time of a run when voxels get half as large (:mod:`voxsoft.simulation.cost`).
 TIMES_AS_LONG: Final = 12.0
 
 
 class OtherCost(NamedTuple):
-    """What a run on voxels of another size is likely to take: how many, and seconds."""
+    """Predicted cost of a run on voxels of another size: their number, and seconds."""
 
     voxels: int
     seconds: float
@@ -24,9 +24,9 @@ def cost_on_voxels(voxels: int, seconds: float, factor: float) -> OtherCost:
     Parameters
     ----------
     voxels, seconds
-        Of the run that was made.
+        Number of voxels and seconds of the run that was made.
     factor
-        How many times as large the other voxels are: 0.5 for half as large.
+        Ratio of the voxel sizes: 0.5 for half as large.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def cost_on_voxels(voxels: int, seconds: float, factor: float) -> OtherCost:
 
 
 def on_voxels(design: Design, factor: float) -> Design:
-    """Return the design with the voxels of all its bodies so many times as large.
+    """Scale the voxels of all bodies of a design by a factor.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def on_voxels(design: Design, factor: float) -> Design:
     Raises
     ------
     DesignError
-        A design that is none with such voxels.
+        A design that is invalid with such voxels.
 
     Examples
     --------
@@ -73,7 +73,7 @@ def on_voxels(design: Design, factor: float) -> Design:
     resized = design.with_values(*sizes)
     if all(body.included is None or not body.included.bodies for body in design.bodies):
         return resized
-    # Of a design of several bodies each has a size of its own, within that design.
+    # Each body of a design of several bodies has a size of its own, within that design.
     bodies = [
         body.replace(design=on_voxels(own, factor), set={})
         if (own := body.included) is not None and own.bodies

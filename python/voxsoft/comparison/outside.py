@@ -1,4 +1,4 @@
-"""The answer of an outside code, on the vertices of the voxel mesh."""
+"""Answer of an outside code, on the vertices of the voxel mesh."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ from voxsoft.materials import Hyperelastic, Material
 
 Floats = NDArray[np.float64]
 
-#: How an outside code ended: at the whole load, short of it, or with surfaces in each other.
+#: Final state of an outside code: whole load, a part of it, or surfaces in each other.
 OutsideStatus = Literal["ok", "not-converged", "passed-through"]
 
 
 @dataclass(frozen=True, eq=False)
 class OutsideAnswer:
-    """What an outside code says of a problem on bricks.
+    """Answer of an outside code to a problem on bricks.
 
     Attributes
     ----------
     code, version, element
-        Who answered, and with which element.
+        Name and version of the code, and its element.
     status
         ``ok``, ``not-converged`` where a part of the load was not reached, or ``passed-through``
         where surfaces are in each other that contact should keep apart.
     message
         The status in a sentence.
     load_factor
-        The share of the loads that the answer holds for; 1 if all is well.
+        Share of the loads that the answer holds for; 1 if all is well.
     displacements
-        Of the vertices of the voxel mesh in m, (v, 3).
+        Displacements of the vertices of the voxel mesh in m, (v, 3).
     held, reactions
         Held nodes (k,) and the force of the support on each of them in N, (k, 3).
     unknowns
@@ -45,7 +45,7 @@ class OutsideAnswer:
     contacts
         The force of each object on the body in N, (3,), by its name.
     pressed
-        The sum of the sizes of the forces between walls of the body in N; None where the body does
+        Sum of the magnitudes of the forces between walls of the body in N; None where the body does
         not touch itself.
     """
 
@@ -71,14 +71,14 @@ class OutsideAnswer:
 
 
 def rubber(material: Material, code: str, where: str) -> tuple[str, list[float], float]:
-    """Model, constants and bulk modulus in Pa of a hyperelastic material.
+    """Return model, constants and bulk modulus in Pa of a hyperelastic material.
 
     Parameters
     ----------
     material
         Any material.
     code, where
-        Who asks, and the place in the design, for the message.
+        Name of the code, and the place in the design, for the message.
 
     Raises
     ------
@@ -103,7 +103,7 @@ compare a hyperelastic material, such as the neo-Hookean one of the same Young's
 
 
 def no_such_material(code: str, model: str, where: str) -> SimulationError:
-    """The error for a material that an outside code does not have."""
+    """Make the error for a material that an outside code does not have."""
     return SimulationError(
         where,
         f'{code} has no "{model}" material',
@@ -114,7 +114,7 @@ def no_such_material(code: str, model: str, where: str) -> SimulationError:
 def support_forces(
     model: BrickModel, held: NDArray[np.int64], inner: Floats, load_factor: float
 ) -> Floats:
-    """Forces of the supports, from the inner forces at held nodes.
+    """Compute the forces of the supports from the inner forces at held nodes.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def support_forces(
     held
         The nodes, (k,).
     inner
-        What the elements pull back with at those nodes in N, (k, 3).
+        Inner forces of the elements at those nodes in N, (k, 3).
     load_factor
         The share of the loads that acts.
 

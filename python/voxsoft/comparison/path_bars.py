@@ -21,14 +21,14 @@ def path_error_bars(
     Parameters
     ----------
     path
-        The path. Its design's ``solver.error`` and ``solver.accuracy`` say which voxels are tried.
+        The path. Its design's ``solver.error`` and ``solver.accuracy`` select the voxels.
     progress, announce
-        As for :func:`voxsoft.error_bars`.
+        See :func:`voxsoft.error_bars`.
 
     Returns
     -------
     tuple of ErrorBars
-        One for each equilibrium, as :func:`voxsoft.error_bars` gives it.
+        One for each equilibrium, see :func:`voxsoft.error_bars`.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def path_error_bars(
         def solve(design: Design, _: Result | None) -> Result:
             size = design.voxel_size
             if size not in paths:
-                # That of one value has its histories at their end; the path's own has all of them.
+                # The design of one value has only the end of its histories; the path's has all.
                 other = path.design.with_values(f"voxel_size={size * 1e3!r} mm")
                 over = path.over.up_to(len(path.results))
                 paths[size] = follow(other, over, progress=progress)
@@ -65,7 +65,7 @@ def path_error_bars(
 
 
 def bars_of(name: str, bars: Sequence[ErrorBars]) -> Iterator[ErrorBar | None]:
-    """The error bar of one column of a path at each of its values; None where there is none."""
+    """Yield the error bar of one column of a path at each of its values, or None."""
     probe, _, axis = name.rpartition(".")
     for each in bars:
         if name in each.metrics:

@@ -1,4 +1,4 @@
-"""The numbers that a comparison puts side by side."""
+"""Numbers that a comparison puts side by side."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class Quantity(NamedTuple):
     kind
         A key of :data:`voxsoft.units.KINDS`.
     scale
-        What a difference is measured against: the length of the vector that the number is a
-        component of, or the size of the number.
+        Reference of a difference: the length of the vector that the number is a component of, or
+        the size of the number.
     floor
-        Below this the number is what remains of things that cancel, and says nothing.
+        Size below which the number is only the rest of terms that cancel.
     """
 
     value: float
@@ -41,7 +41,7 @@ class Quantity(NamedTuple):
     floor: float = 0.0
 
 
-# Radians; and the share of the forces of a clamp, one by one.
+# Least rotation in radians; and least share of the forces of a clamp, one by one.
 _LEAST_TURN, _LEAST_SHARE = 1e-4, 1e-3
 
 Quantities = Mapping[str, Quantity]
@@ -61,7 +61,7 @@ def in_words(value: float, kind: str) -> str:
 
 
 def of_result(setup: Setup, result: Result) -> Quantities:
-    """Displacements, reactions, volumes of cavities and forces of contact of a run of our own."""
+    """Collect displacements, reactions, cavity volumes and contact forces of a run of our own."""
     held = [result.reactions[vertices] for vertices in setup.clamped]
     found = {contact.of[1]: contact for contact in result.contacts}
     own = found.pop(BODY, None)
@@ -74,7 +74,7 @@ def of_result(setup: Setup, result: Result) -> Quantities:
 
 
 def of_answer(setup: Setup, model: BrickModel, answer: OutsideAnswer) -> Quantities:
-    """The same of an answer of an outside code."""
+    """Collect the quantities of :func:`of_result` from an answer of an outside code."""
     forces = np.zeros_like(model.nodes)
     forces[answer.held] = answer.reactions
     held = [forces[nodes] for nodes in model.clamp_nodes]
@@ -87,7 +87,7 @@ def _touching(setup: Setup) -> list[str]:
 
 
 def _contacts(forces: Mapping[str, Floats], pressed: float) -> dict[str, Quantity]:
-    """Forces of objects on the body, and of the body with itself, where there are any."""
+    """Collect forces of objects on the body, and of the body with itself, where there are any."""
     found: dict[str, Quantity] = {}
     for name, force in forces.items():
         found |= _components(f"contact with {name}", force, "force")

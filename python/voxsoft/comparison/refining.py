@@ -1,4 +1,4 @@
-"""Designs whose voxels are small where their error is."""
+"""Local refinement: designs whose voxels are small where their error is."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from voxsoft.simulation.places import voxel_size
 
 Ints = NDArray[np.int64]
 
-#: Of the whole error; nine tenths lie in a tenth of the voxels of a block with a chamber, and in
-#: half of those of a finger (`docs/method/refinement.md`).
+#: Share of the whole error in small voxels; nine tenths lie in a tenth of the voxels of a block
+#: with a chamber, and in half of those of a finger (`docs/method/refinement.md`).
 SHARE: Final = 0.9
-#: Boxes that a design is given: more are hard to read, and a text has room for 250.
+#: Most boxes of a design: more are hard to read, and a text has room for 250.
 _MOST_BOXES: Final = 120
-#: Errors that differ by less than this part are the same.
+#: Relative difference below which errors are the same.
 _ALIKE: Final = 1e-6
 
 
@@ -38,18 +38,18 @@ def refined(result: Result, share: float = SHARE) -> Design:
     result
         An equilibrium of a design of rubber without ``refine``.
     share
-        Of the estimated error that small voxels are to hold, between 0 and 1. Default: 0.9.
+        Share of the estimated error that small voxels are to hold, between 0 and 1. Default: 0.9.
 
     Returns
     -------
     Design
-        The same design with ``refine``.
+        Design with ``refine``.
 
     Raises
     ------
     DesignError
         The run is no equilibrium, its voxels have two sizes already, the share is not between 0
-        and 1, or the design has what local refinement is not known with, such as contact.
+        and 1, or the design has a feature without local refinement, such as contact.
 
     Examples
     --------
@@ -79,12 +79,12 @@ def refined(result: Result, share: float = SHARE) -> Design:
 
 
 def check_refinable(design: Design, share: float) -> None:
-    """Raise where :func:`refined` would, as far as that is known before there is a run.
+    """Raise the errors of :func:`refined` that are known before there is a run.
 
     Raises
     ------
     DesignError
-        Naming each reason.
+        Lists each reason.
     """
     if not 0.0 < share < 1.0:
         what = f"is {share:g}, and stands for a part of the error"
@@ -97,7 +97,7 @@ def check_refinable(design: Design, share: float) -> None:
 
 
 def _boxes(result: Result, voxels: Ints) -> Iterator[Region]:
-    """Regions that catch some voxels, and few others."""
+    """Yield regions that catch some voxels, and few others."""
     mesh = result.mesh
     size, low = voxel_size(mesh), mesh.vertices.min(axis=0)
     first = mesh.vertices[mesh.voxel_corners(voxels)[:, 0]]
@@ -115,7 +115,7 @@ def _boxes(result: Result, voxels: Ints) -> Iterator[Region]:
 
 
 def _merged(cells: Ints) -> list[tuple[Ints, Ints]]:
-    """Boxes of cells that fill the same room, as the first and the last cell of each."""
+    """Merge cells to boxes that fill the same room, as the first and the last cell of each."""
     boxes = [(cell, cell) for cell in cells]
     for axis in (2, 1, 0):
         others = [other for other in range(3) if other != axis]

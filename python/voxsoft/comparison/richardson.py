@@ -1,6 +1,6 @@
 r"""Discretization error from a few sizes of voxels (Richardson 1911; Roache 1994).
 
-Where a number converges as ``v(h) = v₀ + c h^p``, two sizes ``h₁ > h₂`` with a known order ``p``
+If a number converges as ``v(h) = v₀ + c h^p``, two sizes ``h₁ > h₂`` with a known order ``p``
 give its limit and the error of the finer one, with ``r = h₁/h₂``::
 
     v(h₂) - v₀ = c h₂^p = (v₁ - v₂)/(r^p - 1)
@@ -11,25 +11,25 @@ right side rises with ``p`` from ``ln(h₁/h₂)/ln(h₂/h₃)``.
 The elements are of second order where the field is smooth. Edges of clamps and re-entrant edges,
 of which voxels have many, lower the order to about 1: on ten varied bodies 0.9 to 1.6 was measured
 (`tests/crosscheck/test_discretization_estimates.py`). So two sizes assume the order 1, and three
-keep what they see between 0.5 and 2.
+keep the observed order between 0.5 and 2.
 
 Above 2 the elements cannot converge: where three sizes show more than 2.2, the change from the
 coarsest was no part of a convergence yet, and the other two assume the order 1 as if alone.
 
 An estimate is not a bound. It is multiplied by a safety factor, as in Roache's grid convergence
-index (doi 10.1115/1.2910291). Two sizes say nothing of their order, and Roache takes 3 for them;
+index (doi 10.1115/1.2910291). Two sizes do not show their order, and Roache takes 3 for them;
 halved sizes then hold the error of any order from 0.42 on. A smaller factor of 1.25, which holds
 orders from 0.85 on, was tried first and failed where the coarser size has one element through a
 wall. Where three sizes show the order it is 2. Roache takes 1.25 there; where a second term of the
 error is as large as the first at the coarsest, that holds three cases of four, and 2 holds 96 of
 100 (the unit test of this module draws a thousand).
 
-Where both sizes hold the same body, and at least two voxels through each wall, two sizes are
+If both sizes hold the same body, and at least two voxels through each wall, two sizes are
 *regular*: their error falls with an order of 0.5 or more, known or not. With the change
 ``d = v₂ - v₁`` the limit then is between ``v₂``, for a very high order, and ``v₂ + d/(r^0.5 - 1)``.
-Two sizes cannot tell a value that nears its limit from one that has passed it, as terms of the
-error cancel: the change itself is added on the near side. The middle of that range is the limit,
-half its width the error.
+Two sizes cannot distinguish a value that nears its limit from one that has passed it, as terms of
+the error cancel: the change itself is added on the near side. The middle of that range is the
+limit, half its width the error.
 """
 
 from __future__ import annotations
@@ -43,28 +43,28 @@ import numpy as np
 
 from voxsoft.errors import SimulationError
 
-#: Orders of convergence that are believed.
+#: Accepted range of the order of convergence.
 LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.0
-#: Order where two sizes cannot show it.
+#: Assumed order where two sizes cannot show it.
 USUAL_ORDER: Final = 1.0
 #: An observed order is still that of the elements up to a tenth above theirs (Oberkampf and Roy,
 #: Verification and Validation in Scientific Computing, 2010, section 8.6.3, give it that tenth).
 NO_ORDER: Final = 1.1 * HIGHEST_ORDER
-#: Safety factors where the order was seen, where it was assumed, and on the larger change where
+#: Safety factors for an observed order, for an assumed one, and on the larger change where
 #: values go up and down, which they do about their limit.
 SEEN: Final = 2.0
 ASSUMED: Final = 3.0
 SWINGING: Final = 1.25
-#: How far a regular value may have passed its limit, in changes.
+#: Distance, in changes, by which a regular value may have passed its limit.
 PASSED: Final = 1.0
 
-#: How an estimate came about.
+#: Basis of an estimate.
 Basis = Literal["three sizes", "two sizes", "regular sizes", "oscillating"]
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """What a few sizes say about the error of a number.
+    """Error estimate of a number from a few sizes.
 
     Attributes
     ----------
@@ -77,8 +77,8 @@ class Estimate:
     error
         Estimated error of the value at the finest size, safety included.
     basis
-        How the estimate came about; ``two sizes`` also where a third shows no order, and
-        ``regular sizes`` two that were said to be regular.
+        Basis of the estimate; ``two sizes`` also where a third shows no order, and ``regular
+        sizes`` for two that were given as regular.
     """
 
     sizes: tuple[float, ...]
@@ -89,10 +89,10 @@ class Estimate:
     basis: Basis
 
     def error_at(self, index: int) -> float:
-        """Estimated error of the value at one of the sizes.
+        """Estimate the error of the value at one of the sizes.
 
-        By the triangle inequality it is at most the distance to the finest value and that
-        value's own error.
+        Bounded, by the triangle inequality, by the distance to the finest value and that value's
+        own error.
         """
         return abs(self.values[index] - self.values[-1]) + self.error
 
@@ -109,7 +109,7 @@ def discretization_error(
     values
         The number at each of them.
     regular
-        Whether the two finest hold the same body with two voxels or more through each wall.
+        True if the two finest hold the same body with two voxels or more through each wall.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def _oscillating(sizes: tuple[float, ...], values: tuple[float, ...], largest: f
 
 
 def _order(sizes: tuple[float, ...], before: float, after: float) -> float:
-    """The observed order, at least the lowest that is believed and at most `NO_ORDER`."""
+    """Find the observed order, at least the lowest that is accepted and at most `NO_ORDER`."""
     from scipy.optimize import brentq
 
     first, second, third = sizes

@@ -1,4 +1,4 @@
-"""One call from a design to its comparison."""
+"""Comparison of a design by several solvers and codes."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from voxsoft.units import format_quantity, si_value
 
 OUTSIDE: Final[tuple[Outside, ...]] = get_args(Outside)
 
-#: Of a design's solver; a comparison names its methods itself.
+#: Solver settings of a design that count; a comparison names its methods itself.
 _USED: Final = frozenset({"method", "refine"})
 
 #: Called before each run with its label, how many runs are done, and how many there are.
@@ -52,26 +52,26 @@ def compare(
     time_limit: float | str = DEFAULT_TIME_LIMIT,
     progress: ProgressCallback | None = None,
 ) -> Comparison:
-    """Solve a design in several ways, and estimate how far each is from the truth.
+    """Solve a design in several ways, and estimate the error of each.
 
     All solvers and the outside code answer on the voxels of the design. The last of the solvers
     also answers on the same voxels split finer, and on other sizes of voxels, which may change the
     shape; so does the outside code on split voxels. From each of these series the discretization
     error is estimated (:func:`voxsoft.comparison.discretization_error`). A run that fails, takes
-    too long or does not come to rest is listed with what it said, and the others go on.
+    too long or does not come to rest is listed with its message, and the others go on.
 
     Parameters
     ----------
     design
-        What to compare, as it comes to rest: of its own choices about the solver, `refine` counts;
-        others are named in :attr:`Comparison.warnings`.
+        The design, solved at rest: of its own solver settings only `refine` counts; others are
+        named in :attr:`Comparison.warnings`.
     solvers
-        Of our own, ``"xpbd"`` and ``"statics"``; the estimates are for the last.
+        Own solvers, ``"xpbd"`` and ``"statics"``; the estimates are for the last.
     outside
         ``"calculix"``, ``"scikit-fem"``, ``"auto"`` (the first of the two that is installed;
         default), or ``"none"``.
     voxel_sizes
-        Sizes of voxels, in m or with their unit, that the last solver answers on besides the
+        Sizes of voxels, in m or with their unit, that the last solver uses in addition to the
         design's own; default: one half as large. An empty list for none.
     splits
         Bricks along the edge of a voxel, rising; default 1 and 2.
@@ -90,7 +90,7 @@ def compare(
     MeasurementError
         A measurement that does not fit the design.
     MissingPackageError
-        The outside code that is asked for is not installed.
+        The requested outside code is not installed.
     SimulationError
         No solver at all, or splits that do not rise from 1.
 
@@ -112,7 +112,7 @@ def compare(
     if not solvers:
         raise SimulationError("solvers", "names none", 'name "xpbd", "statics" or both')
     for method in solvers:
-        Solver(method=method)  # Refuses a name that is no solver before anything runs.
+        Solver(method=method)  # Refuses an unknown solver before anything runs.
     if list(splits) != sorted(set(splits)) or not splits or splits[0] < 1:
         raise SimulationError("splits", "do not rise from 1", "write 1,2 or 1,2,3")
     code = _outside(outside)
@@ -156,7 +156,7 @@ _Solved = tuple[tuple[str, Mesh], Result]
 
 @dataclass(frozen=True)
 class _Task:
-    """A run that is still to be made."""
+    """Run that is still to be made."""
 
     label: str
     code: str
@@ -166,7 +166,7 @@ class _Task:
 
 
 def _outside(asked: Outside) -> str | None:
-    """Name of the outside code to use."""
+    """Return the name of the outside code to use."""
     # `files` lies above `comparison` in the layers, and only `files` may touch the disk; this
     # reaches up when called, so that no import runs in a circle.
     from voxsoft.files.calculix import calculix_path
@@ -265,7 +265,7 @@ def _solve_outside(setup: Setup, code: str, split: int, time_limit: float) -> An
 
 
 def _apart(setup: Setup, answer: OutsideAnswer) -> OutsideAnswer:
-    """The answer, with another status where what touches passed through each other."""
+    """Set the status of an answer to passed-through if surfaces passed through each other."""
     found = passed_through(setup, setup.mesh.vertices + answer.displacements)
     if not found:
         return answer

@@ -1,4 +1,4 @@
-"""The pip-only outside code: mixed bricks with shape functions and numbering of scikit-fem.
+"""Outside code from pip alone: mixed bricks with shape functions and numbering of scikit-fem.
 
 Displacements are triquadratic (27 nodes), the pressure is linear and discontinuous, a pair that
 neither locks in volume nor checkers (Boffi, Brezzi and Fortin 2013, doi
@@ -29,7 +29,7 @@ from voxsoft.errors import MissingPackageError, OutsideCodeError, SimulationErro
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: Largest force left over, relative to the forces that act.
+#: Largest residual force, relative to the forces that act.
 TOLERANCE: Final = 1e-8
 _ITERATIONS = 15
 _FIRST_STEP, _SMALLEST_STEP = 0.5, 1e-3
@@ -53,7 +53,7 @@ def run_scikit_fem(model: BrickModel, *, time_limit: float = 600.0) -> OutsideAn
     Returns
     -------
     OutsideAnswer
-        With the last equilibrium where the whole load was not reached.
+        The answer, at the last equilibrium where the whole load was not reached.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def run_scikit_fem(model: BrickModel, *, time_limit: float = 600.0) -> OutsideAn
 
 
 def scikit_fem_version() -> str:
-    """Version of scikit-fem.
+    """Return the version of scikit-fem.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def scikit_fem_version() -> str:
 
 
 def _follow(bricks: _Bricks, deadline: float, time_limit: float) -> tuple[float, Floats]:
-    """Raise the load to the whole in steps; return how far it got, and the displacements."""
+    """Raise the load to the whole in steps; return the share reached, and the displacements."""
     reached, step = 0.0, _FIRST_STEP
     moved = np.zeros_like(bricks.model.nodes)
     before: tuple[float, Floats] | None = None
@@ -128,7 +128,7 @@ def _follow(bricks: _Bricks, deadline: float, time_limit: float) -> tuple[float,
             )
         if found is None:
             step /= 4.0
-            # The extrapolation may be what failed.
+            # The extrapolation may have failed.
             before = None
             if step < _SMALLEST_STEP:
                 return reached, moved
@@ -142,7 +142,7 @@ def _follow(bricks: _Bricks, deadline: float, time_limit: float) -> tuple[float,
 def _equilibrium(
     bricks: _Bricks, guess: Floats, factor: float, deadline: float
 ) -> tuple[Floats, int] | None:
-    """Newton's method at one load, or None."""
+    """Find the equilibrium at one load by Newton's method, or None."""
     from scipy.sparse.linalg import splu
 
     model = bricks.model
@@ -167,7 +167,7 @@ def _equilibrium(
             diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
         )
-        # What is prescribed moves with the first correction, and the free nodes along with it.
+        # Prescribed nodes move with the first correction, and the free nodes along with them.
         correction = np.zeros(moved.size)
         correction[bound] = gap
         correction[free] = factors.solve(rest - matrix[:, bound] @ gap)
@@ -309,7 +309,7 @@ class _Bricks:
         return forces, stiffness + bulk * np.einsum("ekc,ekd->ecd", swell, swell)
 
     def loads(self, moved: Floats, factor: float) -> tuple[Floats, Any]:
-        """Outer forces in N (n, 3), and how they change with the displacements."""
+        """Return outer forces in N (n, 3), and their derivative by the displacements."""
         from scipy.sparse import coo_array, csr_array
 
         size = moved.size
@@ -367,10 +367,10 @@ class _Bricks:
 
 
 def _modulus(left: Floats, right: Floats, sizes: Floats, slope: Floats, bend: Floats) -> Floats:
-    """Derivative of the first Piola stress by the deformation gradient, (e, q, 9, 9).
+    """Differentiate the first Piola stress by the deformation gradient, (e, q, 9, 9).
 
-    In the frames of the singular value decomposition: stretches see the Hessian, and a pair of
-    directions i, j turns and shears with ``(P_i ± P_j)/(λ_i ± λ_j)``.
+    Computed in the frames of the singular value decomposition: stretches see the Hessian, and a
+    pair of directions i, j turns and shears with ``(P_i ± P_j)/(λ_i ± λ_j)``.
     """
     shape = sizes.shape[:-1]
     inner = np.zeros((*shape, 3, 3, 3, 3))
@@ -396,7 +396,7 @@ def _by_face(faces: Ints) -> Iterator[tuple[int, Ints]]:
 
 
 def _cross(vectors: Floats) -> Floats:
-    """The matrix [v]× of each vector."""
+    """Make the matrix [v]× of each vector."""
     matrix = np.zeros((*vectors.shape, 3))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         matrix[..., i, j], matrix[..., j, i] = -vectors[..., k], vectors[..., k]
@@ -404,7 +404,7 @@ def _cross(vectors: Floats) -> Floats:
 
 
 def _gauss(count: int, dimension: int) -> tuple[Floats, Floats]:
-    """Gauss points (q, d) and weights (q,) on the unit cube."""
+    """Return Gauss points (q, d) and weights (q,) on the unit cube."""
     places, weights = np.polynomial.legendre.leggauss(count)
     grid = np.meshgrid(*[places / 2 + 0.5] * dimension, indexing="ij")
     shares = np.meshgrid(*[weights / 2] * dimension, indexing="ij")

@@ -1,6 +1,6 @@
 """Isochoric energies of rubber as functions of principal stretches, for outside checks.
 
-Written once more, and in another way than in the core, so that a mistake in one of the two shows.
+Independent of the core and written in another way, so that a mistake in one of the two shows.
 Every model is a sum of functions ``f(s)`` of power sums ``s(α) = Σ λ̄_i^α`` of the isochoric
 principal stretches ``λ̄_i = λ_i J^(-1/3)``: ``Ī1 = s(2)`` and, as ``λ̄1 λ̄2 λ̄3 = 1``,
 ``Ī2 = s(-2)``. In logarithmic stretches ``e_i = ln λ_i`` the derivatives of a power sum are plain::
@@ -19,7 +19,7 @@ from voxsoft.errors import SimulationError
 
 Floats = NDArray[np.float64]
 
-#: A term: the exponent α, and value, first and second derivative of f at s.
+#: Term of the energy: the exponent α, and value, first and second derivative of f at s.
 Term = tuple[float, Callable[[Floats], tuple[Floats, Floats, Floats]]]
 
 
@@ -95,14 +95,14 @@ def stretch_derivatives(terms: Sequence[Term], stretches: Floats) -> tuple[Float
     Parameters
     ----------
     terms
-        From :func:`terms_of`.
+        Terms from :func:`terms_of`.
     stretches
         Positive, (..., 3).
 
     Returns
     -------
     energy, gradient, hessian
-        In J/m³ (Pa): (...), (..., 3), (..., 3, 3).
+        Energy density and derivatives in J/m³ (Pa): (...), (..., 3), (..., 3, 3).
 
     Examples
     --------

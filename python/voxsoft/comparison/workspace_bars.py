@@ -1,4 +1,4 @@
-"""How far off the places of a workspace may be: the same lines on voxels of another size."""
+"""Discretization error of the places of a workspace: the same lines on voxels of another size."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ def line_error(
     progress: Callable[[int, float, float], None] | None = None,
     announce: Announce | None = None,
 ) -> tuple[float, ErrorBars]:
-    """Estimate how far off the places of one line of a workspace are.
+    """Estimate the discretization error of the places of one line of a workspace.
 
     Parameters
     ----------
     path
         The line.
     probe
-        The place.
+        Name of the probe.
     progress, announce
-        As for :func:`voxsoft.error_bars`.
+        See :func:`voxsoft.error_bars`.
 
     Returns
     -------
     float
         The largest error of a place, m; NaN where it is not known.
     ErrorBars
-        Those of the line's last equilibrium, which say where they come from.
+        Error bars of the line's last equilibrium, with their source.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What VoxSoft reads from and writes to the disk."""
+"""Files that VoxSoft reads and writes."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ __all__ = [
     "write_workspace",
 ]
 
-# Loaded when first used: a study folder needs matplotlib and pandas, a design file does not.
+# Imported when first used: a study folder needs matplotlib and pandas, a design file does not.
 _HOMES = {
     "check_design": "voxsoft.files.checks",
     "check_mesh": "voxsoft.files.checks",

@@ -2,7 +2,7 @@
 
 Element sets ``PART-N``, a node set for each region, and for each cavity an element-based surface
 ``CAVITY-N`` made of the element sets ``CAVITY-N-S1`` to ``-S4``, one per face of the element, as
-``*DLOAD`` or ``*DSLOAD`` wants it. The file holds the mesh only: add materials and steps, or
+``*DLOAD`` or ``*DSLOAD`` requires. The file holds the mesh only: add materials and steps, or
 include it by ``*INCLUDE``. It is written here, because meshio knows no surfaces.
 """
 

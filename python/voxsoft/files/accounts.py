@@ -1,4 +1,4 @@
-"""The account of a file that is read as a surface, to be filled with voxels."""
+"""Read report of a file that is read as a surface, to be filled with voxels."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from voxsoft.shapes.surface_files import Surface
 
 
 def account_of_surface(path: Path, surface: Surface, unit: str | None, ask: str) -> ReadReport:
-    """Return all that a file holds beside the surface that was taken of it.
+    """Report all contents of a file beside the surface that was taken of it.
 
     Parameters
     ----------
     path, surface
-        The file, and its triangles.
+        Path of the file, and its triangles.
     unit
-        Of the numbers, None where the file should say it.
+        Unit of the numbers, None where the file should give it.
     ask
-        How a caller gives the unit: ``--unit`` or ``unit=``.
+        Option by which a caller gives the unit: ``--unit`` or ``unit=``.
 
     Raises
     ------
     UnitError
-        If neither the file nor the caller says the unit.
+        If neither the file nor the caller gives the unit.
     """
     points = surface.points[np.unique(surface.triangles)]
     contents = read_contents(path)
@@ -48,7 +48,7 @@ def account_of_surface(path: Path, surface: Surface, unit: str | None, ask: str)
 
 
 def _differences(contents: Contents) -> list[str]:
-    """Sentences on cells, sets and arrays that a surface does not have."""
+    """Write sentences on cells, sets and arrays that a surface does not have."""
     held = held_by(contents)
     solids = {kind: n for kind, n in held["cells"].items() if _base(kind) in FACES}
     sentences = []

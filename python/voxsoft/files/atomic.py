@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all."""
+"""Atomic writing of files."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from voxsoft.errors import OutputError
 
 
 def replace_whole(target: Path, write: Callable[[Path], object]) -> None:
-    """Write beside the target and then take its place, so that no reader sees half a file.
+    """Write a temporary file beside the target and rename it, so that no reader sees half a file.
 
     Parameters
     ----------
     target
-        The file to make or replace.
+        Path of the file to make or replace.
     write
-        Writes a file at the path that it is given, which has the target's suffix.
+        Function that writes a file at the path that it is given, which has the target's suffix.
 
     Raises
     ------
     OutputError
-        The file cannot be written; the target is as it was.
+        The file cannot be written; the target is unchanged.
     """
     beside = target.with_name(f".{target.stem}-{uuid.uuid4().hex[:8]}{target.suffix}")
     try:
@@ -40,7 +40,7 @@ def replace_whole(target: Path, write: Callable[[Path], object]) -> None:
 
 
 def write_atomically(path: str | os.PathLike[str], content: str | bytes) -> None:
-    """Write a file whole; text as UTF-8 with plain line ends.
+    """Write a file atomically; text as UTF-8 with plain line ends.
 
     Raises
     ------

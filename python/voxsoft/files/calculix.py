@@ -1,4 +1,4 @@
-"""CalculiX as a process: a temporary folder, a time limit, and its answer read back."""
+"""CalculiX as a subprocess: a temporary folder, a time limit, and its answer read back."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def calculix_path() -> Path:
     Raises
     ------
     MissingPackageError
-        It is not there.
+        The program was not found.
     """
     found = shutil.which(PROGRAM)
     if found is None:
@@ -67,23 +67,23 @@ def run_calculix(
     model
         The problem, on bricks with as many nodes as the element has.
     element
-        Default C3D20R: 20 nodes, reduced integration.
+        Name of the element; default C3D20R: 20 nodes, reduced integration.
     time_limit
         Seconds after which the program is stopped.
     threads
-        How many cores it may use.
+        Number of cores it may use.
 
     Returns
     -------
     OutsideAnswer
-        With the last converged increment where the whole load was not reached.
+        The answer, at the last converged increment where the whole load was not reached.
 
     Raises
     ------
     MissingPackageError
         CalculiX is not installed.
     OutsideCodeError
-        It crashed, said nothing, or took longer than the limit.
+        It crashed, wrote no output, or took longer than the limit.
     SimulationError
         A material that it does not have.
     """
@@ -156,7 +156,7 @@ def _answer(
 
 
 def _contacts(model: BrickModel, totals: Totals, at: float, units: DeckUnits) -> dict[str, Floats]:
-    """The force of each object on the body in N: what holds the object."""
+    """Return the force of each object on the body in N: the force that holds the object."""
     tools = model.contact.tools if model.contact is not None else ()
     return {
         tool.name: totals[tool_name(index), at] * units.force for index, tool in enumerate(tools)
@@ -164,9 +164,9 @@ def _contacts(model: BrickModel, totals: Totals, at: float, units: DeckUnits) ->
 
 
 def _pressed(model: BrickModel, totals: Totals, at: float, units: DeckUnits) -> float | None:
-    """The sum of the sizes of the forces between walls of the body in N.
+    """Sum the magnitudes of the forces between walls of the body in N.
 
-    A wall that bends far has forces in several directions, of which their sum counts here.
+    A curved wall has forces in several directions; the magnitude of their sum counts here.
     """
     if model.contact is None or not model.contact.walls:
         return None
@@ -178,11 +178,11 @@ def _pressed(model: BrickModel, totals: Totals, at: float, units: DeckUnits) -> 
 
 
 def _run(program: Path, folder: Path, time_limit: float, threads: int) -> tuple[int | None, str]:
-    """Run the program; return its exit code (None past the limit) and what it said."""
+    """Run the program; return its exit code (None past the limit) and its output."""
     numbers = dict.fromkeys(("OMP_NUM_THREADS", "CCX_NPROC_EQUATION_SOLVER"), str(threads))
     output = folder / "log.txt"
     with output.open("wb") as log:
-        # A session of its own, so that what the program starts is stopped with it.
+        # A session of its own, so that its child processes are stopped with it.
         process = subprocess.Popen(
             [program, "-i", _JOB],
             cwd=folder,

@@ -1,4 +1,4 @@
-"""What a calibration leaves behind: a material card, its record, and tables to plot."""
+"""Output files of a calibration: a material card, its record, and tables to plot."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from voxsoft.files.run_folder import make_folder, provenance, write_json
 from voxsoft.files.specimen import write_specimen
 from voxsoft.plot import plot_fitness, plot_profiles, plot_shape
 
-#: Files of TOML in the folder of a calibration that are no card.
+#: TOML files in the folder of a calibration that are no cards.
 NOT_CARDS: Final = frozenset({"design.toml", "job.toml"})
 
 
@@ -28,22 +28,22 @@ def write_calibration(calibration: Calibration, folder: FilePath, name: str) -> 
     The folder then holds ``NAME.toml``, the material card; ``summary.json``, everything;
     ``history.csv``, fitness and moduli for each generation, with ``fitness.png`` (the paper's
     Fig. 3); ``shapes.csv``, measured and simulated numbers at each station, with ``shape.png``
-    (Fig. 4); ``specimen.npz``, where its best candidate stands; and ``profile.png``, what the data
-    say about each modulus.
+    (Fig. 4); ``specimen.npz``, the vertices of its best candidate; and ``profile.png``, the error
+    along each modulus.
 
     Parameters
     ----------
     calibration
-        What :func:`voxsoft.calibration.calibrate` returned.
+        Result of :func:`voxsoft.calibration.calibrate`.
     folder
-        Where to write.
+        Folder to write.
     name
         Name of the material card.
 
     Returns
     -------
     list of pathlib.Path
-        What was written, the card first.
+        Files that were written, the card first.
 
     Raises
     ------

@@ -26,7 +26,7 @@ def card_text(card: Card) -> str:
 
 
 def card_name(text: str) -> str:
-    """Make a name that a design can write: lower case, letters, digits and hyphens.
+    """Make a name that is valid in a design: lower case, letters, digits and hyphens.
 
     Examples
     --------
@@ -37,14 +37,14 @@ def card_name(text: str) -> str:
 
 
 def save_card(card: Card, path: FilePath) -> None:
-    """Write a material card to a TOML file, whole or not at all.
+    """Write a material card to a TOML file, atomically.
 
     Parameters
     ----------
     card
         The card, such as :meth:`voxsoft.calibration.Calibration.card` makes.
     path
-        The file; it is replaced if it exists.
+        Path of the file; it is replaced if it exists.
 
     Raises
     ------

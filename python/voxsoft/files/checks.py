@@ -1,4 +1,4 @@
-"""The checks of designs and meshes in files."""
+"""Checks of designs and meshes in files."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ DEFAULT_VOXELS: Final = 50
 
 
 def check_design(path: FilePath, assignments: Iterable[str] = ()) -> CheckReport:
-    """Examine a design file; what is wrong with it is in the findings.
+    """Check a design file; its problems are in the findings.
 
     Parameters
     ----------
     path
-        The file.
+        Path of the file.
     assignments
-        Changes ``key=value`` as the command line takes them.
+        Changes ``key=value`` in the form of the command line.
 
     Examples
     --------
@@ -60,30 +60,30 @@ def check_mesh(
     voxel_size: str | float | None = None,
     nested: Nested | None = None,
 ) -> CheckReport:
-    """Examine a triangle or tetrahedral mesh as a body of voxels.
+    """Check a triangle or tetrahedral mesh as a body of voxels.
 
     Parameters
     ----------
     path
         ``.stl``, ``.obj``, ``.glb``, ``.vtu``, ``.inp``, ``.msh`` or another mesh file.
     unit
-        What the numbers in the file are: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``; not needed where
-        the file says it.
+        Unit of the numbers in the file: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``; not needed where
+        the file gives it.
     voxel_size
         Text with a unit, or a number in m; default: a 50th of the longest side.
     nested
-        How closed shells within others are read, as in a design: ``"solid"``, ``"void"``.
+        Meaning of closed shells within others, as in a design: ``"solid"``, ``"void"``.
 
     Returns
     -------
     CheckReport
-        A file that holds no body is a finding. Its `file` has all that the file holds beside the
-        surface that was taken.
+        Report with findings; a file that holds no body is a finding. Its `file` has all contents of
+        the file beside the surface that was taken.
 
     Raises
     ------
     UnitError
-        No unit: the message tells how large the body would be in each. Or a voxel size that is
+        No unit: the message gives the size of the body in each. Or a voxel size that is
         no positive length.
     ShapeError
         The file cannot be read.
@@ -100,7 +100,7 @@ def check_mesh(
         volumes = volumes_in(mesh, voxels.mesh(), file.name)
     except VoxSoftError as error:
         return replace(_report_of(error), file=account)
-    # Warnings follow what the voxels show; an empty grid is an error of its own.
+    # Warnings follow from the voxels; an empty grid is an error of its own.
     findings = [*report.findings, *findings_of_surface(mesh.state(), file.name), *chosen]
     findings += doubts(volumes, "make the voxels smaller, or its sizes multiples of them")
     return replace(report, findings=tuple(findings), volumes=volumes, file=account)
@@ -124,7 +124,7 @@ def _extents(surface: Surface) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
 def _voxel_size(
     given: str | float | None, extents: np.ndarray[tuple[int], np.dtype[np.float64]]
 ) -> tuple[float, list[Diagnostic]]:
-    """The voxel size in m, and a warning where nobody chose it."""
+    """Return the voxel size in m, and a warning where nobody chose it."""
     if isinstance(given, str):
         given = parse(given, "length", where="--voxel-size")
     if given is not None:

@@ -1,4 +1,4 @@
-"""The report of a comparison: one HTML file with everything in it."""
+"""Report of a comparison: one self-contained HTML file."""
 
 from __future__ import annotations
 
@@ -47,9 +47,9 @@ def write_comparison(comparison: Comparison, path: FilePath) -> Path:
     Parameters
     ----------
     comparison
-        What :func:`voxsoft.compare` returned.
+        Result of :func:`voxsoft.compare`.
     path
-        The file; it is replaced if it exists.
+        Path of the file; it is replaced if it exists.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def _picture(figure: Figure | None, words: str) -> Iterator[str]:
 
 
 def _verdict(comparison: Comparison) -> str:
-    """Say in a sentence or two what was found."""
+    """Summarize the result in a sentence or two."""
     base, best = comparison.base, comparison.yardstick
     if not base.ok:
         return f'<span class="bad">{escape(base.label)}: {escape(base.message)}</span>'

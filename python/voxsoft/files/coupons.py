@@ -1,4 +1,4 @@
-"""Coupon tests on the disk: curves and moduli in, a material card and its evidence out."""
+"""Files of coupon tests: curves and moduli in, a material card and its evidence out."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def load_curve(
     Parameters
     ----------
     path
-        The file; :func:`voxsoft.materials.coupon.read_curve` says what it may hold.
+        Path of the file; see :func:`voxsoft.materials.coupon.read_curve` for its format.
     mode
         ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
     area, length
@@ -64,7 +64,7 @@ def load_curve(
 def load_cycles(
     path: FilePath, *, area: float | None = None, length: float | None = None
 ) -> Cycles:
-    """Read a uniaxial test with load and unload from a CSV file, as :func:`load_curve` does.
+    """Read a uniaxial test with load and unload from a CSV file; see :func:`load_curve`.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def load_cycles(
 
 
 def _table(path: FilePath) -> str:
-    """The text of a table."""
+    """Read the text of a table."""
     try:
         return read_text(path)
     except FileError as error:
@@ -117,16 +117,16 @@ def write_coupon_fit(fit: CouponFit, card: Card, folder: FilePath) -> list[Path]
     Parameters
     ----------
     fit
-        What :func:`voxsoft.materials.coupon.fit_coupons` returned.
+        Result of :func:`voxsoft.materials.coupon.fit_coupons`.
     card
-        A card of it, see :meth:`~voxsoft.materials.coupon.CouponFit.card`.
+        Card of the fit, see :meth:`~voxsoft.materials.coupon.CouponFit.card`.
     folder
-        Where to write.
+        Folder to write.
 
     Returns
     -------
     list of pathlib.Path
-        What was written, the card first.
+        Files that were written, the card first.
 
     Raises
     ------

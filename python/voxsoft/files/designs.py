@@ -1,4 +1,4 @@
-"""Design files: read and write designs as TOML."""
+"""Design files: reading and writing of designs as TOML."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ def load(path: FilePath, *, assignments: Iterable[str] = (), **parameters: float
     Parameters
     ----------
     path
-        The file.
+        Path of the file.
     assignments
-        Changes ``key=value`` as the command line takes them (:func:`voxsoft.design.set_values`).
+        Changes ``key=value`` in the form of the command line (:func:`voxsoft.design.set_values`).
     **parameters
         New values of parameters: text with a unit, or numbers in SI units.
 
     Returns
     -------
     Design
-        The design; relative paths inside it are those of the file's folder.
+        The design; relative paths in it start at the file's folder.
 
     Raises
     ------
@@ -80,19 +80,19 @@ def _refuse_card(document: Document, path: FilePath) -> None:
 
 
 def save(design: Design, path: FilePath, *, resolved: bool = False) -> None:
-    """Write a design to a TOML file, whole or not at all.
+    """Write a design to a TOML file, atomically.
 
-    Designs of bodies whose files are not in the folder, from which they could not be read again,
-    are written into it.
+    Designs of bodies whose files are outside the folder, from which they could not be read again,
+    are embedded.
 
     Parameters
     ----------
     design
         The design.
     path
-        The file; it is replaced if it exists.
+        Path of the file; it is replaced if it exists.
     resolved
-        Whether to write values in place of formulas.
+        True to write values in place of formulas.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def save(design: Design, path: FilePath, *, resolved: bool = False) -> None:
 
 
 def _movable(design: Design, folder: Path) -> Document:
-    """The document of a design with those of bodies that are not in a folder as tables."""
+    """Make the document of a design, with designs of bodies from outside a folder as tables."""
     document = design.document
     for table, body in zip(document.get("bodies", ()), design.bodies, strict=True):
         if isinstance(body.design, Design):
@@ -147,7 +147,7 @@ def read_text(path: FilePath) -> str:
 
 
 def read_document(text: str, name: str) -> Document:
-    """Read TOML text; `name` is the file that an error names.
+    """Read TOML text; `name` is the file name for errors.
 
     Raises
     ------
@@ -169,7 +169,7 @@ _AT: Final = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)
 
 
 def _position(message: str, text: str, name: str) -> tuple[str, str]:
-    """Take the position out of the parser's message and put it first."""
+    """Move the position out of the parser's message to its front."""
     match = _AT.search(message)
     what = _AT.sub("", message)
     what = f"is not TOML: {what[:1].lower()}{what[1:]}"
@@ -181,7 +181,7 @@ def _position(message: str, text: str, name: str) -> tuple[str, str]:
 
 
 def _with_lines(problems: Iterable[ErrorDetail], text: str, name: str) -> Iterator[ErrorDetail]:
-    """Say the line of each problem, in the order of the lines."""
+    """Add the line of each problem, in the order of the lines."""
     found = [(line_of(text, steps_of(problem.where)) or 0, problem) for problem in problems]
     for line, problem in sorted(found, key=lambda pair: pair[0]):
         where = f"{name}, line {line}" if line else name

@@ -1,4 +1,4 @@
-"""A design, or what came out of its run, in another program's format."""
+"""Export of a design, or of the result of its run, in another program's format."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from voxsoft.files.run_folder import csv_text
 from voxsoft.simulation import named_regions
 from voxsoft.units import parse
 
-#: What can be written.
+#: Suffixes of the formats that can be written.
 FORMATS: Final = (".vtu", ".msh", ".inp", ".stl", ".obj", ".npy", ".toml", ".csv")
 
 _SURFACES: Final = (".stl", ".obj")
-#: Why some formats take no unit.
+#: Reason why some formats take no unit.
 _OF_NO_UNIT: Final = {
     ".toml": "says the unit of each number",
     ".npy": "holds the parts of voxels, and no lengths",
@@ -49,13 +49,14 @@ def export(
     source
         A design file, or a run folder.
     target
-        The file: a mesh ``.vtu`` ``.msh`` ``.inp``, its surface ``.stl`` ``.obj``, the voxels as
+        Path of the file: a mesh ``.vtu`` ``.msh`` ``.inp``, its surface ``.stl`` ``.obj``, the
+        voxels as
         a NumPy array of part ids ``.npy``, the resolved design ``.toml``, or the displacements
         of the probes ``.csv`` (of a run folder).
     assignments
         Changes ``key=value`` of a design file.
     deformed
-        Whether to write the shape under load; needs a run folder and a mesh or surface format.
+        True to write the shape under load; needs a run folder and a mesh or surface format.
     unit
         Unit of the numbers in ``.stl`` and ``.obj``; default: mm, as most programs read them.
         Every other mesh is in m.
@@ -97,7 +98,7 @@ def export(
 
 
 def unit_of(target: FilePath, unit: str | None = None) -> str:
-    """Return the unit of the numbers that a mesh is written in; parameters as for :func:`export`.
+    """Return the unit of the numbers in a written mesh; see :func:`export` for the parameters.
 
     Examples
     --------
@@ -110,7 +111,7 @@ def unit_of(target: FilePath, unit: str | None = None) -> str:
 def _check(
     origin: Path, goal: Path, assignments: list[str], deformed: bool, unit: str | None
 ) -> None:
-    """Refuse what cannot be, before anything is computed."""
+    """Refuse invalid combinations before anything is computed."""
     suffix, is_run = goal.suffix.lower(), origin.is_dir()
     if suffix not in FORMATS:
         what = f"unknown format {goal.suffix!r}; allowed are {' '.join(FORMATS)}"

@@ -1,4 +1,4 @@
-"""Design files to start from: the commented text of a family under a name of the user's."""
+"""Design files to start from: the commented text of a family under a user's name for it."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ def write_family(family: str, path: FilePath, *, name: str) -> None:
     Parameters
     ----------
     family
-        One of :data:`voxsoft.design.families.FAMILIES`.
+        Name in :data:`voxsoft.design.families.FAMILIES`.
     path
-        The file; its folder is made if it does not exist.
+        Path of the file; its folder is made if it does not exist.
     name
         Name of the new design.
 

@@ -1,4 +1,4 @@
-"""Figures to files."""
+"""Writing of figures to files."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from voxsoft.plot.cutout import Cutout
     from voxsoft.simulation import Result
 
-#: The picture of a folder in a list of folders.
+#: File name of a folder's picture in a list of folders.
 THUMBNAIL: Final = "thumbnail.png"
 
 
 def save_figure(figure: Figure, path: Path) -> Path:
-    """Write a figure as PNG, whole or not at all; return the path.
+    """Write a figure as PNG, atomically; return the path.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def save_figure(figure: Figure, path: Path) -> Path:
 
 
 def save_thumbnail(result: Result, folder: Path) -> Path:
-    """Draw the deformed body, small, for a list of folders; return the path of the picture.
+    """Draw a small picture of the deformed body for a list of folders; return its path.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def save_cutout(picture: Cutout, path: Path) -> Path:
 
 
 def scale_of(png: bytes) -> float | None:
-    """How many pixels a meter is in a picture that :func:`save_cutout` wrote; None if unknown."""
+    """Read the pixels per meter of a picture that :func:`save_cutout` wrote; None if unknown."""
     at = png.find(b"pHYs")
     if at < 0 or len(png) < at + 13 or png[at + 12] != 1:
         return None
@@ -82,7 +82,7 @@ def scale_of(png: bytes) -> float | None:
 def _png(pixels: NDArray[np.uint8], per_meter: float | None = None) -> bytes:
     """Pack pixels, (h, w, 3) or with opacity (h, w, 4), as PNG.
 
-    matplotlib would do it, and is slow to load.
+    Not by matplotlib, which is slow to load.
     """
     height, width, channels = pixels.shape
     # Each row begins with the number of its filter: none.

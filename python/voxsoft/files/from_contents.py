@@ -1,4 +1,4 @@
-"""The mesh of a file's contents, with the account of all that was taken."""
+"""Mesh of a file's contents, with a report on all that was taken."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def mesh_of_contents(path: Path, contents: Contents, unit: str | None) -> MeshFi
     MeshError
         If the tetrahedra are no mesh.
     UnitError
-        If neither the file nor the caller says the unit.
+        If neither the file nor the caller gives the unit.
     """
     where = str(path)
     cut = tets_of(contents, where)
@@ -78,7 +78,7 @@ def _kinds(contents: Contents) -> str:
 
 
 def _cavities(contents: Contents, new: NDArray[np.int64]) -> list[NDArray[np.integer]]:
-    """Triangles of the cavities that our own files name, in their order."""
+    """Return the triangles of the cavities that our own files name, in their order."""
     cells = np.concatenate(
         [np.empty(0, np.int64), *(np.full(len(b.nodes), i) for i, b in enumerate(contents.blocks))]
     )
@@ -136,7 +136,7 @@ def _report(
 
 
 def _point_sets(contents: Contents) -> dict[str, NDArray[np.int64]]:
-    """Points of each region: of sets of points, and of sets of faces and lines."""
+    """Return the points of each region: of sets of points, and of sets of faces and lines."""
     found: dict[str, NDArray[np.int64]] = {}
     for name, cells in contents.cell_sets.items():
         first = 0
@@ -154,7 +154,7 @@ def _point_sets(contents: Contents) -> dict[str, NDArray[np.int64]]:
 
 
 def _middle_nodes(contents: Contents) -> NDArray[np.int64]:
-    """Points that are only nodes of edges and middles of cells."""
+    """Return the points that are only nodes of edges and middles of cells."""
     corners, others = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
     for block in contents.blocks:
         base = block.kind.rstrip("0123456789")

@@ -19,7 +19,7 @@ from voxsoft.mesh import Mesh
 
 _TYPES = {0: 15, 2: 2, 3: 4}
 
-#: Dimension, number, name and rows of vertices of a physical group, which is one entity too.
+#: Physical group, which is one entity too: dimension, number, name and rows of vertices.
 Group = tuple[int, int, str, NDArray[np.integer]]
 
 

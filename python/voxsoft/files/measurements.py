@@ -1,4 +1,4 @@
-"""Measurement files: tables of what was seen on a real body."""
+"""Measurement files: tables of positions or displacements of a real body."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ def load_measurement(path: FilePath, *, select: str | None = None) -> Measuremen
     Parameters
     ----------
     path
-        The file; :func:`voxsoft.calibration.read_measurement` says what it may hold.
+        Path of the file; see :func:`voxsoft.calibration.read_measurement` for its format.
     select
-        The material to take from a table of several.
+        Name of the material to take from a table of several.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a mesh file holds, whatever its format."""
+"""Contents of a mesh file in any format."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ class MeshFile:
 
     @property
     def report(self) -> ReadReport | None:
-        """The account of the read; None for a mesh that was not read from a file."""
+        """Report on the read; None for a mesh that was not read from a file."""
         return self.mesh.report
 
 
 def with_cavities(mesh: Mesh, surfaces: list[NDArray[np.integer]], path: str) -> Mesh:
-    """Return the mesh with the cavities that a file names, in place of the ones that were found.
+    """Return the mesh with the cavities that a file names, in place of the detected ones.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Meshes to and from files, the format chosen by the name's suffix.
+"""Meshes to and from files in the format of the name's suffix.
 
 ======== ============================= ======= ======= ======== =====
 Suffix   Format                        Parts   Regions Cavities Data
@@ -37,7 +37,7 @@ from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 
 
 def _write_stl(path: Path, content: MeshFile) -> None:
-    # Not by meshio: NumPy's `tofile`, which it uses, loses what a full disk refuses without a word.
+    # Not by meshio: NumPy's `tofile`, which it uses, silently loses data on a full disk.
     import trimesh
 
     mesh = content.mesh
@@ -76,17 +76,17 @@ def write_mesh(
     path
         Name of the file; its suffix chooses the format (see the table of the module).
     mesh
-        The mesh.
+        Mesh to write.
     point_data, cell_data : mappings of str to array_like, shape (n, ...) or (m, ...), optional
         Values at vertices and in tets, such as displacements and stretches; ``.vtu`` only.
     regions : mapping of str to array_like of int, optional
         Vertices of each named region. In ``.msh`` and ``.inp`` a name of more than letters, digits,
-        ``_`` and ``-`` becomes a label of these; reading gives the name back.
+        ``_`` and ``-`` becomes a label of these; reading restores the name.
 
     Raises
     ------
     FileError
-        If the format cannot hold what is given, or the file cannot be written.
+        If the format cannot hold the arguments, or the file cannot be written.
 
     Examples
     --------
@@ -122,31 +122,32 @@ def read_mesh(path: str | os.PathLike[str], *, unit: str | None = None) -> Mesh:
 
 
 def read_mesh_file(path: str | os.PathLike[str], *, unit: str | None = None) -> MeshFile:
-    """Return the mesh of a file with its parts, regions, data, and the account of the read.
+    """Return the mesh of a file with its parts, regions, data, and a report on the read.
 
-    Volume cells of all kinds are taken, cut into tetrahedra where they are others; cells of less
+    Volume cells of all kinds are taken, cut into tetrahedra where they are others; cells of lower
     dimension only where they name a region. Sets of cells, physical volumes and arrays such as
     ``material`` are parts. Cavities that the file does not name are found.
 
     Parameters
     ----------
     path
-        The file.
+        Path of the file.
     unit
-        Of its numbers: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``. Files that were written here, and
-        formats that say their unit, need none.
+        Unit of its numbers: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``. Files that were written here,
+        and
+        formats that state their unit, need none.
 
     Returns
     -------
     MeshFile
-        Its `report` tells all that the file holds, and each difference from the mesh.
+        Mesh file; its `report` lists all contents, and each difference from the mesh.
 
     Raises
     ------
     FileError
         If the file is missing, cut short, of another format, or holds no valid volume cells.
     UnitError
-        If neither the file nor `unit` says the unit; the message has the size in each.
+        If neither the file nor `unit` gives the unit; the message has the size in each.
 
     Examples
     --------

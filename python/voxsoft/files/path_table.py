@@ -1,4 +1,4 @@
-"""The table of a path: ``path.csv``."""
+"""Table of a path: ``path.csv``."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ def write_path(path: LoadPath, bars: Sequence[ErrorBars], folder: Path) -> Path:
     Parameters
     ----------
     path
-        The path.
+        Path to write.
     bars
-        Its error bars, or none yet.
+        Error bars of the path, or none yet.
     folder
-        Where ``path.csv`` goes.
+        Folder of ``path.csv``.
     """
     header, columns = [path.over.key], [list(path.values)]
     for name, (_, values) in path.columns.items():

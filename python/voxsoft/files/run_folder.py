@@ -1,4 +1,4 @@
-"""Run folders: what a simulation leaves on disk."""
+"""Run folders: output files of a simulation."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ def write_run(
 ) -> Path:
     """Write a run folder: ``design.toml`` (resolved), ``summary.json`` and ``result.vtu``.
 
-    The numbers come first: what cannot be written after them costs nothing that is on disk.
+    The numbers are written first, so that a later failure does not lose them.
 
     Parameters
     ----------
     result
-        What came out.
+        Result to write.
     folder
-        Where; made if it does not exist, files in it are replaced.
+        Folder to write; made if it does not exist, files in it are replaced.
     more
         Further entries of the summary.
 
     Raises
     ------
     OutputError
-        The folder cannot be written, or files of it; the others are there.
+        The folder or some of its files cannot be written; the others are there.
     """
     folder = write_summary(result, folder, more=more)
     unwritten = Unwritten(folder)
@@ -61,7 +61,7 @@ def write_run(
 def write_summary(
     result: Result, folder: str | os.PathLike[str], *, more: Mapping[str, Any] | None = None
 ) -> Path:
-    """Write the numbers of a run, ``summary.json``; arguments as for :func:`write_run`."""
+    """Write the numbers of a run, ``summary.json``; see :func:`write_run` for the arguments."""
     folder = make_folder(folder)
     summary = result.summary() | {
         "design": result.design.name,
@@ -92,7 +92,7 @@ def _write_fields(result: Result, target: Path) -> None:
 
 
 class Unwritten:
-    """Files of a folder that could not be written, whatever the reason, while others are.
+    """Collector of the errors of single files, so that the others of a folder are still written.
 
     Examples
     --------
@@ -110,12 +110,12 @@ beside it'
 
     @property
     def problems(self) -> tuple[ErrorDetail, ...]:
-        """Where and why, for each file."""
+        """Path and error of each file that was not written."""
         return tuple(self._problems)
 
     @contextmanager
     def attempt(self, name: str) -> Iterator[None]:
-        """Go on after whatever fails while a file is written."""
+        """Catch and collect any error while a file is written."""
         try:
             yield
         except OutputError as error:
@@ -132,7 +132,7 @@ beside it'
 
 
 def provenance() -> dict[str, Any]:
-    """Versions and the time: what every record says of its making."""
+    """Return versions and time of writing, for every record."""
     packages = ("voxsoft", "numpy", "optuna")
     return {
         "versions": {name: version(name) for name in packages},
@@ -141,7 +141,7 @@ def provenance() -> dict[str, Any]:
 
 
 def make_folder(folder: str | os.PathLike[str]) -> Path:
-    """Make a folder and its parents; :class:`OutputError` where that fails."""
+    """Make a folder and its parents; raise :class:`OutputError` if that fails."""
     path = Path(folder)
     try:
         path.mkdir(parents=True, exist_ok=True)

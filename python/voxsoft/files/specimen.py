@@ -1,4 +1,4 @@
-"""The specimen of a calibration: where its best candidate stands beside what was measured."""
+"""Specimen of a calibration: vertices of its best candidate, beside the measured stations."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from voxsoft.calibration.result import Fit
 from voxsoft.errors import FileError
 from voxsoft.files.atomic import write_atomically
 
-#: The file of a calibration that holds the specimen, as NumPy writes arrays.
+#: File name of the specimen in the folder of a calibration, a NumPy archive.
 SPECIMEN: Final = "specimen.npz"
 
 Floats = NDArray[np.float64]
@@ -21,9 +21,10 @@ Triple = tuple[float, float, float]
 
 
 def drawn_positions(fit: Fit) -> Floats:
-    """Where the vertices of a fit stand [m], with the scale of the fit if it has one.
+    """Return the positions of the vertices of a fit [m], with the scale of the fit if it has one.
 
-    A scale counts positions from the clamp face, and displacements from where the vertices were.
+    A scale applies to positions from the clamp face, and to displacements from the initial
+    positions.
     """
     experiment, measurement = fit.experiment, fit.experiment.measurement
     center = experiment.setup.mesh.vertices.copy()
@@ -35,10 +36,10 @@ def drawn_positions(fit: Fit) -> Floats:
 
 
 def stations(fit: Fit) -> tuple[list[Triple], list[Triple]]:
-    """Measured and simulated stations as points of the design's space [m].
+    """Return measured and simulated stations as points of the design's space [m].
 
-    A coordinate that was not measured is that of the simulated station, so that the line between
-    the two is the error.
+    A coordinate that was not measured is copied from the simulated station, so that the line
+    between the two is the error.
     """
     experiment, comparison = fit.experiment, fit.deviation
     drawn = drawn_positions(fit)
@@ -51,7 +52,7 @@ def stations(fit: Fit) -> tuple[list[Triple], list[Triple]]:
 
 
 def write_specimen(fit: Fit, folder: Path) -> None:
-    """Leave the specimen in the folder of a calibration.
+    """Write the specimen to the folder of a calibration.
 
     Raises
     ------
@@ -64,12 +65,12 @@ def write_specimen(fit: Fit, folder: Path) -> None:
 
 
 def read_specimen(folder: Path, vertices: int) -> Floats:
-    """Read the positions of the specimen [m], of so many vertices.
+    """Read the positions of the specimen [m], with a given number of vertices.
 
     Raises
     ------
     FileError
-        There are none, or not of this body.
+        There is none, or it is of another body.
     """
     file = folder / SPECIMEN
     if not file.is_file():

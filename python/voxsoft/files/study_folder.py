@@ -15,14 +15,14 @@ from voxsoft.study import StudyResult
 
 
 def write_study(result: StudyResult, folder: str | os.PathLike[str]) -> list[Path]:
-    """Write what a study found: ``table.csv``, ``summary.json`` and figures.
+    """Write the results of a study: ``table.csv``, ``summary.json`` and figures.
 
     Parameters
     ----------
     result
-        What the study found so far.
+        Result of the study so far.
     folder
-        Where; made if it does not exist, files in it are replaced.
+        Folder to write; made if it does not exist, files in it are replaced.
 
     Returns
     -------
@@ -61,7 +61,7 @@ def write_study(result: StudyResult, folder: str | os.PathLike[str]) -> list[Pat
 
 
 def write_confirmation(found: Confirmation, folder: str | os.PathLike[str]) -> Path:
-    """Write what solving the best designs again gave, as ``confirmed.json``.
+    """Write the confirmation of the best designs, as ``confirmed.json``.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Changes of a design's text by path, which keep its comments and its layout."""
+"""Edits of a design's text by path, which keep its comments and its layout."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def with_document(text: str, document: Mapping[str, Any]) -> str:
 
 
 def _changes(before: object, after: object, path: Path) -> Iterator[tuple[Path, object]]:
-    """The values that differ; an entry that is gone is not among them."""
+    """Yield the values that differ; an entry that is gone is not among them."""
     if isinstance(before, Mapping) and isinstance(after, Mapping):
         for key, value in after.items():
             if key in before:
@@ -94,7 +94,7 @@ def _set(document: tomlkit.TOMLDocument, path: list[str | int], value: object) -
     if value is None:
         del here[last]
         if isinstance(here, AoT) and not here:
-            # An empty list would be written as a key of whatever section stands before it.
+            # An empty list would be written as a key of the section before it.
             del above[path[-2]]
     elif isinstance(last, int):
         _set_entry(here, last, value, path)
@@ -105,7 +105,7 @@ def _set(document: tomlkit.TOMLDocument, path: list[str | int], value: object) -
 
 
 def _inside(here: Any, step: str | int, path: list[str | int], follower: str | int) -> Any:  # noqa: ANN401
-    """Go one step down, making what is missing."""
+    """Go one step down, making missing tables and lists."""
     if isinstance(step, str) and step not in here:
         if isinstance(follower, int):
             here[step] = tomlkit.aot() if len(path) == 1 else tomlkit.array()
@@ -140,9 +140,9 @@ def _set_entry(here: Any, index: int, value: object, path: list[str | int]) -> N
 
 
 def _part_sections(sections: AoT, added: Table) -> None:
-    """Put an empty line between a section that is added to a list and its neighbors.
+    """Put an empty line between an added section of a list and its neighbors.
 
-    Where the sections of the list stand close together, so does the new one.
+    Sections without empty lines between them get none before the new one.
     """
     ends = [section.as_string().endswith("\n\n") for section in sections]
     if ends and ends[-1]:
@@ -152,7 +152,7 @@ def _part_sections(sections: AoT, added: Table) -> None:
 
 
 def _item(value: object, *, top: bool = False) -> Any:  # noqa: ANN401
-    """A value as TOML writes it: tables inline, but for those at the top, which lists repeat."""
+    """Convert a value to TOML: tables inline, except at the top, which lists repeat."""
     if isinstance(value, Mapping):
         table = tomlkit.table() if top else tomlkit.inline_table()
         for key, inner in value.items():
@@ -172,7 +172,7 @@ def _item(value: object, *, top: bool = False) -> Any:  # noqa: ANN401
 
 
 def _kept(before: Any, after: Any) -> Any:  # noqa: ANN401
-    """Keep the comment and the blanks behind the value that is replaced."""
+    """Keep the comment and the blanks behind a replaced value."""
     trivia = getattr(before, "trivia", None)
     if trivia is not None and hasattr(after, "trivia"):
         after.trivia.comment, after.trivia.comment_ws = trivia.comment, trivia.comment_ws

@@ -1,4 +1,4 @@
-"""TOML as VoxSoft writes it: one line for each entry, tables in a fixed, diffable order."""
+"""TOML output: one line for each entry, tables in a fixed, diffable order."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ _PIECE: Final = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
 def _keys_with_lines(text: str) -> Iterator[tuple[tuple[str | int, ...], int]]:
     """Pair the keys that begin a line, and section heads, with their lines.
 
-    A scan that is enough to point at a line; ``tomllib`` keeps no positions.
+    Simple scan for the line numbers of messages; ``tomllib`` keeps no positions.
     """
     counts: dict[tuple[str | int, ...], int] = {}
     section: tuple[str | int, ...] = ()

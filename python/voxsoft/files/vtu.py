@@ -1,8 +1,8 @@
-"""VTU (ParaView, PyVista): keeps everything, also voxels and data.
+"""VTU (ParaView, PyVista): keeps all contents, also voxels and data.
 
 Tets come first, in their order, with cell arrays ``part`` and, for voxel meshes, ``voxel`` and
 ``voxel_size``, and ``fraction`` and ``moments`` where voxels are partly filled. The triangles of
-cavities follow, with their number from 1 in the cell array ``cavity``; what cut voxels add to a
+cavities follow, with their number from 1 in the cell array ``cavity``; the share of cut voxels in a
 cavity is not kept. A region is the point array ``region:NAME``, 1 at its vertices.
 """
 
@@ -26,7 +26,7 @@ from voxsoft.mesh import Mesh
 
 _REGION = "region:"
 _CLOSE = b"</VTKFile>"
-#: The end of a file: a comment of XML, over which readers pass, says the unit.
+#: End of a file: a comment of XML, skipped by readers, gives the unit.
 _END = f"<!-- VoxSoft mesh, {UNIT_COMMENT} -->\n".encode() + _CLOSE
 _OLDER = (b'Name="voxel_size"', b'Name="displacement"')
 _OWN_ARRAYS = {"part", "cavity", "voxel", "voxel_size", "fraction", "moments"}
@@ -75,13 +75,13 @@ def write(path: Path, content: MeshFile) -> None:
 
 
 def _attribute(name: str) -> str:
-    """A name as it stands in XML, in ASCII: meshio writes names as they come."""
+    """Escape a name for XML, in ASCII: meshio writes names unchanged."""
     escaped = escape(name, {'"': "&quot;"})
     return escaped.encode("ascii", "xmlcharrefreplace").decode("ascii")
 
 
 def is_ours(path: Path) -> bool:
-    """Whether the file was written here, in m; older files know themselves by their arrays."""
+    """Return True if the file was written here, in m; older files are known by their arrays."""
     size = path.stat().st_size
     if not size:
         return False

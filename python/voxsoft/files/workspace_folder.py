@@ -1,4 +1,4 @@
-"""The folder of a workspace: ``workspace.csv`` and ``workspace.png``."""
+"""Folder of a workspace: ``workspace.csv`` and ``workspace.png``."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ def write_workspace(found: Workspace, folder: Path, *, figure: bool = True) -> l
     Parameters
     ----------
     found
-        The workspace, also while it is found.
+        Workspace, also while it is computed.
     folder
-        Where the files go; it is made.
+        Folder of the files; it is made.
     figure
-        Whether its picture is drawn as well.
+        True to draw its picture as well.
     """
     rows = found.table()
     written = [make_folder(folder) / "workspace.csv"]

@@ -1,6 +1,6 @@
 """Abaqus and CalculiX input: nodes, elements and sets, of one flat model or of an assembly.
 
-Sets are unions over their cards. Those of a part go with each of its instances, and are called
+Sets are unions over their cards. Sets of a part exist in each of its instances, and are called
 ``instance.SET`` where another instance has the name too.
 """
 
@@ -26,16 +26,16 @@ from voxsoft.formats.contents import CellBlock, Contents
 from voxsoft.formats.placing import Placing, local_system
 from voxsoft.formats.region_names import names_in, unit_in
 
-#: First and last line of our own files: one cut between two lines could not be told from a whole.
+#: First and last line of our own files, by which a file cut between two lines is recognized.
 BEGIN: Final = "** VoxSoft mesh"
 END: Final = "** end of VoxSoft mesh"
 
-#: Cards that make nodes, elements or places by rules that are not read here.
+#: Cards that make nodes, elements or positions by rules that are not read here.
 _MAKERS: Final = {
     *("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "IMPORT", "MESHREFINEMENT", "PARAMETER"),
     *("SYMMETRICMODELGENERATION", "MODELCHANGE", "IMPERFECTION"),
 }
-#: Cards that only frame others.
+#: Cards that only enclose others.
 _FRAMES: Final = {
     *("HEADING", "PREPRINT", "ENDPART", "ASSEMBLY", "ENDASSEMBLY", "ENDINSTANCE", "SURFACE"),
 }
@@ -47,7 +47,7 @@ def read(path: Path) -> Contents:
     Raises
     ------
     FileError
-        With file and line, for cards that cannot be followed, and labels that are missing.
+        For cards that cannot be followed, and missing labels, with file and line.
     """
     head = list(_head(path))
     is_ours = head[:1] == [BEGIN]
@@ -63,13 +63,13 @@ def read(path: Path) -> Contents:
 
 
 def _head(path: Path) -> Iterator[str]:
-    """The comments that a file begins with."""
+    """Return the comments at the beginning of a file."""
     with path.open(encoding="utf-8", errors="replace") as file:
         yield from takewhile(lambda line: line.startswith("**"), map(str.rstrip, file))
 
 
 class _Model:
-    """Cards taken one after the other."""
+    """Model made of cards, one after the other."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -83,7 +83,7 @@ class _Model:
         self.notes: list[str] = []
 
     def take(self, card: Card) -> None:
-        """Take a card into the model."""
+        """Add a card to the model."""
         match card.name:
             case "PART":
                 self.scope = self._new(self.parts, card)
@@ -129,7 +129,7 @@ class _Model:
             )
         scope = self._new(self.instances, card)
         scope.placing = Placing.of_instance(card)
-        # Data of an instance stand within it; cards of its own may follow.
+        # Data of an instance are in the frame of the instance; cards of its own may follow.
         if wanted:
             scope.add(self.parts[wanted])
             self.parts[wanted].is_used = True
@@ -191,7 +191,7 @@ class _Model:
         self.scope.extend(kind, name, [f"{owner}{each}" for each in members] if owner else members)
 
     def contents(self, names: dict[str, str], own: set[str]) -> Contents:
-        """Return the whole model, each instance at its place."""
+        """Return the whole model, with each instance at its position."""
         placed = list(self.instances.values())
         if placed:
             left = [part.name for part in self.parts.values() if not part.is_used]
@@ -231,7 +231,7 @@ class _Model:
         )
 
     def _sets(self, kind: str, scopes: list[Scope]) -> dict[str, NDArray[np.int64]]:
-        """All sets of a kind by the names that they have in the contents."""
+        """Return all sets of a kind by the names that they have in the contents."""
         known = {scope.name.upper(): scope for scope in scopes}
         uses = Counter(name for scope in scopes for name in scope.sets[kind])
         found = {}

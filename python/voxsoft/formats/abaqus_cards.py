@@ -10,18 +10,18 @@ from typing import Final
 
 from voxsoft.errors import FileError
 
-#: Files that include files, before a circle is assumed.
+#: Largest depth of included files, before a cycle is assumed.
 _DEEPEST: Final = 20
 
 
 @dataclass
 class Card:
-    """A keyword line and the data that follows it.
+    """Keyword line with the data that follow it.
 
     Attributes
     ----------
     name
-        The keyword in capitals without its star and blanks: ``SOLIDSECTION``.
+        Keyword in capitals without its star and blanks: ``SOLIDSECTION``.
     parameters
         Values by name in capitals; an empty text for one without a value.
     where
@@ -58,12 +58,12 @@ class Card:
 
 
 def cards_of(path: Path, depth: int = 0) -> Iterator[Card]:
-    """Yield the cards of a file, those of included files in their place.
+    """Yield the cards of a file, with those of included files in their place.
 
     Raises
     ------
     FileError
-        If an included file is missing, or data stand before the first card.
+        If an included file is missing, or data come before the first card.
     """
     card: Card | None = None
     for where, line in _lines(path):
@@ -80,7 +80,7 @@ def cards_of(path: Path, depth: int = 0) -> Iterator[Card]:
 
 
 def _lines(path: Path) -> Iterator[tuple[str, str]]:
-    """Lines that are no comments, with their places; continued keyword lines as one."""
+    """Yield lines that are no comments, with their positions; continued keyword lines as one."""
     with path.open(encoding="utf-8", errors="replace") as file:
         begun, place = "", ""
         for number, raw in enumerate(file, start=1):
@@ -109,13 +109,13 @@ def _card(line: str, where: str) -> Card:
 
 
 def _whole(card: Card, path: Path, depth: int) -> Iterator[Card]:
-    """The card with the data of its own file; for ``*INCLUDE`` the cards of that file."""
+    """Yield the card with the data of its own file; for ``*INCLUDE`` the cards of that file."""
     named = card.get("INPUT")
     if not named:
         yield card
         return
     file = path.parent / named
-    # A deck from a stranger reads nothing but its own folder.
+    # A deck from elsewhere reads files of its own folder only.
     if not file.resolve().is_relative_to(path.parent.resolve()):
         what = f"*{card.name} names {named}, which is outside of the deck's folder"
         raise FileError(card.where, what, "put it beside the file")

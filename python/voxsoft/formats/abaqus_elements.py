@@ -1,12 +1,12 @@
-"""Element types of Abaqus and CalculiX: which kind of cell each is."""
+"""Element types of Abaqus and CalculiX, and the kind of cell of each."""
 
 from __future__ import annotations
 
 import re
 from typing import Final
 
-#: Cells by the letters of the type and its number of nodes; letters behind the number say how it is
-#: integrated, or that it is hybrid, and change no shape.
+#: Cells by the letters of the type and its number of nodes; letters after the number give the
+#: integration, or that it is hybrid, and change no shape.
 _SOLIDS: Final = {
     4: "tetra",
     5: "pyramid",
@@ -28,7 +28,7 @@ _TYPES: Final = (
 
 
 def kind_of(element: str) -> str | None:
-    """Return the kind of cell of an element type; None for what has no shape, such as masses.
+    """Return the kind of cell of an element type; None for types without a shape, such as masses.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""One numbering of nodes and elements in Abaqus input: a flat model, a part or an instance."""
+"""Scope of labels in Abaqus input: a flat model, a part or an instance."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ class Scope:
         self.first_point = self.first_cell = 0
 
     def add(self, part: Scope) -> None:
-        """Take all that a part holds."""
+        """Copy all contents of a part."""
         self.labels, self.points = dict(part.labels), [each.copy() for each in part.points]
         self.cell_of, self.cells = dict(part.cell_of), list(part.cells)
         self.sets = {k: {n: list(m) for n, m in s.items()} for k, s in part.sets.items()}
         self.shown, self.sections = dict(part.shown), list(part.sections)
 
     def add_nodes(self, labels: list[int], points: NDArray[np.float64]) -> int:
-        """Add nodes; one that stands already is moved. Return how many were."""
+        """Add nodes; move those that exist. Return the number of moved ones."""
         again = 0
         for label, point in zip(labels, points, strict=True):
             if label in self.labels:
@@ -82,7 +82,7 @@ class Scope:
         self.sets[kind].setdefault(name.upper(), []).extend(members)
 
     def placed_points(self) -> NDArray[np.float64]:
-        """Return the nodes where the scope is placed, (n, 3)."""
+        """Return the nodes at the position of the scope, (n, 3)."""
         return self.placing.placed(np.array(self.points).reshape(-1, 3))
 
     def blocks(self) -> Iterator[CellBlock]:
@@ -125,7 +125,7 @@ class Scope:
         return np.concatenate([np.array(numbers, np.int64), *found])
 
     def _resolved(self, member: int | str, known: Mapping[str, Scope]) -> tuple[Scope, int | str]:
-        """The scope of a member, and its label or the name of a set there."""
+        """Return the scope of a member, and its label or the name of a set there."""
         if isinstance(member, int):
             return self, member
         mark, text = ("\0", member[1:]) if member.startswith("\0") else ("", member)
@@ -143,7 +143,7 @@ class Scope:
 
 
 def _nodes_in(scopes: Iterable[Scope], cells: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Points of cells of the contents."""
+    """Return the points of cells of the contents."""
     found: list[NDArray[np.int64]] = [np.empty(0, np.int64)]
     for scope in scopes:
         first = scope.first_cell
@@ -155,5 +155,5 @@ def _nodes_in(scopes: Iterable[Scope], cells: NDArray[np.int64]) -> NDArray[np.i
 
 
 def _nodes_of(kind: str) -> int:
-    """Nodes of a cell of a kind."""
+    """Return the number of nodes of a cell of a kind."""
     return CORNERS.get(kind) or int(kind.lstrip("abcdefghijklmnopqrstuvwxyz"))

@@ -1,4 +1,4 @@
-"""Formats without a reader of our own, by meshio."""
+"""Reader of other formats, by meshio."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 
 def read(path: Path) -> Contents:
-    """Read a file by meshio, with all that it prints kept from the terminal.
+    """Read a file by meshio, without its output on the terminal.
 
     Raises
     ------
     FileError
-        If meshio cannot read it, with its own words where it has some.
+        If meshio cannot read it, with meshio's message if it has one.
     """
     import meshio
 
@@ -40,7 +40,7 @@ def read(path: Path) -> Contents:
     except ImportError as error:
         what = f"needs the package {error.name} to be read"
         raise FileError(str(path), what, f"pip install {error.name}") from error
-    # meshio raises whatever its parsers run into, and leaves the program in places.
+    # meshio raises all errors of its parsers, and exits the program in places.
     except (Exception, SystemExit) as error:
         words = "meshio does not understand its content"
         if isinstance(error, SystemExit):

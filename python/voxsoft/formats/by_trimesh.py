@@ -1,4 +1,4 @@
-"""Surfaces by trimesh: glTF binary, and dialects of OFF that meshio does not take."""
+"""Reader of surfaces, by trimesh: glTF binary, and dialects of OFF that meshio does not take."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def read_after_meshio(path: Path) -> Contents:
     Raises
     ------
     FileError
-        If neither can read it, with the words of meshio.
+        If neither can read it, with meshio's message.
     """
     try:
         return by_meshio.read(path)
@@ -35,7 +35,7 @@ def read_after_meshio(path: Path) -> Contents:
 
 
 def read(path: Path) -> Contents:
-    """Read all bodies of a file, each where its scene has it.
+    """Read all bodies of a file, at their positions in its scene.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def read(path: Path) -> Contents:
             warnings.simplefilter("ignore")
             scene = trimesh.load_scene(path, process=False)
             bodies = scene.dump(concatenate=False)
-    # trimesh raises whatever its parsers run into.
+    # trimesh raises all errors of its parsers.
     except Exception as error:
         kind = path.suffix.lstrip(".").upper()
         what = f"cannot be read as {kind}: trimesh does not understand its content"

@@ -1,4 +1,4 @@
-"""All that a mesh file holds, in numbers, before anything is made of it."""
+"""Contents of a mesh file as numbers, before they become a mesh or a surface."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-#: Vertices of each kind of cell that files hold, under meshio's names, in VTK's order.
+#: Number of vertices of each kind of cell in files, by meshio's names, in VTK's order.
 CORNERS: Mapping[str, int] = {
     "vertex": 1,
     "line": 2,
@@ -28,8 +28,8 @@ class CellBlock:
     Attributes
     ----------
     kind
-        Of :data:`CORNERS`, or a name with the number of nodes such as ``tetra10``; the corners
-        stand first. ``polygon`` for faces of any number, one block for each number.
+        Kind in :data:`CORNERS`, or a name with the number of nodes such as ``tetra10``; the corners
+        come first. ``polygon`` for faces of any number, one block for each number.
     nodes
         Points of each cell, (k, n), indices into the points of the contents.
     """
@@ -40,7 +40,7 @@ class CellBlock:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """What a mesh file holds.
+    """Contents of a mesh file.
 
     Attributes
     ----------
@@ -57,14 +57,14 @@ class Contents:
         Names and values of arrays on cells, one value a cell of all blocks; NaN or 0 where a block
         has none.
     unit
-        Of the coordinates in m, where the file says it; else None.
+        Length of a unit of the coordinates in m, if the file gives it; else None.
     notes
-        Sentences on all that the file holds and that these contents do not: cards that were passed
-        over, arrays on points, instances, blocks that are left out. Each begins with its subject.
+        Sentences on parts of the file that these contents lack: cards that were skipped, arrays on
+        points, instances, blocks that are left out. Each begins with its subject.
     format
-        The format as a person calls it: ``Abaqus input``, ``Gmsh 4.1``.
+        Common name of the format: ``Abaqus input``, ``Gmsh 4.1``.
     sections
-        Those cell sets that carry a material by the file's own word; empty where it says none.
+        Names of the cell sets that carry a material in the file; empty where it has none.
     instances
         Names of instances of an assembly.
     """

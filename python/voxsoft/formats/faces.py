@@ -16,7 +16,7 @@ Indices = NDArray[np.int64]
 def faces_of(points: NDArray[np.float64], blocks: Iterable[CellBlock]) -> Indices:
     """Return the triangles (t, 3) of cells.
 
-    Where there are volume cells, their boundary counts and separate faces do not: those mark parts
+    If there are volume cells, their boundary counts and separate faces do not: those mark parts
     of it. It is the boundary of the tetrahedra that the cells are cut into, as quadrilaterals are
     cut from their smallest vertex there too. Other faces are fans around their first corner.
 
@@ -50,12 +50,12 @@ def faces_of(points: NDArray[np.float64], blocks: Iterable[CellBlock]) -> Indice
 
 
 def _volume_faces(points: NDArray[np.float64], name: str, cells: Indices) -> list[Indices]:
-    """The faces of volume cells, all pointing outward."""
+    """Return the faces of volume cells, all pointing outward."""
     middle = points[cells[:, : CORNERS[name]]].mean(axis=1)
     found = []
     for corners in FACES[name]:
         face = cells[:, corners]
-        # The cross product of the diagonals; of two sides where there are three corners.
+        # Cross product of the diagonals; of two sides where there are three corners.
         sides = points[face[:, 2]] - points[face[:, 0]], points[face[:, -1]] - points[face[:, 1]]
         outward = points[face].mean(axis=1) - middle
         is_turned = np.einsum("ij,ij->i", np.cross(*sides), outward) < 0
@@ -64,7 +64,7 @@ def _volume_faces(points: NDArray[np.float64], name: str, cells: Indices) -> lis
 
 
 def _once(faces: Indices) -> Indices:
-    """Those of faces (f, k) that belong to one cell only."""
+    """Select the faces (f, k) that belong to one cell only."""
     _, first, uses = np.unique(
         np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
     )

@@ -27,7 +27,7 @@ _DIMENSIONS: Final = {
     **{"vertex": 0, "line": 1, "triangle": 2, "quad": 2},
     **{"tetra": 3, "pyramid": 3, "wedge": 3, "hexahedron": 3},
 }
-#: Sections that hold no cells, points or groups, and may be passed over without a word.
+#: Sections that hold no cells, points or groups, and are skipped without a note.
 _SILENT: Final = {"MeshFormat", "Comments", "Entities", "Nodes", "Elements", "PhysicalNames"}
 
 
@@ -90,7 +90,7 @@ def read(path: Path) -> Contents:
 
 
 def _physical_names(section: Section) -> dict[tuple[int, int], str]:
-    """Names by dimension and number."""
+    """Read names by dimension and number."""
     found = re.findall(r'^\s*(\d+)\s+(-?\d+)\s+"(.*)"\s*$', section.text(), re.MULTILINE)
     return {(int(dimension), abs(int(number))): name for dimension, number, name in found}
 
@@ -110,7 +110,7 @@ class _Gathered:
         self.ascending = self.tags[self.order]
 
     def take(self, cells: Cells) -> None:
-        """Take cells of one kind and the same groups."""
+        """Add cells of one kind and the same groups."""
         base = cells.kind.rstrip("0123456789")
         if base not in _DIMENSIONS:
             self.left[cells.kind] += len(cells.nodes)
@@ -122,7 +122,7 @@ class _Gathered:
             self.groups.setdefault((cells.kind, group), []).append(numbers)
 
     def _found(self, nodes: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Points of the contents from tags of nodes."""
+        """Return points of the contents from tags of nodes."""
         places = np.searchsorted(self.ascending, nodes)
         found = self.order[np.minimum(places, len(self.order) - 1)]
         is_missing = self.tags[found] != nodes
@@ -132,7 +132,7 @@ class _Gathered:
         return found
 
     def notes(self) -> Iterator[str]:
-        """Sentences on cells that are left out."""
+        """Yield sentences on cells that are left out."""
         for kind, count in self.left.items():
             yield f"{count:,} cells of {kind} are left out"
 
@@ -153,7 +153,7 @@ class _Gathered:
             _, once, index = np.unique(
                 np.sort(rows, axis=1), axis=0, return_index=True, return_inverse=True
             )
-            # Cells in the order of the file, each where it stands first.
+            # Cells in the order of the file, each at its first position.
             order = np.argsort(once, kind="stable")
             rank = np.empty_like(order)
             rank[order] = np.arange(len(order))
@@ -186,7 +186,7 @@ class _Gathered:
         )
 
     def _repeated(self, kind: str, index: NDArray[np.int64]) -> int:
-        """How many rows repeat a cell only to put it into one more group."""
+        """Count the rows that repeat a cell only to put it into one more group."""
         more = 0
         cells = [
             np.unique(index[np.concatenate(members)])

@@ -38,7 +38,7 @@ class Cells(NamedTuple):
 
 @dataclass
 class Section:
-    """A section, from which numbers are taken one after the other."""
+    """Section, from which numbers are taken one after the other."""
 
     path: Path
     name: str
@@ -79,7 +79,7 @@ class Section:
         return found
 
     def line(self) -> int:
-        """Take the count that stands alone in a line, text in binary files too."""
+        """Take the count that is alone in a line, text in binary files too."""
         if self._words is not None:
             return int(self.take(1, "u8")[0])
         end = self.data.index(b"\n", self.place)
@@ -121,7 +121,7 @@ def nodes_2(section: Section) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
 
 
 def cells_2(section: Section) -> Iterator[Cells]:
-    """Yield the cells of version 2.2, alike neighbors together; a cell in two groups twice."""
+    """Yield the cells of version 2.2, equal neighbors together; a cell in two groups twice."""
     total, seen = section.line(), 0
     if not section.is_binary:
         each = (_cell_2(section) for _ in range(total))
@@ -141,7 +141,7 @@ def cells_2(section: Section) -> Iterator[Cells]:
 
 
 def _cell_2(section: Section) -> tuple[str, int, NDArray[np.int64]]:
-    """One line of text: kind, group, nodes."""
+    """Read one line of text: kind, group, nodes."""
     _, code, tags = section.take(3, "i4").tolist()
     kind, size = _kind(section, code)
     row = section.take(tags + size, "i4")
@@ -156,7 +156,7 @@ def nodes_4(section: Section) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         dimension, _, parametric = section.take(3, "i4").tolist()
         (count,) = section.take(1, "u8").tolist()
         tags.append(section.take(count, "u8"))
-        # On a curve or surface its parameters may stand behind the coordinates.
+        # On a curve or surface its parameters may follow the coordinates.
         width = 3 + (dimension if parametric else 0)
         points.append(section.floats(count * width).reshape(-1, width)[:, :3])
     found = np.concatenate(tags)
@@ -173,7 +173,7 @@ def groups_4(section: Section) -> dict[tuple[int, int], tuple[int, ...]]:
             (tag,) = section.take(1, "i4").tolist()
             section.floats(6 if dimension else 3)
             (groups,) = section.take(1, "u8").tolist()
-            # The sign of a group's number says how its entity is turned.
+            # The sign of a group's number gives the orientation of its entity.
             found[dimension, tag] = tuple(abs(section.take(groups, "i4")).tolist())
             if dimension:
                 (bounding,) = section.take(1, "u8").tolist()

@@ -13,14 +13,14 @@ import numpy as np
 from voxsoft.errors import FileError
 from voxsoft.formats.contents import CellBlock, Contents
 
-#: Kinds of the words that name vertices, by the number of these; other faces are polygons.
+#: Kind of cell by keyword and number of vertices; other faces are polygons.
 _KINDS: Final = {("f", 3): "triangle", ("f", 4): "quad", ("p", 1): "vertex", ("l", 2): "line"}
-#: Words that carry no shape: textures, normals, shading, names of other files.
+#: Keywords without a shape: textures, normals, shading, names of other files.
 _SILENT: Final = {
     *("vt", "vn", "vp", "s", "mtllib", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib"),
     *("usemap", "shadow_obj", "trace_obj"),
 }
-#: Words of curved surfaces, which are formulas.
+#: Keywords of curved surfaces, which are formulas.
 _CURVED: Final = {"curv", "curv2", "surf"}
 
 
@@ -39,7 +39,7 @@ def read(path: Path) -> Contents:
 
 
 def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
-    """The words of each line, with those that a backslash continues on the next, and its number."""
+    """Yield the words of each line with its number; lines that a backslash continues are one."""
     words: list[str] = []
     for number, line in enumerate(text.splitlines(), 1):
         bare = line.partition("#")[0].rstrip()
@@ -53,7 +53,7 @@ def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
 
 
 class _File:
-    """All that was read so far."""
+    """Contents that were read so far."""
 
     def __init__(self, where: str) -> None:
         self.where = where
@@ -66,7 +66,7 @@ class _File:
         self.left: Counter[str] = Counter()
 
     def take(self, number: int, words: list[str]) -> None:
-        """Take one line."""
+        """Read one line."""
         key, *rest = words
         if key == "v":
             try:
@@ -78,7 +78,7 @@ class _File:
         elif key in ("f", "p", "l"):
             self._cell(number, key, rest)
         elif key in ("g", "o", "usemtl"):
-            # A line of g names all groups of what follows.
+            # A line of g names all groups of the lines after it.
             self.current[key] = tuple(rest) if key == "g" else (" ".join(rest),) if rest else ()
             self.open = tuple(dict.fromkeys(n for each in self.current.values() for n in each))
         elif key in _CURVED:
@@ -103,7 +103,7 @@ class _File:
             self.names.setdefault(of, []).append(self.open)
 
     def _vertex(self, number: int, word: str) -> int:
-        """The index from 0: numbers count from 1, or back from the last vertex so far."""
+        """Return the index from 0: numbers count from 1, or back from the last vertex so far."""
         try:
             index = int(word.partition("/")[0])
         except ValueError:

@@ -1,4 +1,4 @@
-"""Which part each cell is of: by sections, sets of cells, or an array of whole numbers."""
+"""Part of each cell: by sections, sets of cells, or an array of whole numbers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from voxsoft._shown import counted
 from voxsoft.errors import FileError
 from voxsoft.formats.contents import Contents
 
-#: Arrays that name materials, the likeliest first; the name after a colon counts too, and case not.
+#: Arrays that name materials, the likeliest first; the name after a colon counts too, in any case.
 _ARRAYS: Final = (
     *("part", "material", "materialids", "region", "regionid", "physical", "ref", "cell_tags"),
     *("label", "labels", "materials", "parts", "cellentityids", "objectid", "attribute"),
@@ -27,14 +27,14 @@ _MOST: Final = 255
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """The part of each cell.
+    """Part of each cell.
 
     Attributes
     ----------
     number
-        From 1, (n,).
+        Number of the part, from 1, (n,).
     names
-        The name of each part by its number; empty where the file has no parts.
+        Name of each part by its number; empty where the file has no parts.
     used
         Arrays that parts were made of.
     notes
@@ -50,18 +50,18 @@ class Parts:
 def parts_of(contents: Contents, cells: NDArray[np.int64], where: str) -> Parts:
     """Return the parts of volume cells.
 
-    Sets that carry sections are the parts; where there are none, all sets of volume cells; where
-    there are none either, an array of whole numbers with a name such as ``material``. A cell of two
-    sets is of the smaller one. Cells of no set are a part of their own, the last.
+    Sets that carry sections are the parts; without them, all sets of volume cells; without those,
+    an array of whole numbers with a name such as ``material``. A cell of two sets belongs to the
+    smaller one. Cells of no set are a part of their own, the last.
 
     Parameters
     ----------
     contents
-        The file.
+        Contents of the file.
     cells
-        Its volume cells, ascending.
+        Volume cells of the file, ascending.
     where
-        The file, for messages.
+        Name of the file, for messages.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def _by_sets(contents: Contents, sets: Mapping[str, NDArray[np.int64]], count: i
             if name not in contents.sections
         ]
     owner = np.full(count, -1)
-    # The smallest set last, so that it has the cells that larger ones have too.
+    # The smallest set comes last, so that it gets the cells it shares with larger ones.
     for rank in sorted(range(len(names)), key=lambda rank: (-len(sets[names[rank]]), rank)):
         owner[sets[names[rank]]] = rank
     uses = np.bincount(np.concatenate([sets[name] for name in names]), minlength=count)
@@ -136,7 +136,7 @@ def _by_array(contents: Contents, cells: NDArray[np.int64]) -> Parts:
 
 
 def _candidates(contents: Contents, cells: NDArray[np.int64] | None) -> list[str]:
-    """Arrays that may number parts, the likeliest first."""
+    """List arrays that may number parts, the likeliest first."""
     found = []
     for name, values in contents.arrays.items():
         key = name.lower().rsplit(":", 1)[-1]

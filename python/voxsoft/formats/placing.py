@@ -1,4 +1,4 @@
-"""Where instances and local systems of Abaqus input are."""
+"""Position and rotation of instances and local systems of Abaqus input."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from voxsoft.formats.abaqus_cards import Card
 
 @dataclass(frozen=True)
 class Placing:
-    """A turn and a shift: ``x = rotation @ own + position``."""
+    """Rotation and shift: ``x = rotation @ own + position``."""
 
     rotation: NDArray[np.float64] = field(default_factory=lambda: np.eye(3))
     position: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
 
     def placed(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return points (n, 3) at their places; to the bit where nothing turns or moves them."""
+        """Return transformed points (n, 3); unchanged to the bit without rotation and shift."""
         if (self.rotation == np.eye(3)).all():
             return points + self.position if self.position.any() else points
         moved: NDArray[np.float64] = points @ self.rotation.T + self.position
@@ -28,9 +28,9 @@ class Placing:
 
     @classmethod
     def of_instance(cls, card: Card) -> Self:
-        """Return the place of an instance: a line with its shift, then one with its turn.
+        """Return the placing of an instance: a line with its shift, then one with its rotation.
 
-        The turn is about the axis from one point to another, by an angle in degrees, and comes
+        The rotation is about the axis from one point to another, by an angle in degrees, and comes
         after the shift.
 
         Raises
@@ -53,7 +53,7 @@ class Placing:
 
 
 def _turn(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
-    """Return the matrix of a turn, by Rodrigues."""
+    """Return a rotation matrix by Rodrigues' formula."""
     x, y, z = axis / np.linalg.norm(axis)
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     matrix: NDArray[np.float64] = (
@@ -68,7 +68,7 @@ def local_system(card: Card) -> Placing:
     Raises
     ------
     FileError
-        If it has a point on x that no plane goes with, or points in one line.
+        If it has a point on x without a plane, or points in one line.
     """
     values = [number for row in card.data for number in card.numbers(row)]
     if not any(values):

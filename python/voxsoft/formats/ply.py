@@ -26,7 +26,7 @@ _CORNERS: Final = ("vertex_indices", "vertex_index")
 @dataclass(frozen=True)
 class _Property:
     name: str
-    #: Types of NumPy, of the count of a list and of the values; an empty count for one value.
+    #: NumPy types of the count of a list and of the values; an empty count for one value.
     count: str
     value: str
 
@@ -44,7 +44,7 @@ def read(path: Path) -> Contents:
     Raises
     ------
     FileError
-        If its head is against the format, or it ends before its last face.
+        If its header is invalid, or it ends before its last face.
     """
     where, data = str(path), path.read_bytes()
     head, mark, _ = data.partition(b"end_header")
@@ -87,7 +87,7 @@ def read(path: Path) -> Contents:
 
 
 def _head(where: str, text: str) -> tuple[str, list[_Element]]:
-    """The order of bytes, empty for text, and the elements."""
+    """Read the order of bytes, empty for text, and the elements."""
     order: str | None = None
     elements: list[_Element] = []
     for line in text.splitlines()[1:]:
@@ -116,7 +116,7 @@ def _head(where: str, text: str) -> tuple[str, list[_Element]]:
 
 
 class _Text:
-    """The numbers of a text."""
+    """Numbers of a text file."""
 
     def __init__(self, where: str, body: bytes) -> None:
         self.where, self.place = where, 0
@@ -147,7 +147,7 @@ class _Text:
 
 
 class _Bytes:
-    """The numbers of a binary file."""
+    """Numbers of a binary file."""
 
     def __init__(self, where: str, body: bytes, order: str) -> None:
         self.where, self.body, self.order, self.place = where, body, order, 0

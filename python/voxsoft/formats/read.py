@@ -1,4 +1,4 @@
-"""From a path to the contents of the file, the reader chosen by the name's suffix."""
+"""Reading of contents from a path, by the reader for the name's suffix."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from voxsoft.errors import FileError
 from voxsoft.formats import abaqus, by_meshio, by_trimesh, gmsh, obj, ply, stl, vtk_legacy, vtk_xml
 from voxsoft.formats.contents import Contents
 
-#: Own readers by suffix, before meshio.
+#: Own readers by suffix, tried before meshio.
 READERS: Final[dict[str, Callable[[Path], Contents]]] = {
     ".inp": abaqus.read,
     ".msh": gmsh.read,
@@ -23,11 +23,11 @@ READERS: Final[dict[str, Callable[[Path], Contents]]] = {
     ".ply": ply.read,
     ".off": by_trimesh.read_after_meshio,
 }
-#: Files of VTK that list other files: their reader says which.
+#: Files of VTK that list other files: their reader names those.
 _LISTS: Final = dict.fromkeys(
     (".vtm", ".vtmb", ".pvd", ".pvtu", ".pvtp", ".pvti", ".pvts", ".pvtr"), vtk_xml.read
 )
-#: Another way for formats that are not read, by programs that read them.
+#: Advice for formats that are not read: programs that convert them.
 _WAYS: Final = (
     ((".3mf", ".amf"), "open it in a slicer such as PrusaSlicer and export it as STL"),
     ((".unv",), "open it in Gmsh and save it as .msh"),
@@ -53,7 +53,7 @@ _DRAWINGS: Final = {".svg", ".wkt"}
 
 @cache
 def known_suffixes() -> tuple[str, ...]:
-    """Return the endings of the files that can be read: own readers and those of meshio.
+    """Return the suffixes of the files that can be read: own readers and those of meshio.
 
     Examples
     --------
@@ -66,12 +66,12 @@ def known_suffixes() -> tuple[str, ...]:
 
 
 def read_contents(path: Path) -> Contents:
-    """Return all that a mesh file holds.
+    """Return all contents of a mesh file.
 
     Raises
     ------
     FileError
-        If the file is missing, of an unknown suffix, cut short, or written against its format.
+        If the file is missing, of an unknown suffix, cut short, or invalid in its format.
 
     Examples
     --------

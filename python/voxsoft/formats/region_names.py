@@ -1,7 +1,7 @@
-"""Names of regions for formats that know letters, digits, ``_`` and ``-`` only.
+"""Labels of regions for formats that allow letters, digits, ``_`` and ``-`` only.
 
-A region may be called anything, ``"tip left"`` or ``"höhe"``; Abaqus and Gmsh get a label for it,
-and a line of comment in the file says which name it stands for, so that reading gives it back.
+A region may have any name, ``"tip left"`` or ``"höhe"``; Abaqus and Gmsh get a label for it, and a
+comment line in the file maps it to the name, so that reading restores it.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from typing import Final
 from voxsoft.units import parse
 
 _LONGEST: Final = 60  # Abaqus takes 80
-#: Labels of the sets that the writers make themselves, whatever their case.
+#: Labels of the sets that the writers make themselves, in any case.
 _RESERVED: Final = re.compile(r"(?:part|cavity)-\d+(?:-s\d)?|all-(?:nodes|elements)", re.IGNORECASE)
 _COMMENT: Final = re.compile(r'REGION ([A-Za-z][\w-]*) = (".*")', re.ASCII)
 _UNIT: Final = re.compile(r"UNIT = ([A-Za-z]+)", re.ASCII)
-#: The comment that says our own unit.
+#: Comment with the unit of our own files.
 UNIT_COMMENT: Final = "UNIT = m"
 
 
 def labels_of(names: Iterable[str]) -> dict[str, str]:
-    """Give each name a label of its own; a name that can be one is its own label.
+    """Give each name a unique label; a name that is a valid label keeps it.
 
-    Labels differ also where case does not count.
+    Labels are unique also in formats that ignore case.
 
     Examples
     --------
@@ -37,7 +37,7 @@ def labels_of(names: Iterable[str]) -> dict[str, str]:
     every = list(names)
     labels: dict[str, str] = {}
     taken: set[str] = set()
-    # Names that can be labels first: they keep them, unless they differ from one by case alone.
+    # Valid labels first: they are kept, unless two differ by case alone.
     for name in sorted(every, key=lambda name: _label(name) != name):
         labels[name] = _free(_label(name), taken)
         taken.add(labels[name].lower())
@@ -45,7 +45,7 @@ def labels_of(names: Iterable[str]) -> dict[str, str]:
 
 
 def _label(name: str) -> str:
-    """The label that a name would have if it were alone."""
+    """Return the label of a name, not yet unique."""
     if re.fullmatch(r"[A-Za-z][\w-]{0,63}", name, re.ASCII) and not _RESERVED.fullmatch(name):
         return name
     letters = unicodedata.normalize("NFKD", name)
@@ -64,7 +64,7 @@ def _free(label: str, taken: set[str]) -> str:
 
 
 def comments_of(labels: Mapping[str, str]) -> list[str]:
-    r"""Lines that tell what labels stand for, in ASCII; none for names that are their own.
+    r"""Write comment lines that map labels to names, in ASCII; none where both are the same.
 
     Examples
     --------
@@ -77,7 +77,7 @@ def comments_of(labels: Mapping[str, str]) -> list[str]:
 
 
 def names_in(lines: Iterable[str]) -> dict[str, str]:
-    """Read such lines back: names by label.
+    """Read names by label from such comment lines.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The account of a read: all that a file holds beside all that was taken of it."""
+"""Report on a read: all contents of a file beside the parts that were taken."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from voxsoft.formats.contents import CORNERS, Contents
 
 @dataclass(frozen=True)
 class ReadReport:
-    """What a file holds beside what a mesh has of it.
+    """Contents of a file beside those of the mesh made of it.
 
     Attributes
     ----------
     format
-        As a person calls it.
+        Common name of the format.
     meter
         Meters in one unit of the file.
     held
@@ -26,11 +26,11 @@ class ReadReport:
         ``vertices``, ``tets``, ``parts`` with their tets, ``regions`` with their vertices, names of
         ``arrays``.
     parts
-        The name of each part of the mesh by its number.
+        Name of each part of the mesh by its number.
     differences
-        Sentences: all that the file holds and that the mesh has otherwise, or not at all.
+        Sentences on contents that the mesh has in another form, or not at all.
     cautions
-        Sentences: all that is read, and is unusual.
+        Sentences on contents that were read and are unusual.
 
     Examples
     --------
@@ -59,7 +59,7 @@ class ReadReport:
         yield from (f"caution: {sentence}" for sentence in self.cautions)
 
     def summary(self) -> dict[str, Any]:
-        """Return everything as plain data (``file`` in the ``--json`` of ``check``)."""
+        """Return the report as plain data (``file`` in the ``--json`` of ``check``)."""
         return {
             "format": self.format,
             "meter": self.meter,
@@ -72,7 +72,7 @@ class ReadReport:
 
 
 def held_by(contents: Contents) -> dict[str, Any]:
-    """Return the counts of all that a file holds.
+    """Count all contents of a file.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def held_by(contents: Contents) -> dict[str, Any]:
 
 
 def counted_cells(kind: str, count: int) -> str:
-    """Return cells in words: ``8 hexahedra``, ``1 tetrahedron of 10 nodes``.
+    """Describe cells in words: ``8 hexahedra``, ``1 tetrahedron of 10 nodes``.
 
     Examples
     --------

@@ -40,14 +40,14 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Tets:
-    """Tetrahedra and where they come from.
+    """Tetrahedra with the cells they come from.
 
     Attributes
     ----------
     tets
-        Points of each, (m, 4).
+        Points of each tetrahedron, (m, 4).
     cell
-        The cell of the contents that each is of, (m,).
+        Cell of the contents that each tetrahedron is a part of, (m,).
     notes
         Sentences on cells that were cut, or taken by their corners.
     """
@@ -63,8 +63,8 @@ def tets_of(contents: Contents, where: str) -> Tets:
     Raises
     ------
     FileError
-        If cells are of a kind that is not known, turned inside out in part, or cut another way by
-        tetrahedra beside them.
+        If cells are of an unknown kind, partly inverted, or cut another way by tetrahedra beside
+        them.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def _be(count: int) -> str:
 
 
 def _cut(kind: str, cells: Indices) -> tuple[Indices, Indices]:
-    """Tetrahedra of cells of one kind, and the cell of each."""
+    """Cut cells of one kind into tetrahedra; return those and the cell of each."""
     lowest = cells.argmin(axis=1)
     tets: list[Indices] = []
     owner: list[Indices] = []
@@ -128,7 +128,7 @@ def _cut(kind: str, cells: Indices) -> tuple[Indices, Indices]:
             if apex in corners or not len(chosen):
                 continue
             face = cells[chosen][:, list(corners)]
-            # Begin each face at its smallest vertex: its fan is the cut by that diagonal.
+            # Each face begins at its smallest vertex: its fan is the cut by that diagonal.
             turn = (face.argmin(axis=1)[:, None] + np.arange(len(corners))) % len(corners)
             face = np.take_along_axis(face, turn, axis=1)
             for step in range(1, len(corners) - 1):
@@ -146,7 +146,7 @@ def _cut(kind: str, cells: Indices) -> tuple[Indices, Indices]:
 def _check_turn(
     points: NDArray[np.float64], tets: Indices, owner: Indices, kind: str, where: str
 ) -> None:
-    """Refuse cells whose tetrahedra do not all turn one way: their faces are folded."""
+    """Refuse cells whose tetrahedra have different orientations: their faces are folded."""
     a, b, c, d = (points[tets[:, corner]] for corner in range(4))
     volumes = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a)
     highest, lowest = (np.full(owner.max() + 1, sign * -np.inf) for sign in (1, -1))

@@ -20,7 +20,7 @@ _HEAD: Final = 84
 
 
 def read(path: Path) -> Contents:
-    """Read a file; three points of each triangle, as STL has no others.
+    """Read a file; it gives three points for each triangle, as STL shares none.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def read(path: Path) -> Contents:
     """
     where, data = str(path), path.read_bytes()
     count = int.from_bytes(data[80:_HEAD], "little")
-    # Binary files may begin with "solid" too: their length tells them.
+    # Binary files may begin with "solid" too; their length distinguishes them.
     if len(data) == _HEAD + _FACET.itemsize * count:
         return _contents(_binary(data, count), {}, ())
     if data.lstrip()[:5].lower() == b"solid" and b"\0" not in data[:_HEAD]:

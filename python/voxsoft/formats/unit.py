@@ -1,4 +1,4 @@
-"""The unit of a file's numbers: said by the file, given, or asked for with sizes in each unit."""
+"""Unit of a file's numbers: from the file, from the caller, or an error with sizes in each unit."""
 
 from __future__ import annotations
 
@@ -11,32 +11,32 @@ from voxsoft.errors import UnitError
 from voxsoft.units import format_quantity, parse
 
 UNITS: Final = ("mm", "cm", "inch", "m")
-#: Bodies beyond are soft robots no more, but numbers in another unit [m].
+#: Limits of the size of a soft robot [m]; beyond, the numbers are likely in another unit.
 _SMALLEST, _LARGEST = 0.5e-3, 5.0
 
 
 def meter_of(
     where: str, stated: float | None, given: str | None, points: NDArray[np.float64], ask: str
 ) -> float:
-    """Return meters in one unit of the numbers; a given unit counts before the file's own.
+    """Return meters in one unit of the numbers; a given unit overrides the file's own.
 
     Parameters
     ----------
     where
-        The file, for messages.
+        Name of the file, for messages.
     stated
-        Meters in the unit that the file says, None if it says none.
+        Meters in the unit that the file gives, None if it gives none.
     given
         A unit such as ``"mm"``, or None.
     points
         Positions of the body in the file's unit, (n, 3).
     ask
-        How a caller gives the unit: ``--unit`` or ``unit=``.
+        Option by which a caller gives the unit: ``--unit`` or ``unit=``.
 
     Raises
     ------
     UnitError
-        If nobody says the unit; the message has the size of the body in each.
+        If the unit is unknown; the message has the size of the body in each.
 
     Examples
     --------
@@ -51,7 +51,7 @@ def meter_of(
 
 
 def name_of(meter: float) -> str:
-    """Return the unit of so many meters.
+    """Return the name of a unit from its length in meters.
 
     Examples
     --------
@@ -63,7 +63,7 @@ def name_of(meter: float) -> str:
 
 
 def sizes(extents: NDArray[np.float64], ask: str) -> tuple[str, str]:
-    """Return the what and the hint of the error about a missing unit.
+    """Return message and hint of the error about a missing unit.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Numbers of VTK's XML files: as text, in base64 and as bytes, whole and in compressed blocks."""
+"""Arrays of VTK's XML files: as text, in base64 and as bytes, plain and in compressed blocks."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _BASE64: Final = re.compile(rb"[A-Za-z0-9+/]+={0,2}")
 
 
 def is_number(kind: str) -> bool:
-    """Whether a type of VTK is a number.
+    """Return True if a type of VTK is a number.
 
     Examples
     --------
@@ -37,18 +37,18 @@ def is_number(kind: str) -> bool:
 
 @dataclass(frozen=True)
 class Coding:
-    """How a file stores its arrays.
+    """Encoding of the arrays of a file.
 
     Attributes
     ----------
     where
-        The file, for messages.
+        Name of the file, for messages.
     order
-        ``<`` or ``>``, the order of bytes.
+        Order of bytes, ``<`` or ``>``.
     header
-        The type of the counts before an array: ``u4`` or ``u8``.
+        Type of the counts before an array: ``u4`` or ``u8``.
     compressor
-        The class of VTK that compressed its blocks; empty where they are plain.
+        VTK class that compressed its blocks; empty where they are plain.
     """
 
     where: str
@@ -94,7 +94,7 @@ class Coding:
         return np.frombuffer(data, dtype).astype(dtype.newbyteorder("="))
 
     def damaged(self, what: str) -> FileError:
-        """Return the error for content that its own counts disprove."""
+        """Make the error for content that contradicts its own counts."""
         return FileError(self.where, f"is damaged: {what}", "save or copy it again")
 
     def _counts(self, content: bytes, first: int, count: int) -> list[int]:
@@ -124,7 +124,7 @@ class Coding:
         place = int(self.header[1]) * (3 + blocks)
         parts = []
         for number, packed in enumerate(self._counts(content, 3, blocks)):
-            # The last block is a whole one where its size is 0.
+            # The last block is a whole one if its size is 0.
             expected = last if last and number == blocks - 1 else size
             try:
                 part = unpack(content[place : place + packed], expected)
@@ -147,12 +147,12 @@ class Coding:
 
 
 def bytes_of_base64(content: bytes) -> bytes:
-    r"""Return the bytes of text in base64; VTK writes headers and blocks as texts of their own.
+    r"""Decode text in base64; VTK writes headers and blocks as separate texts.
 
     Raises
     ------
     ValueError
-        If a text has a number of letters that no bytes have.
+        If a text has an impossible number of letters.
 
     Examples
     --------
@@ -182,13 +182,13 @@ def _lz4(packed: bytes, size: int) -> bytes:
         if not 0 <= start < len(found) or len(found) + length + 4 > size:
             raise ValueError("a copy reaches out of the block")
         run = bytes(found[start : start + length + 4])
-        # A copy may reach into itself: it repeats.
+        # A copy may overlap itself: it repeats.
         found += (run * ((length + 4) // len(run) + 1))[: length + 4]
     return bytes(found)
 
 
 def _lz4_length(packed: bytes, place: int, length: int) -> tuple[int, int]:
-    """A length that goes on in further bytes where its first part is full, and the next place."""
+    """Read a length, continued in further bytes if its first part is full; return also its end."""
     if length == 15:
         while packed[place] == 255:
             length += 255
@@ -199,7 +199,7 @@ def _lz4_length(packed: bytes, place: int, length: int) -> tuple[int, int]:
 
 
 def _zlib(packed: bytes, size: int) -> bytes:
-    # No more than announced: a small block may unfold to gigabytes.
+    # Limited to the announced size: a small block may expand to gigabytes.
     return zlib.decompressobj().decompress(packed, size + 1)
 
 

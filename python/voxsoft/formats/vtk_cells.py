@@ -1,4 +1,4 @@
-"""Cells of VTK by their numbers of types, as blocks of cells of one kind."""
+"""Cells of VTK by their type numbers, as blocks of cells of one kind."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from voxsoft.formats.contents import CellBlock
 
 Indices = NDArray[np.int64]
 
-#: Kinds by the number of a type; the nodes of curved edges follow the corners in all of them.
+#: Kind of cell by type number; the nodes of curved edges follow the corners in all of them.
 _KINDS: Final = {
     **{1: "vertex", 3: "line", 5: "triangle", 7: "polygon", 8: "quad", 9: "quad"},
     **{10: "tetra", 11: "hexahedron", 12: "hexahedron", 13: "wedge", 14: "pyramid"},
@@ -32,14 +32,14 @@ _LINEAR: Final = {
 }
 #: Types that are several simple cells each: points, lines, triangles.
 _POLY_VERTEX, _POLY_LINE, _STRIP, _POLYGON = 2, 4, 6, 7
-#: The lists of cells of polygons with their type, in the order that arrays on cells follow.
+#: Lists of cells of polygons with their type, in the order that arrays on cells follow.
 POLYGONS: Final = (
     ("Verts", _POLY_VERTEX),
     ("Lines", _POLY_LINE),
     ("Polys", _POLYGON),
     ("Strips", _STRIP),
 )
-#: Types that are numbered along x, then y, then z: the kind's own order.
+#: Types numbered along x, then y, then z, with the order of the kind.
 _TURNED: Final = {8: [0, 1, 3, 2], 11: [0, 1, 3, 2, 4, 5, 7, 6]}
 _REFUSED: Final = {
     15: ("pentagonal prism", "pentagonal prisms"),
@@ -53,18 +53,18 @@ _REFUSED: Final = {
 def blocks_of(
     types: Indices, offsets: Indices, nodes: Indices
 ) -> tuple[tuple[CellBlock, ...], Indices]:
-    """Return cells as blocks of one kind, and the cell of the file that each of them is of.
+    """Return cells as blocks of one kind, and the file's cell of each of them.
 
-    Cells of several lines or triangles, such as strips, become these. Cells of type 0 are none.
+    Cells of several lines or triangles, such as strips, become these. Cells of type 0 are dropped.
 
     Parameters
     ----------
     types
-        VTK's number of the type of each cell, (k,).
+        Type number of VTK of each cell, (k,).
     offsets
-        Where the nodes of each cell begin, and where the last ends, (k + 1,).
+        Start of the nodes of each cell, and end of the last, (k + 1,).
     nodes
-        The points of all cells, one after the other.
+        Points of all cells, one after the other.
 
     Examples
     --------
@@ -94,14 +94,14 @@ def blocks_of(
 
 
 def _simple(type_: int, rows: Indices, cells: Indices) -> tuple[str, Indices, Indices]:
-    """The kind and nodes of cells of one type and size, and the cell of the file of each."""
+    """Return kind and nodes of cells of one type and size, and the file's cell of each."""
     count, size = rows.shape
     if type_ in (_POLY_VERTEX, _POLY_LINE, _STRIP):
         corners = {_POLY_VERTEX: 1, _POLY_LINE: 2, _STRIP: 3}[type_]
         steps = np.arange(max(0, size + 1 - corners))
         places = steps[:, None] + np.arange(corners)
         if type_ == _STRIP:
-            # Every other triangle of a strip runs the other way.
+            # Every second triangle of a strip is reversed.
             places[1::2] = places[1::2][:, [1, 0, 2]]
         rows = rows[:, places].reshape(-1, corners)
         return ("vertex", "line", "triangle")[corners - 1], rows, np.repeat(cells, len(steps))
@@ -110,21 +110,21 @@ def _simple(type_: int, rows: Indices, cells: Indices) -> tuple[str, Indices, In
         kind = "triangle" if size == 3 else "quad"
     if type_ in _TURNED and count:
         rows = rows[:, _TURNED[type_]]
-    # Type 0 is a cell of nothing.
+    # Type 0 is an empty cell.
     return kind, rows if kind else rows[:0], cells if kind else cells[:0]
 
 
 def check_cells(where: str, types: Indices, offsets: Indices, nodes: Indices, points: int) -> None:
-    """Refuse cells that cannot be followed.
+    """Refuse invalid cells.
 
     Parameters
     ----------
     where
-        The file, for messages.
+        Name of the file, for messages.
     types, offsets, nodes
-        As :func:`blocks_of` takes them.
+        See :func:`blocks_of`.
     points
-        How many points there are.
+        Number of points.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Data sets of VTK, of either format, and the contents that one or several of them are."""
+"""Data sets of VTK in both formats, and their conversion to contents."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from voxsoft.formats.vtk_cells import blocks_of, check_cells
 Array = NDArray[np.generic]
 Indices = NDArray[np.int64]
 
-#: The array that marks cells of other pieces and hidden ones, and its bits for these.
+#: Array that marks cells of other components and hidden ones, and its bit for hidden ones.
 GHOSTS: Final = "vtkGhostType"
 HIDDEN: Final = 32
 _MARKS: Final = ((1, "that another component has"), (HIDDEN, "that are hidden"))
@@ -30,13 +30,13 @@ class DataSet:
     Attributes
     ----------
     points
-        (n, 3).
+        Coordinates, (n, 3).
     types, offsets, nodes
-        VTK's number of the type of each cell, where its nodes begin and end, and the nodes of all.
+        Type number of VTK of each cell, start and end of its nodes, and the nodes of all.
     cell_arrays, point_arrays
         Names and values, one row for each cell or point.
     notes
-        Sentences on all that is not in these.
+        Sentences on all other contents.
     """
 
     points: NDArray[np.float64]
@@ -51,23 +51,23 @@ class DataSet:
 def contents_of(
     where: str, pieces: Sequence[DataSet], called: str, unit: float | None = None
 ) -> Contents:
-    """Return the cells of all pieces as contents; points where pieces meet become one.
+    """Join the cells of all components of a file to contents; points where they meet become one.
 
     Parameters
     ----------
     where
-        The file, for messages.
+        Name of the file, for messages.
     pieces
-        The pieces of the file.
+        Components of the file.
     called
-        The format as a person calls it.
+        Common name of the format.
     unit
-        Of the coordinates in m, where the file says it.
+        Length of a unit of the coordinates in m, if the file gives it.
 
     Raises
     ------
     FileError
-        If cells cannot be followed, or an array has not one row for each cell.
+        If cells are invalid, or an array has not one row for each cell.
 
     Examples
     --------
@@ -108,9 +108,9 @@ def contents_of(
 def _joined(
     pieces: Sequence[NDArray[np.float64]],
 ) -> tuple[NDArray[np.float64], Indices, list[str]]:
-    """Points of all pieces, the new number of each old one, and a note where some became one.
+    """Join the points of all components; return points, new numbers, and a note on joined ones.
 
-    Points of one place within a piece stay apart: they may be the two sides of a cut.
+    Points of one place within a component stay apart: they may be the two sides of a cut.
     """
     points = np.concatenate(pieces)
     if len(pieces) == 1:
@@ -121,7 +121,7 @@ def _joined(
     pair, uses = np.unique(np.column_stack((place, piece)), axis=0, return_counts=True)
     is_cut = np.zeros(len(points) + 1, bool)
     is_cut[pair[uses > 1, 0]] = True
-    # Each point of a cut has a place of its own.
+    # Each point of a cut gets a place of its own.
     place = np.where(is_cut[place], len(points) + np.arange(len(points)), place)
     _, kept, new = np.unique(place, return_index=True, return_inverse=True)
     order = np.argsort(kept, kind="stable")
@@ -135,7 +135,7 @@ def _joined(
 def _single_numbers(
     where: str, pieces: Sequence[DataSet]
 ) -> tuple[dict[str, NDArray[np.float64]], list[str]]:
-    """Arrays on cells that are one number a cell, through all pieces; sentences on the others."""
+    """Return arrays with one number a cell, through all components; sentences on the others."""
     for piece in pieces:
         for name, values in piece.cell_arrays.items():
             count = len(piece.types)
@@ -145,7 +145,7 @@ def _single_numbers(
     found, notes = {}, []
     for name in dict.fromkeys(_names(pieces)):
         each = [piece.cell_arrays.get(name, np.zeros(len(piece.types))) for piece in pieces]
-        # VTK holds numbers as columns of one, too.
+        # VTK stores single numbers as columns too.
         each = [v[:, 0] if v.ndim == 2 and v.shape[1] == 1 else v for v in each]
         if all(v.ndim == 1 and v.dtype.kind in "biuf" for v in each):
             found[name] = np.concatenate(each).astype(np.float64)

@@ -1,4 +1,4 @@
-"""Grids of VTK: their cells from the numbers of points, and the cells of images by their labels."""
+"""Grids of VTK: cells from the numbers of points, and cells of images by their labels."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from voxsoft._shown import counted
 from voxsoft.errors import FileError
 from voxsoft.formats.vtk_data import GHOSTS, HIDDEN, Array, DataSet, Indices
 
-#: The most labels that can be parts.
+#: Largest number of labels that can be parts.
 _MOST: Final = 255
 _HEXAHEDRON, _QUAD, _LINE, _VERTEX = 12, 9, 3, 1
 _HINT: Final = (
@@ -30,18 +30,18 @@ def curved_grid(
     point_arrays: dict[str, Array],
     notes: tuple[str, ...] = (),
 ) -> DataSet:
-    """Return a grid whose points are given, x fastest, as cells.
+    """Return a grid of given points, x fastest, as cells.
 
     Parameters
     ----------
     where
-        The file, for messages.
+        Name of the file, for messages.
     points
-        (n, 3).
+        Coordinates, (n, 3).
     counts
-        How many points there are along each axis; their product is n.
+        Number of points along each axis; their product is n.
     cell_arrays, point_arrays, notes
-        As of :class:`~voxsoft.formats.vtk_data.DataSet`.
+        See :class:`~voxsoft.formats.vtk_data.DataSet`.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def crossed(axes: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
 
 
 def _corners(counts: tuple[int, ...], is_kept: NDArray[np.bool_] | None = None) -> Indices:
-    """Points of cells, in VTK's order, of the dimension that the grid has; x fastest."""
+    """Return the points of cells, in VTK's order, in the dimension of the grid; x fastest."""
     steps = np.cumprod([1, *counts[:-1]])
     wide = [axis for axis in range(3) if counts[axis] > 1]
     shape = [max(1, n - 1) if n else 0 for n in counts]
@@ -96,7 +96,7 @@ def _corners(counts: tuple[int, ...], is_kept: NDArray[np.bool_] | None = None) 
     around = np.zeros(1, np.int64)
     for number, axis in enumerate(wide):
         upper = around + steps[axis]
-        # The second side of a face runs back, so that the corners go around it.
+        # The second side of a face is reversed, so that the corners go around it.
         around = np.concatenate([around, upper[::-1] if number == 1 else upper])
     firsts = np.asarray(first, np.int64).reshape(-1)
     corners: Indices = (firsts if is_kept is None else firsts[is_kept])[:, None] + around
@@ -105,20 +105,20 @@ def _corners(counts: tuple[int, ...], is_kept: NDArray[np.bool_] | None = None) 
 
 @dataclass(frozen=True, eq=False)
 class Image:
-    """Numbers on a regular grid.
+    """Regular grid with numbers.
 
     Attributes
     ----------
     counts
-        Points along each axis.
+        Number of points along each axis.
     origin, steps
-        The place of the first point, and the step to the next along each axis as rows, (3, 3).
+        Position of the first point, and the step to the next along each axis as rows, (3, 3).
     cell_arrays, point_arrays
         Names and values, x fastest.
     active
-        The array that the file names as its scalars, if any.
+        Array that the file names as its scalars, if any.
     notes
-        Sentences on all that is not in these.
+        Sentences on all other contents.
     """
 
     counts: tuple[int, int, int]
@@ -131,12 +131,12 @@ class Image:
 
 
 def cells_of_image(where: str, image: Image) -> DataSet:
-    """Return the cells of an image whose label is not 0; labels at points are of cells around them.
+    """Return the cells of an image with a label other than 0; a labeled point is one cell.
 
     Raises
     ------
     FileError
-        If no array is of labels: whole numbers from 0, at most 255 of them.
+        If no array holds labels: whole numbers from 0, at most 255 of them.
 
     Examples
     --------
@@ -178,7 +178,7 @@ def cells_of_image(where: str, image: Image) -> DataSet:
 
 
 def _chosen(where: str, image: Image) -> tuple[str, bool]:
-    """The array of labels, and whether it is at points."""
+    """Choose the array of labels; return its name, and True if it is on points."""
     for on_points, arrays in ((False, image.cell_arrays), (True, image.point_arrays)):
         whole = [
             name
@@ -212,7 +212,7 @@ def _check_labels(where: str, name: str, values: Array) -> None:
 
 
 def _notes(image: Image, name: str, on_points: bool) -> list[str]:
-    """Sentences on how labels were taken, and on the other arrays."""
+    """List sentences on how labels were taken, and on the other arrays."""
     at = "points, each the middle of a cell" if on_points else "cells"
     notes = [f'Array "{name}" has the labels, on {at}']
     for arrays, where in ((image.cell_arrays, "cells"), (image.point_arrays, "points")):

@@ -23,14 +23,14 @@ _CALLED: Final = {
     "structured_grid": "structured grid",
     "rectilinear_grid": "rectilinear grid",
 }
-#: The lists of cells of polygons by their words here.
+#: Lists of cells of polygons by their keywords here.
 _LISTS: Final = {
     "vertices": POLYGONS[0],
     "lines": POLYGONS[1],
     "polygons": POLYGONS[2],
     "triangle_strips": POLYGONS[3],
 }
-#: Numbers of a row of each kind of attribute; those that are told otherwise are 0.
+#: Numbers in a row of each kind of attribute; 0 where the width is given in another way.
 _WIDTHS: Final = {
     **{"vectors": 3, "normals": 3, "tensors": 9, "tensors6": 6, "global_ids": 1},
     **{"pedigree_ids": 1, "edge_flags": 1, "texture_coordinates": 0, "scalars": 0},
@@ -39,13 +39,12 @@ _WIDTHS: Final = {
 
 
 def read(path: Path) -> Contents:
-    """Read a file; one that holds XML as such.
+    """Read a file; XML is read as such.
 
     Raises
     ------
     FileError
-        If it ends within its numbers, has a word where none is expected, or its cells cannot be
-        followed.
+        If it ends within its numbers, has an unexpected word, or its cells are invalid.
     """
     where, data = str(path), path.read_bytes()
     if data[:64].lstrip().startswith(b"<"):
@@ -67,7 +66,7 @@ def read(path: Path) -> Contents:
 
 
 class _File:
-    """All that the sections of a file hold."""
+    """Contents of all sections of a file."""
 
     def __init__(self, cursor: Cursor) -> None:
         self.cursor = cursor
@@ -119,10 +118,10 @@ class _File:
         return self.cursor.numbers(count * width, words[1] if len(words) > 1 else "")
 
     def _cells(self, words: list[str]) -> tuple[Indices, Indices]:
-        """Where the nodes of each cell begin and end, and all nodes."""
+        """Read start and end of the nodes of each cell, and all nodes."""
         count, size = self.cursor.parsed(words[:2], int, 2)
         if self.cursor.peek().lower() == "offsets":
-            # From version 5.1 on; the count is of offsets, one more than cells.
+            # Version 5.1 and later; the count is of offsets, one more than cells.
             offsets = self.cursor.numbers(count, self.cursor.words()[-1])
             if self.cursor.peek().lower() != "connectivity":
                 raise self.cursor.wrong("OFFSETS are not followed by CONNECTIVITY")
@@ -170,7 +169,7 @@ class _File:
                 self.active = cursor.named(name)
         values = cursor.numbers(rows * width, kind)
         if key == "color_scalars" and not cursor.is_binary:
-            # Texts have bytes as parts of 255; VTK writes any numbers of one byte so.
+            # Texts store bytes as parts of 255; VTK writes any numbers of one byte so.
             whole = np.rint(255.0 * np.nan_to_num(values.astype(np.float64)))
             values = np.clip(whole, 0, 255).astype(np.uint8)
         self._keep(cursor.named(name), values, rows, width)

@@ -1,4 +1,4 @@
-"""A place in a legacy file of VTK, from which words and numbers are read, as text or binary."""
+"""Cursor in a legacy file of VTK, from which words and numbers are read, as text or binary."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ _TYPES: Final = {
 
 
 class Cursor:
-    r"""A place in a file.
+    r"""Position in a file.
 
     Parameters
     ----------
     where
-        The file, for messages.
+        Name of the file, for messages.
     data
-        All of it.
+        Content of the file.
     place
-        Where to begin.
+        Position to begin at.
 
     Examples
     --------
@@ -53,7 +53,7 @@ class Cursor:
         return []
 
     def peek(self) -> str:
-        """Return the first word of the next line that has any, and stay."""
+        """Return the first word of the next line that has any, without moving."""
         place = self.place
         words = self.words()
         self.place = place
@@ -67,7 +67,7 @@ class Cursor:
         return line
 
     def skip_to_blank(self) -> None:
-        """Go behind the next blank line."""
+        """Move behind the next blank line."""
         while self.place < len(self.data) and self._line().strip():
             pass
 
@@ -114,12 +114,12 @@ class Cursor:
         return np.unpackbits(self._binary((count + 7) // 8, "u1").astype(np.uint8))[:count]
 
     def skip_texts(self, count: int) -> None:
-        """Go behind texts: lines, or in binary each behind its length."""
+        """Move behind texts: lines, or in binary each behind its length."""
         for _ in range(count):
             if not self.is_binary:
                 self._line()
                 continue
-            # The two highest bits of the first byte say how many bytes the length has.
+            # The two highest bits of the first byte give the number of bytes of the length.
             first = int(self._binary(1, "u1")[0])
             more = {3: 0, 2: 1, 1: 3, 0: 7}[first >> 6]
             length = first & 63
@@ -144,11 +144,11 @@ class Cursor:
         return found
 
     def named(self, word: str) -> str:
-        """Return a name as it was before it was made one word."""
+        """Return a name as it was before its encoding as one word."""
         return unquote(word)
 
     def wrong(self, what: str, hint: str = "") -> FileError:
-        """Return an error with the line here, or the byte of a binary file."""
+        """Make an error with the current line, or the byte of a binary file."""
         if self.is_binary:
             return FileError(f"{self.where}, byte {self.place:,}", what, hint)
         line = self.data.count(b"\n", 0, max(0, self.place - 1)) + 1

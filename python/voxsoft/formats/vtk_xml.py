@@ -1,4 +1,4 @@
-"""XML files of VTK: .vtu, .vtp, .vti, .vts and .vtr with all their pieces and codings."""
+"""XML files of VTK: .vtu, .vtp, .vti, .vts and .vtr with all their components and encodings."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from voxsoft.formats.vtk_cells import POLYGONS
 from voxsoft.formats.vtk_data import Array, DataSet, contents_of
 from voxsoft.formats.vtk_grids import Image, cells_of_image, crossed, curved_grid
 
-#: What each type of a file is called.
+#: Common name of each type of file.
 _CALLED: Final = {
     "UnstructuredGrid": "VTK XML, unstructured grid",
     "PolyData": "VTK XML, polygons",
@@ -40,7 +40,7 @@ def read(path: Path) -> Contents:
     ------
     FileError
         If it has no end, its arrays do not fit their counts, it only lists other files, or its
-        cells cannot be followed.
+        cells are invalid.
     """
     where, data = str(path), path.read_bytes()
     root, appended = _parsed(where, data)
@@ -73,7 +73,7 @@ def read(path: Path) -> Contents:
 
 
 def _parsed(where: str, data: bytes) -> tuple[ET.Element, bytes]:
-    """The elements of a file, and what is appended to them, which may be no text."""
+    """Parse a file; return its root element and the appended data, which may be binary."""
     if b"<VTKFile" not in data[:_HEAD]:
         raise FileError(where, "is no XML file of VTK: it does not begin with <VTKFile>")
     if _END not in data[-_TAIL:]:
@@ -86,7 +86,7 @@ def _parsed(where: str, data: bytes) -> tuple[ET.Element, bytes]:
         appended = data[first:last]
         data = data[:first] + data[last:]
     try:
-        # expat bounds the text that entities expand to.
+        # Entities are safe: expat bounds the text that they expand to.
         root = ET.fromstring(data)
     except ET.ParseError as error:
         raise FileError(where, f"is no XML: {error}", "save or copy it again") from None
@@ -94,7 +94,7 @@ def _parsed(where: str, data: bytes) -> tuple[ET.Element, bytes]:
 
 
 def _of_files(where: str, kind: str, root: ET.Element) -> FileError:
-    """Say which files a file lists, where it has no cells of its own."""
+    """Make an error that names the files a file lists, as it has no cells of its own."""
     listed = [
         name for each in root.iter() for key in ("file", "Source") if (name := each.get(key, ""))
     ]
@@ -106,7 +106,7 @@ def _of_files(where: str, kind: str, root: ET.Element) -> FileError:
 
 
 class _Arrays:
-    """The arrays of a file by their elements."""
+    """Arrays of a file by their elements."""
 
     def __init__(self, coding: Coding, root: ET.Element, appended: bytes) -> None:
         self.coding = coding
@@ -114,7 +114,7 @@ class _Arrays:
         self.is_raw = element is not None and element.get("encoding") == "raw"
         self.appended = appended if self.is_raw else b"".join(appended.split())
         places = {int(each.get("offset") or 0) for each in root.iter() if _is_appended(each)}
-        # An array ends where the next one begins.
+        # An array ends at the start of the next one.
         self.places = [*sorted(places), len(self.appended)]
         self.notes: list[str] = []
 
@@ -143,7 +143,7 @@ class _Arrays:
         return values if width == 1 else values.reshape(-1, width)
 
     def points(self, parent: ET.Element | None) -> NDArray[np.float64]:
-        """Return the points of a piece."""
+        """Return the points of a component."""
         element = None if parent is None else parent.find("DataArray")
         if element is None:
             return np.empty((0, 3))
@@ -153,7 +153,7 @@ class _Arrays:
         return points.astype(np.float64)
 
     def _content(self, element: ET.Element, how: str) -> bytes:
-        """The header and data of an array."""
+        """Return header and data of an array."""
         if how == "appended":
             first = int(element.get("offset") or 0)
             content = self.appended[first : self.places[self.places.index(first) + 1]]
@@ -224,12 +224,12 @@ _READERS: Final = {
 
 
 def _data(arrays: _Arrays, piece: ET.Element) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Arrays on cells and on points."""
+    """Return arrays on cells and on points."""
     return arrays.named(piece.find("CellData")), arrays.named(piece.find("PointData"))
 
 
 def _extent(text: str) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The first and last point along each axis."""
+    """Return the first and last point along each axis."""
     numbers = np.array(text.split(), np.int64)
     if numbers.shape != (6,):
         raise ValueError(f"extent {text!r}")
@@ -237,7 +237,7 @@ def _extent(text: str) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 
 def _image(arrays: _Arrays, body: ET.Element, pieces: list[ET.Element]) -> Image:
-    """All pieces of an image as one."""
+    """Join all components of an image."""
     low, high = _extent(body.get("WholeExtent", ""))
     origin, spacing, direction = (
         np.array(body.get(name, default).split(), np.float64)

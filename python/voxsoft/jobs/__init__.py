@@ -1,4 +1,4 @@
-"""Jobs: what is to be done as a value, one runner for all of them, and folders that repeat them.
+"""Jobs: tasks as values, one runner for all of them, and folders that repeat them.
 
 A job is a run, a study (a sweep or an optimization), a calibration or a comparison. Its spec holds
 all that decides its results; the command line and the studio make specs and run them here.
@@ -34,7 +34,7 @@ __all__ = [
     "run_job",
 ]
 
-# Loaded when first used: a run needs no Optuna, a study no outside code.
+# Imported when first used: a run needs no Optuna, a study no outside code.
 _HOMES = {
     "CalibrateSpec": "voxsoft.jobs.spec",
     "CompareSpec": "voxsoft.jobs.spec",

@@ -1,4 +1,4 @@
-"""The job of a calibration: a material from measurements."""
+"""Job of a calibration: a material from measurements."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The job of a comparison: a design by several solvers, an outside code and measurements."""
+"""Job of a comparison: a design by several solvers, an outside code and measurements."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from voxsoft.jobs.folder import write_job
 from voxsoft.jobs.outcome import JobOutcome
 from voxsoft.jobs.spec import CompareSpec
 
-#: The report of a comparison in its folder.
+#: File name of the report of a comparison.
 REPORT: Final = "report.html"
 
 

@@ -16,7 +16,7 @@ from voxsoft.files.run_folder import make_folder
 from voxsoft.files.toml_text import write_toml
 from voxsoft.jobs.spec import JobSpec
 
-#: The folder of the copies in that of a job.
+#: Name of the folder of the copies in a job's folder.
 INPUTS: Final = "inputs"
 #: Digits of the content's hash in the name of a copy.
 _DIGITS: Final = 8
@@ -25,7 +25,7 @@ AnySpec = TypeVar("AnySpec", bound=JobSpec)
 
 
 def design_file(kind: str) -> str:
-    """Where the design of a job lies in its folder: a run leaves its resolved one at the top.
+    """Return the path of a job's design in its folder: a run leaves its resolved one at the top.
 
     Examples
     --------
@@ -36,10 +36,10 @@ def design_file(kind: str) -> str:
 
 
 def with_copies(spec: AnySpec, folder: Path) -> AnySpec:
-    """Copy the files that the design of a spec names to a folder; return the spec that names those.
+    """Copy the files that the design of a spec names to a folder; return the spec of the copies.
 
     A copy has the hash of its content in its name, so that no other copy is ever replaced. A file
-    that cannot be read is left to the job, which says what it was for.
+    that cannot be read is left to the job, whose error names its purpose.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def with_copies(spec: AnySpec, folder: Path) -> AnySpec:
 
 
 def _copy_of(file: Path, inputs: Path, is_design: bool = False) -> Path | None:
-    """Copy a file, and the files that a design names with it; None where it cannot be read."""
+    """Copy a file, and the files that a design names with it; return None if it cannot be read."""
     try:
         content = file.read_bytes()
         document = tomllib.loads(content.decode("utf-8-sig")) if is_design else {}

@@ -1,4 +1,4 @@
-"""Where the results of two folders differ."""
+"""Differences between the results of two folders."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from voxsoft.files.calibrations import NOT_CARDS
 from voxsoft.files.meshes import read_mesh_file
 from voxsoft.records import place
 
-#: What differs from one time to the next and is no result: times, places and versions, and what to
-#: try, which says how long that takes.
+#: Keys that vary from run to run and are no result: times, places and versions, and hints, which
+#: state how long a remedy takes.
 _NO_RESULT: Final = frozenset(
     {"seconds", "hint", "written", "versions", "version", "folder", "report"}
 )
@@ -24,7 +24,7 @@ _ABSENT: Final = "absent"
 
 
 class Difference(NamedTuple):
-    """One result that is not the same.
+    """One result that differs.
 
     Attributes
     ----------
@@ -47,13 +47,13 @@ class Difference(NamedTuple):
 def differences(before: Path, after: Path) -> Iterator[Difference]:
     """Compare the results in two folders to the last bit.
 
-    What only the second folder holds does not count: an older VoxSoft may have written less.
-    A summary must be there: what has none did not end.
+    Results of the second folder alone do not count: an older VoxSoft may have written less. A
+    summary must be there: a folder without one did not end.
 
     Parameters
     ----------
     before, after
-        The folders.
+        Folders to compare.
     """
     cards = {file.name for file in before.glob("*.toml")} - NOT_CARDS
     readers: dict[str, Callable[[Path], Any]] = {"summary.json": _json}
@@ -77,7 +77,7 @@ def _file_differences(
             contents.append(read(folder / name))
         except FileNotFoundError:
             contents.append(_ABSENT)
-        except Exception as error:  # whatever a reader finds wrong with a damaged file
+        except Exception as error:  # any error of a reader on a damaged file
             contents.append(f"damaged ({type(error).__name__})")
     for steps, old, new in _different(contents[0], contents[1], ()):
         yield Difference(name, place(steps) if steps else "", old, new)
@@ -92,7 +92,7 @@ def _different(
                 continue
             if key not in after:
                 yield (*steps, key), before[key], _ABSENT
-            elif key in before:  # what is told today and was not told then is no difference
+            elif key in before:  # a key that an older summary lacks is no difference
                 yield from _different(before[key], after[key], (*steps, key))
     elif isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
         for index, pair in enumerate(zip(before, after, strict=True)):
@@ -109,7 +109,7 @@ def _different_arrays(
     if before.shape != after.shape or before.dtype != after.dtype:
         yield steps, f"{before.dtype} {before.shape}", f"{after.dtype} {after.shape}"
         return
-    # As bytes: what is no number is the same as itself, and 0.0 is not -0.0.
+    # Compared as bytes: NaN is the same as itself, and 0.0 is not -0.0.
     raw = [np.ascontiguousarray(each).view(np.uint8).reshape(-1) for each in (before, after)]
     other = np.flatnonzero(raw[0] != raw[1]) // before.dtype.itemsize
     if len(other):

@@ -1,4 +1,4 @@
-"""What a job says while it works."""
+"""Events of a job while it works."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a job is.
+    """Progress of a job.
 
     Attributes
     ----------
     done, total
-        Steps that are done, and how many there are.
+        Number of steps that are done, and of all.
     of
-        What is counted: ``designs``, ``generations``, ``percent``, ...
+        Unit of the steps: ``designs``, ``generations``, ``percent``, ...
     stage
-        What is being done.
+        Current stage.
     best
-        The best so far, in words.
+        Best value so far, in words.
     """
 
     done: int
@@ -37,7 +37,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class StudyStanding:
-    """What a study holds, told as it begins and as it ends."""
+    """Contents of a study, sent as it begins and as it ends."""
 
     study: Study
     result: StudyResult
@@ -47,10 +47,10 @@ JobEvent: TypeAlias = (
     "Progress | StudyStanding | TrialEvent | CalibrationEvent | Calibration | LoadPath"
 )
 
-#: Called on the thread of the job, which waits for it. What it raises ends the job:
-#: ``KeyboardInterrupt`` as Ctrl-C does, and what is finished is kept.
+#: Function called on the thread of the job, which waits for it. Its exceptions end the job:
+#: ``KeyboardInterrupt`` as Ctrl-C does, and finished results are kept.
 Listener: TypeAlias = Callable[[JobEvent], None]
 
 
 def nobody(event: JobEvent) -> None:
-    """Listen to nothing."""
+    """Ignore an event."""

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from voxsoft.errors import FileError
 
-#: The file that held a job.
+#: File name of a job of the first version.
 FIRST: Final = "job.json"
 
 
@@ -18,7 +18,7 @@ def read_first(folder: Path) -> dict[str, Any]:
     Raises
     ------
     FileError
-        It is damaged.
+        The file is damaged.
     """
     try:
         content = json.loads((folder / FIRST).read_bytes())

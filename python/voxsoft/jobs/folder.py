@@ -1,4 +1,4 @@
-"""The folder of a job: ``job.toml``, and what goes into the job beside it."""
+"""Folder of a job: ``job.toml``, and the files that the job needs beside it."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from voxsoft.records import FrozenDict, Record
 from voxsoft.records.table import Table
 from voxsoft.units import EXACT
 
-#: The file that says what a job is.
+#: File name of a job's spec.
 JOB: Final = "job.toml"
 SCHEMA: Final = "voxsoft-job/1"
-#: The folder of the measured tables.
+#: Name of the folder of the measured tables.
 MEASURED: Final = "measured"
 
 _HEAD: Final = """\
@@ -71,7 +71,7 @@ class _File(Record):
 
 
 def machine() -> str:
-    """What of a machine may change the last bits of a number.
+    """Describe the machine, as far as it may change the last bits of a number.
 
     Examples
     --------
@@ -87,9 +87,9 @@ def write_job(spec: Spec, folder: Path) -> None:
     Parameters
     ----------
     spec
-        What is to be done, with the copies of :func:`voxsoft.jobs.copies.with_copies`.
+        Spec of the job, with the copies of :func:`voxsoft.jobs.copies.with_copies`.
     folder
-        Where; made if it does not exist.
+        Folder to write; made if it does not exist.
 
     Raises
     ------
@@ -126,14 +126,14 @@ def load(folder: FilePath, *, check: bool = True) -> Job:
     Parameters
     ----------
     folder
-        A folder that a run, study, calibration or comparison left, or works in.
+        Folder that a run, study, calibration or comparison left, or works in.
     check
-        Whether the files of the job must be as they were.
+        True to require that the files of the job are unchanged.
 
     Returns
     -------
     Job
-        With everything it needs; the folder can be elsewhere than where it was written.
+        Job with everything it needs; the folder may have moved since it was written.
 
     Raises
     ------
@@ -165,12 +165,12 @@ def load(folder: FilePath, *, check: bool = True) -> Job:
 
 
 def holds_job(folder: Path) -> bool:
-    """Whether a folder tells how its results were made."""
+    """Return True if a folder holds the spec of its results."""
     return (folder / JOB).is_file() or (folder / FIRST).is_file()
 
 
 def kind_of_job(folder: Path) -> str | None:
-    """The kind of a folder's job, or None."""
+    """Return the kind of a folder's job, or None."""
     with suppress(VoxSoftError):
         if (folder / JOB).is_file():
             return str(_read(folder).job.get("kind"))
@@ -242,7 +242,7 @@ def _check_file(place: Path, name: str, digest: str) -> None:
 
 
 def _within(place: Path, name: object) -> Path:
-    """A file of the folder; no other is ever read."""
+    """Return a file inside the folder; no other is ever read."""
     if not isinstance(name, str) or ".." in (path := PurePosixPath(name)).parts:
         raise FileError(str(place / JOB), f"names {name!r}, which is not in the folder")
     if path.is_absolute():

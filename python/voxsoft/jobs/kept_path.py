@@ -1,4 +1,4 @@
-"""The equilibria of a path on disk while it is followed: what ends the job costs none of them."""
+"""Equilibria of a path on disk while it is followed: an interrupted job loses none of them."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from voxsoft.files.toml_text import write_toml
 from voxsoft.simulation import Over, Result
 from voxsoft.simulation.solved_state import SolvedState
 
-#: The folder beside the table that holds them until the path is finished.
+#: Name of the folder beside the table that holds them until the path is finished.
 FOLDER: Final = "path-equilibria"
 
 
 class KeptPath:
-    """The equilibria that a path has found so far, in a folder.
+    """Equilibria that a path has found so far, in a folder.
 
     Parameters
     ----------
     folder
-        The folder of the job.
+        Folder of the job.
     design, over
-        What is followed: equilibria of any other path are not taken for those of this one.
+        Design and values of the path: equilibria of any other path are not read.
 
     Examples
     --------
@@ -55,7 +55,7 @@ class KeptPath:
         self._key = hashlib.sha256(described.encode()).hexdigest()
 
     def keep(self, number: int, result: Result) -> None:
-        """Write the equilibrium at a value, the first of which has the number 0.
+        """Write the equilibrium at a value, counted from 0.
 
         Raises
         ------
@@ -72,9 +72,9 @@ class KeptPath:
         )
 
     def read(self) -> list[tuple[NDArray[np.float64], SolvedState]]:
-        """Positions and all else of the equilibria from the first value on, without a gap.
+        """Read positions and states of the equilibria from the first value on, without a gap.
 
-        What cannot be read, or is of another path, ends them.
+        An equilibrium that cannot be read, or is of another path, ends them.
         """
         return list(self._read())
 
@@ -97,7 +97,7 @@ class KeptPath:
             number += 1
 
     def clear(self) -> None:
-        """Remove all of them: the path is finished, and the same job done anew begins anew."""
+        """Remove all equilibria: the path is finished, and a repeated job begins anew."""
         shutil.rmtree(self._folder, ignore_errors=True)
 
     def _file(self, number: int) -> Path:

@@ -1,4 +1,4 @@
-"""How near to its end a search for rest is."""
+"""Progress of a search for equilibrium toward its end."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from voxsoft.simulation.rest import DEFAULT_TOLERANCE
 
 
 def digits_lost(residual: float, largest: float, tolerance: float = DEFAULT_TOLERANCE) -> float:
-    """The part of the digits that a residual must lose until rest, and has lost.
+    """Return the share of the digits a residual must lose until rest that it has lost.
 
     A residual falls by about the same factor in the same time.
 
@@ -27,14 +27,14 @@ def digits_lost(residual: float, largest: float, tolerance: float = DEFAULT_TOLE
 
 
 class Nearness:
-    """The part of a run that is done: of its end time, its load, or the digits of its residual.
+    """Share of a run that is done: of its end time, its load, or the digits of its residual.
 
     Parameters
     ----------
     solver
-        Its settings.
+        Settings of the solver.
     of_loads
-        Whether it reports the load that it has reached, as statics does.
+        True if the solver reports the load that it has reached, as statics does.
 
     Examples
     --------
@@ -49,9 +49,9 @@ class Nearness:
         self._largest = self._share = 0.0
 
     def at(self, time: float, residual: float) -> float:
-        """Return the part that is done, from 0 to 1; it never falls.
+        """Return the share that is done, from 0 to 1; it never falls.
 
-        Of statics it is the part of the load that was reached, which is the time it reports.
+        In statics it is the share of the load that was reached, which is reported as the time.
         """
         self._share = max(self._share, self._now(time, residual))
         return self._share

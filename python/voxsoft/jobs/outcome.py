@@ -1,4 +1,4 @@
-"""What a job leaves."""
+"""Outcome of a job."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 class Summarized(Protocol):
-    """A result that can be told as plain data."""
+    """Result with a summary as plain data."""
 
     def summary(self) -> dict[str, Any]:
-        """Everything in SI units."""
+        """Return all numbers in SI units."""
         ...
 
 
@@ -27,28 +27,28 @@ Found = TypeVar("Found", bound=Summarized)
 
 @dataclass(frozen=True)
 class JobOutcome(Generic[Found]):
-    """What a job found, and where it wrote it.
+    """Result of a job, and the files it wrote.
 
     Attributes
     ----------
     folder
-        Its folder.
+        Folder of the job.
     found
-        The result.
+        Result of the job.
     sentence
-        What came out, in words.
+        Result in a sentence.
     written
-        The files of the results.
+        Files of the results.
     earlier
-        Trials that a study held before.
+        Number of trials that a study held before.
     confirmed
-        The best designs of a study, solved again, if that was asked.
+        Best designs of a study, solved again, if that was asked.
     error_bars
-        Those of a run, or why there are none.
+        Error bars of a run, or why there are none.
     path
-        The path that a run followed, whose last equilibrium is what was found.
+        Path that a run followed, whose last equilibrium is the result.
     path_bars
-        The error bars along it, as far as it was followed.
+        Error bars along it, as far as it was followed.
     unwritten
         Files that could not be written after the numbers were, each with the reason.
     """
@@ -80,7 +80,7 @@ class JobOutcome(Generic[Found]):
 
 
 def path_summary(path: LoadPath, bars: Sequence[ErrorBars] = ()) -> dict[str, Any]:
-    """What a path adds to the summary of its last equilibrium, each row with its error bars."""
+    """Summarize a path beside its last equilibrium, each row with its error bars."""
     rows = path.summary()
     for row, bar in zip(rows["path"], bars, strict=False):
         row["error_bars"] = bar.summary()

@@ -1,4 +1,4 @@
-"""A job done again, and whether its results are the same."""
+"""Repetition of a job, and comparison of its results."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from voxsoft.jobs.outcome import JobOutcome
 from voxsoft.jobs.runner import run_job
 from voxsoft.jobs.spec import RunSpec
 
-#: Differences that a printed repetition lists.
+#: Number of differences that a printed repetition lists.
 _SHOWN = 5
 
 
 @dataclass(frozen=True, repr=False)
 class Repetition(Shown):
-    """A job done again.
+    """Repetition of a job.
 
     Attributes
     ----------
     job
-        The job.
+        Job that was repeated.
     folder
-        The folder it was in.
+        Folder of the job.
     outcome
-        What it gave this time.
+        Outcome of the repetition.
     differences
         Results that are not the same to the bit; empty where all are.
     """
@@ -54,12 +54,12 @@ class Repetition(Shown):
 
     @property
     def same(self) -> bool:
-        """Whether all results are the same to the bit."""
+        """True if all results are the same to the bit."""
         return not self.differences
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """What is not as it was then, and may be why results differ."""
+        """Changes since then that may be why results differ."""
         now = {"VoxSoft": version("voxsoft"), "machine": machine()}
         then = {"VoxSoft": self.job.version, "machine": self.job.machine}
         return tuple(
@@ -69,7 +69,7 @@ class Repetition(Shown):
         )
 
     def summary(self) -> dict[str, Any]:
-        """Plain data in SI units: what the job told, and ``same``, ``differences``, ``reasons``."""
+        """Plain data in SI units: summary of the job, ``same``, ``differences``, ``reasons``."""
         return self.outcome.summary | {
             "again": str(self.folder),
             "same": self.same,
@@ -84,16 +84,16 @@ def again(folder: FilePath, out: FilePath | None = None, notify: Listener = nobo
     Parameters
     ----------
     folder
-        A folder that a run, study, calibration or comparison left. Nothing in it is changed.
+        Folder that a run, study, calibration or comparison left. Nothing in it is changed.
     out
         The new folder, which must be empty; default: the same name with ``-again``.
     notify
-        As for :func:`voxsoft.jobs.run_job`.
+        See :func:`voxsoft.jobs.run_job`.
 
     Returns
     -------
     Repetition
-        Its :attr:`~Repetition.same` tells whether every result is the same to the bit.
+        Repetition whose :attr:`~Repetition.same` is True if every result is the same to the bit.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def again(folder: FilePath, out: FilePath | None = None, notify: Listener = nobo
 
 
 def _free(place: Path) -> Path:
-    """A folder beside one, with its name and ``-again``."""
+    """Name a new folder beside one, with its name and ``-again``."""
     whole = place.absolute()
     names = (f"{whole.name}-again{'' if at == 1 else f'-{at}'}" for at in range(1, 10_000))
     beside = place.parent if place.name else whole.parent

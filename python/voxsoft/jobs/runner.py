@@ -1,4 +1,4 @@
-"""One runner for every kind of job: a spec to a folder."""
+"""Runner of every kind of job: from a spec to a folder."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def run_job(
     scheduler: str | None = None,
     storage: str | None = None,
 ) -> JobOutcome[Any]:
-    """Do a job and leave its folder.
+    """Run a job and leave its folder.
 
     The folder then holds the results, ``job.toml`` and all that the job needs, so that
     :func:`voxsoft.jobs.again` repeats it, also elsewhere.
@@ -76,30 +76,30 @@ def run_job(
     Parameters
     ----------
     spec
-        What is to be done.
+        Spec of the job.
     folder
-        Where; made if it does not exist. A study that the folder holds already goes on.
+        Folder to write; made if it does not exist. A study that it holds already goes on.
     notify
         Called with each :data:`voxsoft.jobs.events.JobEvent`. The job waits for it, and ends with
-        what it raises; ``KeyboardInterrupt`` stops the job as Ctrl-C does.
+        its exceptions; ``KeyboardInterrupt`` stops the job as Ctrl-C does.
     gate
         Holds back the trials of a study while it is closed.
     scheduler, storage
-        Where the trials of a study run, and where they are stored, as for
-        :class:`voxsoft.study.Study`; neither changes a result, and neither is kept.
+        Address of the Dask scheduler that runs the trials of a study, and Optuna storage of the
+        trials, see :class:`voxsoft.study.Study`; neither changes a result, and neither is kept.
 
     Returns
     -------
     JobOutcome
-        The result, and what was written.
+        Result, and the files that were written.
 
     Raises
     ------
     VoxSoftError
-        What the function of that name raises: :func:`voxsoft.simulate`,
-        :meth:`voxsoft.study.Study.optimize`, :func:`voxsoft.calibrate`, :func:`voxsoft.compare`.
+        The errors of :func:`voxsoft.simulate`, :meth:`voxsoft.study.Study.optimize`,
+        :func:`voxsoft.calibrate`, :func:`voxsoft.compare`.
     KeyboardInterrupt
-        After Ctrl-C; what is finished is kept.
+        After Ctrl-C; finished results are kept.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def run_job(
     'ok'
     """
     place = Path(folder)
-    # The job itself reads the copies: what is run is what is kept.
+    # The job itself reads the copies, so that the folder holds its exact input.
     match spec:
         case RunSpec():
             from voxsoft.jobs.simulating import run_simulation

@@ -1,4 +1,4 @@
-"""The job of a run: one design to its state at rest, or over time."""
+"""Job of a run: one design to its state at rest, or over time."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from voxsoft.simulation.cost import cost_of
 from voxsoft.simulation.equilibrium import Statics
 from voxsoft.units import format_percent, format_quantity
 
-#: What is counted while a further run for error bars is made.
+#: Unit of progress while a further run for error bars is made.
 FURTHER: Final = "percent of a further run"
-#: Seconds between two words on how far a run is.
+#: Seconds between two reports of the progress of a run.
 _REPORT_EVERY: Final = 0.25
-#: Seconds of a run before it may be called overdue, and how many times what was expected that is.
+#: Least seconds of an overdue run, and least multiple of its expected seconds.
 _LONG: Final = 10.0
 _OVERDUE: Final = 10.0
 #: No further entries of a summary.
@@ -81,7 +81,7 @@ def _write(
     """Write a run folder with its pictures, the numbers first."""
     write_summary(result, folder, more=more)
     with unwritten.attempt("job.toml"):
-        write_job(spec.replace(kept=False), folder)  # what the folder holds from now on was solved
+        write_job(spec.replace(kept=False), folder)  # from now on the folder holds a solved state
     with unwritten.attempt("result.vtu"):
         files.write_run(result, folder, more=more)
     with unwritten.attempt("thumbnail"):
@@ -99,12 +99,12 @@ def _write(
 
 def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> JobOutcome[Result]:
     """Follow a path, and write the folder of its last equilibrium with a table of all of them."""
-    assert spec.over is not None  # asked by the caller
+    assert spec.over is not None  # checked by the caller
     over = simulation.Over.read(spec.over)
     kept = KeptPath(folder, design, over)
     earlier = kept.read()
     if not earlier:
-        kept.clear()  # of another path
+        kept.clear()  # equilibria of another path
     followed: simulation.LoadPath | None = None
 
     def step(path: simulation.LoadPath) -> None:
@@ -125,7 +125,7 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
     try:
         path = simulation.follow(design, over, step=step, earlier=earlier)
     except BaseException:
-        # Whatever ends the search, Ctrl-C too, leaves the equilibria that were found.
+        # Every exception, Ctrl-C too, leaves the equilibria that were found.
         if followed is not None:
             _write(spec, followed.results[-1], folder, unwritten, path_summary(followed))
         raise
@@ -164,7 +164,7 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
 
 
 def _error_bars(result: Result, notify: Listener) -> ErrorBars:
-    """The error bars of a run that is kept already; Ctrl-C leaves them out."""
+    """Compute the error bars of a run that is stored already; Ctrl-C leaves them out."""
     nearness, stage = Nearness(result.design.solver), ""
 
     def announce(size: float, voxels: int, seconds: float) -> None:
@@ -209,7 +209,7 @@ def _reporting(setup: Setup, notify: Listener) -> Callable[[int, float, float], 
 
 
 def overdue(setup: Setup, seconds: float) -> str:
-    """Say that a run takes ten times as long as was expected, if it does and that is long."""
+    """Return a message if a run takes ten times as long as expected, and that is long."""
     if seconds < _LONG:
         return ""
     expected = cost_of(setup.design, setup.mesh, None, setup.problem.mass).seconds

@@ -1,4 +1,4 @@
-"""What goes into a job as text: the design, and the measured tables."""
+"""Text inputs of a job: the design, and the measured tables."""
 
 from __future__ import annotations
 
@@ -77,21 +77,21 @@ class DesignSource(Record):
         )
 
     def files(self) -> dict[Steps, Path]:
-        """The meshes and cards that the design names, by the keys that lead to their paths."""
+        """Find the meshes and cards that the design names, by the keys of their paths."""
         document = self._document()
         if self.folder:
             refuse_outside(document, Path(self.folder))
         return {steps: Path(self.folder, path) for steps, path in file_references(document)}
 
     def with_files(self, files: dict[Steps, Path], folder: Path) -> Self:
-        """Return the same for a folder, with other files in place of those it names.
+        """Return the source for a folder, with other files in place of those it names.
 
         Parameters
         ----------
         files
-            By the keys that lead to their paths; the others stay where they are.
+            Files by the keys of their paths; the others stay where they are.
         folder
-            Where the text will be; files below it are written as seen from there.
+            Future folder of the text; files below it get relative paths.
         """
         text = self.text
         for steps, file in (self.files() | files).items():

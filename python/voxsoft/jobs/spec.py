@@ -1,4 +1,4 @@
-"""Specs: all that decides the results of a job, as typed values."""
+"""Specs: all inputs that decide the results of a job, as typed values."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ Scalar = bool | int | float | str
 Bounds = tuple[float | str, float | str]
 
 
-def _source(given: Any) -> Any:  # noqa: ANN401 - pydantic checks what else came
+def _source(given: Any) -> Any:  # noqa: ANN401 - pydantic checks other values
     return DesignSource.of_design(given) if isinstance(given, Design) else given
 
 
-def _domain(given: Any) -> Any:  # noqa: ANN401 - pydantic checks what else came
+def _domain(given: Any) -> Any:  # noqa: ANN401 - pydantic checks other values
     return {"values": given} if isinstance(given, list) else given
 
 
@@ -45,7 +45,7 @@ class JobSpec(Record):
 
     @property
     def tables(self) -> tuple[MeasuredTable, ...]:
-        """The measured tables that go in."""
+        """Measured tables of the job."""
         return ()
 
 
@@ -172,12 +172,12 @@ class CalibrateSpec(JobSpec):
 
     @property
     def tables(self) -> tuple[MeasuredTable, ...]:
-        """The measured tables."""
+        """Measured tables."""
         return self.data
 
     @property
     def card_name(self) -> str:
-        """The name of the card that it writes."""
+        """Name of the card that the calibration writes."""
         first = self.data[0]
         stem = first.name.rpartition(".")[0] or first.name
         return self.card or card_name(first.select or stem)
@@ -204,12 +204,12 @@ class CompareSpec(JobSpec):
 
     @property
     def tables(self) -> tuple[MeasuredTable, ...]:
-        """The measured tables."""
+        """Measured tables."""
         return self.data
 
 
-#: What a job is to do; `kind` tells which.
+#: Spec of a job; `kind` distinguishes them.
 Spec = RunSpec | StudySpec | CalibrateSpec | CompareSpec
 
-#: The same for a field of a record.
+#: Spec as a field of a record, discriminated by `kind`.
 TaggedSpec = Annotated[Spec, Field(discriminator="kind")]

@@ -1,4 +1,4 @@
-"""The job of a study: many designs, stage after stage."""
+"""Job of a study: many designs, stage after stage."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def run_study(
             _search(study, stage, spec.workers, report, gate, scheduler)
         finished = True
     finally:
-        # What is finished is written, too, where the study was stopped or failed.
+        # Finished trials are also written if the study was stopped or failed.
         if not finished:
             with suppress(VoxSoftError):
                 _write(study, folder, notify)
@@ -98,7 +98,7 @@ def study_of(spec: StudySpec, folder: Path, storage: str | None = None) -> Study
 
 
 def _earlier(spec: StudySpec, folder: Path, held: int) -> tuple[Stage, ...]:
-    """What a study of so many trials went through before the present stage."""
+    """Return the earlier stages of a study that holds some trials."""
     before = None
     if kind_of_job(folder) == "study":
         with suppress(VoxSoftError):
@@ -106,8 +106,8 @@ def _earlier(spec: StudySpec, folder: Path, held: int) -> tuple[Stage, ...]:
     if not isinstance(before, StudySpec) or held == 0:
         return spec.earlier
     same_search = (before.sampler, before.batch) == (spec.sampler, spec.batch)
-    # The last batch of a stage is cut at its budget; a stage that did not come so far is as if
-    # it had gone on.
+    # The last batch of a stage is cut at its budget; a stage that did not come so far counts as
+    # continued.
     cut = before.budget is not None and held >= before.budget
     goes_on = same_search and (not cut or before.budget == spec.budget)
     if goes_on and (spec.budget is None or spec.budget >= held):
@@ -147,7 +147,7 @@ def _write(study: Study, folder: Path, notify: Listener) -> tuple[StudyResult, l
 
 
 def _draw_best(study: Study, result: StudyResult, folder: Path, notify: Listener) -> None:
-    """Draw the best design at rest; a study does not fail where that cannot be done."""
+    """Draw the best design at rest; ignore errors, so that the study does not fail."""
     if result.best is None or not isinstance(study.family, Design):
         return
     notify(_ended(study, result, "drawing the best design"))
@@ -157,7 +157,7 @@ def _draw_best(study: Study, result: StudyResult, folder: Path, notify: Listener
 
 
 def _at_rest(design: Design, folder: Path) -> Result:
-    """The equilibrium of a design of a study, as the study found it where it has kept that."""
+    """Return the equilibrium of a design of a study, from the study's storage if it is there."""
     setup = Setup.of(design)
     found = Equilibria(folder / FOLDER).find(design.hash, setup.mesh)
     return (None if found is None else found.result(setup)) or simulate(setup)

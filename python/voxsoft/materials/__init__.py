@@ -1,8 +1,8 @@
 """Materials: models with constants in SI units, and the library of cards.
 
-A *model* says how a material answers: ``"lattice"`` (edge and bulk modulus, the paper's), a
+A *model* defines the stress of a material: ``"lattice"`` (edge and bulk modulus, the paper's), a
 hyperelastic one, ``"neo-hookean"``, ``"mooney-rivlin"``, ``"yeoh"``, ``"ogden"``, ``"gent"``, or
-``"rigid"``. A *card* is a named model with its density and where its numbers come from, in a plain
+``"rigid"``. A *card* is a named model with its density and the source of its numbers, in a plain
 TOML file.
 
 Examples

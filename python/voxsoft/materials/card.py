@@ -1,4 +1,4 @@
-"""Material cards: a named material and where its numbers come from."""
+"""Material cards: a named material and the source of its numbers."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class Card(Record):
     calibration: Table[str, Any] = Field(default_factory=FrozenDict)
 
     def __hash__(self) -> int:
-        return hash((self.name, self.material))  # what a calibration noted may hold lists
+        return hash((self.name, self.material))  # the record of a calibration may hold lists
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> Card:
@@ -84,9 +84,9 @@ class Card(Record):
             raise plain_error(error, cls, document) from None
 
 
-# Keys of a card's file that have another name now; the older one is still taken.
+# Renamed keys of a card's file; the older name is still accepted.
 _RENAMED: Final = {"licence": "license"}  # older spelling
-# How the cards that came from tests end; a plain name has no such ending.
+# Suffixes of the cards that came from tests; a plain name has no such suffix.
 _ENDINGS: Final = ("-tensile", "-bending")
 _PLAIN_NAMES: Final = "plain-names.toml"
 
@@ -113,7 +113,7 @@ def _renamed(card: Card, name: str, why: str) -> Card:
 
 
 def _card_files(folder: Traversable) -> Iterator[Traversable]:
-    """Find the cards in a folder and in those below it, each of which has a license of its own."""
+    """Find the cards in a folder and in its subfolders, each of which has a license of its own."""
     for entry in folder.iterdir():
         if entry.is_dir():
             yield from _card_files(entry)
@@ -122,7 +122,7 @@ def _card_files(folder: Traversable) -> Iterator[Traversable]:
 
 
 def card_names() -> tuple[str, ...]:
-    """Name all shipped cards.
+    """Return the names of all shipped cards.
 
     Examples
     --------
@@ -133,7 +133,7 @@ def card_names() -> tuple[str, ...]:
 
 
 def is_card_path(name: str | os.PathLike[str]) -> bool:
-    """Whether what names a material is the path of a card's file: its suffix is ``.toml``.
+    """Return True if a material is given by the path of a card's file: its suffix is ``.toml``.
 
     Examples
     --------
@@ -149,8 +149,8 @@ def load_card(name: str | os.PathLike[str]) -> Card:
     Parameters
     ----------
     name
-        A key of :func:`card_names`, or a path that ends with ``.toml``, such as that of the card
-        that a calibration wrote.
+        Name in :func:`card_names`, or a path that ends with ``.toml``, such as that of the card of
+        a calibration.
 
     Raises
     ------
@@ -183,7 +183,7 @@ def load_card(name: str | os.PathLike[str]) -> Card:
 
 
 def material_of(material: str | os.PathLike[str] | Material) -> Material:
-    """Return the model behind a card's name or path; a model is returned as it is."""
+    """Return the model of a card, by name or path; a model is returned as it is."""
     if isinstance(material, (str, os.PathLike)):
         return load_card(material).material
     return material

@@ -1,4 +1,4 @@
-"""Single constants of a material by name, and the same material with others."""
+"""Single constants of a material by name, and changed copies of the material."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _NUMBERS: Final = ("poisson", "alpha", "jm")
 
 
 def constants_of(material: Material) -> dict[str, str]:
-    """Names of the constants of a material, each with its kind of quantity.
+    """Return the names of the constants of a material, each with its kind of quantity.
 
-    Entries of lists have their place after a dot, ``mu.0``. Every hyperelastic model has ``young``,
+    Entries of lists have their index after a dot, ``mu.0``. Every hyperelastic model has ``young``,
     which scales all its moduli at once and leaves the shape of its curve.
 
     Parameters
@@ -68,7 +68,7 @@ def with_constants(material: Material, constants: Mapping[str, float]) -> Materi
     Parameters
     ----------
     material
-        Where the other constants come from.
+        Material with the other constants.
     constants
         New values in SI units, by a name of :func:`constants_of`. ``young`` is applied last.
 
@@ -116,7 +116,7 @@ def with_constants(material: Material, constants: Mapping[str, float]) -> Materi
 
 
 def _fields(material: Material) -> dict[str, Any]:
-    """Field values by the names that a user writes."""
+    """Return field values by the names that a user writes."""
     return {
         info.alias or field: getattr(material, field)
         for field, info in type(material).model_fields.items()

@@ -1,4 +1,4 @@
-"""Fibers spread over a material: stiffness along one direction, or around an axis."""
+"""Fibers in a material: stiffness along one direction, or around an axis."""
 
 from __future__ import annotations
 
@@ -101,22 +101,22 @@ Try: give one, such as angle = "54.7 deg"
 
     @property
     def is_wound(self) -> bool:
-        """Whether they are wound about an axis."""
+        """True if the fibers are wound about an axis."""
         return self.direction is None
 
     @property
     def unit(self) -> Triple:
-        """The direction of straight fibers, or the axis of wound ones, with length one."""
+        """Unit vector of straight fibers, or of the axis of wound ones."""
         along = self.direction if self.axis is None else direction_of(self.axis)
         x, y, z = (np.asarray(along) / np.linalg.norm(np.asarray(along))).tolist()
         return x, y, z
 
     def core(self, free: float) -> _core.Fiber:
-        """What the core takes for straight ones, by themselves `free` times as long."""
+        """Make the Rust core's straight fibers, whose free length is `free` times as long."""
         return _core.Fiber(self.unit, modulus=self.modulus, compression=self.compression, free=free)
 
     def distances(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far points are from the axis of wound fibers [m], (n,).
+        """Return the distance of points from the axis of wound fibers [m], (n,).
 
         Examples
         --------
@@ -133,16 +133,16 @@ Try: give one, such as angle = "54.7 deg"
     def winding(
         self, rotation: NDArray[np.float64], position: NDArray[np.float64], free: float
     ) -> _core.Winding:
-        """What the Rust core takes for wound ones.
+        """Make the Rust core's wound fibers.
 
         Parameters
         ----------
         rotation, position
-            Where the body of the part is, (3, 3) and (3,) [m].
+            Pose of the body of the part, (3, 3) and (3,) [m].
         free
-            How many times as long the fibers are by themselves.
+            Ratio of the fibers' free length to their length.
         """
-        assert self.angle is not None  # asked for wound ones alone
+        assert self.angle is not None  # called for wound fibers only
         center = rotation @ (self.center or (0.0, 0.0, 0.0)) + position
         return _core.Winding(
             tuple(center.tolist()),

@@ -1,4 +1,4 @@
-"""The Gent model: rubber whose chains have a limit."""
+"""Gent model: rubber whose chains have a limit."""
 
 from __future__ import annotations
 
@@ -53,24 +53,24 @@ class Gent(InvariantModel):
 
     @property
     def elastic_core(self) -> _core.Material:
-        """What the Rust core takes, without branches."""
+        """Material of the Rust core, without branches."""
         return _core.Material.gent(
             shear=self.shear, limit=self.jm, bulk=self.bulk, density=self.density
         )
 
     def invariant_energy(self, i1: Floats, i2: Floats) -> Floats:
-        """Strain energy in J/m³; not a number beyond the limit."""
+        """Strain energy in J/m³; NaN beyond the limit."""
         del i2
         energy: Floats = -0.5 * self.shear * self.jm * np.log(self._room(i1))
         return energy
 
     def invariant_slopes(self, i1: Floats) -> tuple[Floats, Floats, Floats]:
-        """``∂W/∂I₁``, 0 and ``∂²W/∂I₁²`` in Pa; not numbers beyond the limit."""
+        """``∂W/∂I₁``, 0 and ``∂²W/∂I₁²`` in Pa; NaN beyond the limit."""
         room = self._room(i1)
         return 0.5 * self.shear / room, 0.0 * room, 0.5 * self.shear / (self.jm * room**2)
 
     def _room(self, i1: Floats) -> Floats:
-        """What is left of the way to the limit: 1 at rest, 0 there, then not a number."""
+        """Return the remaining part of the range to the limit: 1 at rest, 0 at it, then NaN."""
         room = 1.0 - (i1 - 3.0) / self.jm
         left: Floats = np.where(room > 0.0, room, np.nan)
         return left

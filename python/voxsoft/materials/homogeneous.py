@@ -1,4 +1,4 @@
-"""Closed forms of the three tests in which a rubber specimen strains evenly.
+"""Closed forms of the three tests with homogeneous strain of a rubber specimen.
 
 A sheet of incompressible material is pulled so that its principal stretches are powers of one
 stretch ``λ`` and its faces are free of stress:
@@ -31,7 +31,7 @@ from voxsoft.errors import MaterialError
 from voxsoft.materials.hyperelastic import Floats, Hyperelastic
 from voxsoft.records import closest
 
-#: The tests with even strain.
+#: Mode of a test with homogeneous strain.
 Mode = Literal["uniaxial", "equibiaxial", "planar"]
 
 #: Names of the modes.
@@ -48,7 +48,7 @@ _PULLED: Final = {"uniaxial": 1, "equibiaxial": 2, "planar": 1}
 
 
 def principal_stretches(mode: Mode, stretch: ArrayLike) -> Floats:
-    """Principal stretches of a test at stretches ``λ``, (...) → (3, ...).
+    """Return the principal stretches of a test at stretches ``λ``, (...) → (3, ...).
 
     Raises
     ------
@@ -71,12 +71,12 @@ def principal_stretches(mode: Mode, stretch: ArrayLike) -> Floats:
 
 
 def nominal_stress(material: Hyperelastic, stretch: ArrayLike, mode: Mode = "uniaxial") -> Floats:
-    """Engineering stress (force over original area) of incompressible material, in Pa.
+    """Compute the engineering stress (force over original area) of incompressible material, in Pa.
 
     Parameters
     ----------
     material
-        Its Poisson's ratio does not count here: volume is kept.
+        Material; its Poisson's ratio is ignored, as volume is kept.
     stretch
         Current over original length, above zero, (...).
     mode
@@ -85,7 +85,7 @@ def nominal_stress(material: Hyperelastic, stretch: ArrayLike, mode: Mode = "uni
     Returns
     -------
     numpy.ndarray
-        (...); not a number beyond the limit of a Gent material.
+        Stress, (...); NaN beyond the limit of a Gent material.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def nominal_stress(material: Hyperelastic, stretch: ArrayLike, mode: Mode = "uni
 
 
 def nominal_tangent(material: Hyperelastic, stretch: ArrayLike, mode: Mode = "uniaxial") -> Floats:
-    """Derivative of :func:`nominal_stress` with respect to the stretch, in Pa, (...) → (...).
+    """Differentiate :func:`nominal_stress` with respect to the stretch, in Pa, (...) → (...).
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What all hyperelastic models share: Poisson's ratio, density, viscosity, moduli at rest."""
+"""Base of all hyperelastic models: Poisson's ratio, density, viscosity, moduli at rest."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from voxsoft.units import PositiveDensity, PositiveTime, UnitOf, format_quantity
 
 Floats = NDArray[np.float64]
 
-#: A modulus that may be negative, as coefficients of polynomials are.
+#: Modulus that may be negative, as coefficients of polynomials are.
 SignedModulus = Annotated[float, UnitOf("modulus")]
 
-#: Poisson's ratio where a model names none: the bulk modulus is then 500 shear moduli.
+#: Default of Poisson's ratio: the bulk modulus is then 500 shear moduli.
 NEARLY_INCOMPRESSIBLE = 0.499
 
 _STANDING = ("poisson", "density", "prony", "mullins", "tested_stretch")
@@ -119,18 +119,18 @@ class Hyperelastic(Record):
     @property
     @abstractmethod
     def constants(self) -> list[float]:
-        """The constants of ``W`` in SI units, in the order of its formula."""
+        """Constants of ``W`` in SI units, in the order of its formula."""
 
     @property
     @abstractmethod
     def elastic_core(self) -> _core.Material:
-        """What the Rust core takes, without branches."""
+        """Material of the Rust core, without branches."""
 
     @abstractmethod
     def energy(self, stretches: ArrayLike) -> Floats:
         """Strain energy ``W`` in J/m³ at principal stretches whose product is 1, (3, ...) → (...).
 
-        Not a number where the material cannot go.
+        NaN beyond the range of the material.
         """
 
     @abstractmethod
@@ -147,7 +147,7 @@ class Hyperelastic(Record):
         Parameters
         ----------
         voxel_size
-            Does not matter; lattices whose modulus depends on it take it too.
+            Ignored; lattices whose modulus depends on it take it too.
         """
         del voxel_size
         return 2.0 * self.shear * (1.0 + self.poisson)
@@ -159,7 +159,7 @@ class Hyperelastic(Record):
 
     @property
     def core(self) -> _core.Material:
-        """What the Rust core takes."""
+        """Material of the Rust core."""
         core = self.elastic_core.with_prony([(term.g, term.tau) for term in self.prony])
         if self.mullins is None:
             return core
@@ -168,7 +168,7 @@ class Hyperelastic(Record):
 
     @property
     def first_peak(self) -> float:
-        """Energy in J/m³ that all of the material has had, as it is preconditioned."""
+        """Largest energy in J/m³ of the preconditioning, the same in all of the material."""
         if self.mullins is None:
             return 0.0
         stretch = 1.0 + self.mullins.preconditioned
@@ -201,7 +201,7 @@ class Hyperelastic(Record):
 
     @model_serializer(mode="wrap")
     def _constants_first(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Write the constants before what all models share, and no empty list of branches."""
+        """Write the constants before the common fields, and no empty list of branches."""
         written: dict[str, Any] = write(self)
         standing = {key: written.pop(key) for key in _STANDING if key in written}
         if not standing.get("prony", True):

@@ -1,4 +1,4 @@
-"""The lattice material: springs along the edges of tetrahedra and a bulk stiffness inside them."""
+"""Lattice material: springs along the edges of tetrahedra and a bulk stiffness inside them."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class Lattice(Record):
 
     @property
     def core(self) -> _core.Material:
-        """What the Rust core takes."""
+        """Material of the Rust core."""
         return _core.Material.lattice(edge=self.edge, bulk=self.bulk, density=self.density)
 
 
@@ -131,7 +131,7 @@ class CompliantLattice(Record):
         Parameters
         ----------
         voxel_size
-            The voxel size in m that the compliances were found at.
+            Voxel size in m of the compliances.
         bulk
             Bulk modulus ``K`` of the result in Pa.
         """
@@ -148,7 +148,7 @@ class CompliantLattice(Record):
 
     @property
     def core(self) -> _core.Material:
-        """What the Rust core takes."""
+        """Material of the Rust core."""
         return _core.Material.lattice_compliance(
             edge=self.edge_compliance, volume=self.volume_compliance, density=self.density
         )

@@ -1,4 +1,4 @@
-"""The union of all material models: what a design's ``material`` table may be."""
+"""Union type of all material models, for a design's ``material`` table."""
 
 from __future__ import annotations
 
@@ -17,5 +17,5 @@ from voxsoft.materials.yeoh import Yeoh
 #: Any material model.
 Material = Lattice | CompliantLattice | NeoHookean | MooneyRivlin | Yeoh | Ogden | Gent | Rigid
 
-#: The same as a pydantic field, told apart by ``model``.
+#: Any material model as a pydantic field, discriminated by ``model``.
 AnyMaterial = Annotated[Material, Field(discriminator="model")]

@@ -1,4 +1,4 @@
-"""The Mooney–Rivlin model: two coefficients."""
+"""Mooney–Rivlin model: two coefficients."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ the material to resist at all. Try: check signs and units, or fit another model
 
     @property
     def elastic_core(self) -> _core.Material:
-        """What the Rust core takes, without branches."""
+        """Material of the Rust core, without branches."""
         return _core.Material.mooney_rivlin(
             c10=self.c10, c01=self.c01, bulk=self.bulk, density=self.density
         )

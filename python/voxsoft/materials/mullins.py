@@ -1,4 +1,4 @@
-"""Rubber that was stretched before is softer: the Mullins effect."""
+"""Mullins effect: rubber that was stretched before is softer."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ of the stress at least
         return self
 
     def remaining(self, energy: ArrayLike, peak: ArrayLike) -> Floats:
-        """The part ``η`` of the stress that is left, at energies below or at the peak in J/m³."""
+        """Return the part ``η`` of the stress that remains, at energies up to the peak in J/m³."""
         from scipy.special import erf  # slow to load
 
         energy, peak = np.asarray(energy, dtype=np.float64), np.asarray(peak, dtype=np.float64)
@@ -87,7 +87,7 @@ of the stress at least
         return left
 
     def lost(self, peak: float) -> float:
-        """Energy that a cycle from zero to a peak and back takes, both in J/m³.
+        """Compute the energy lost in a cycle from zero to a peak and back, both in J/m³.
 
         ``∫ (1 - η) dW = (s/r) (G(P/s) - G(0))`` with ``s = m + β P`` and
         ``G(x) = x erf x + exp(-x²)/√π``.

@@ -1,4 +1,4 @@
-"""The neo-Hookean model: one modulus."""
+"""Neo-Hookean model: one modulus."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ infinite. Try: use 0.499, or 0.4999 for a stiffer volume; the elements do not lo
     young_modulus: Modulus = Field(alias="young")
 
     def young(self, voxel_size: float | str = 1.0) -> float:
-        """Young's modulus in Pa, as it was given; the voxel size does not matter."""
+        """Young's modulus in Pa, as it was given; the voxel size is ignored."""
         del voxel_size
         return self.young_modulus
 
@@ -59,7 +59,7 @@ infinite. Try: use 0.499, or 0.4999 for a stiffer volume; the elements do not lo
 
     @property
     def elastic_core(self) -> _core.Material:
-        """What the Rust core takes, without branches."""
+        """Material of the Rust core, without branches."""
         return _core.Material.neo_hookean(
             c10=self.shear / 2.0, bulk=self.bulk, density=self.density
         )

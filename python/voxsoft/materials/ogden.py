@@ -1,4 +1,4 @@
-"""The Ogden model: powers of the principal stretches."""
+"""Ogden model: powers of the principal stretches."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ modulus
         exponents
             ``αᵢ``, (n,).
         poisson, density
-            Default: those of the model.
+            Poisson's ratio and density in kg/m³; default: those of the model.
 
         Examples
         --------
@@ -116,7 +116,7 @@ modulus
 
     @property
     def elastic_core(self) -> _core.Material:
-        """What the Rust core takes, without branches."""
+        """Material of the Rust core, without branches."""
         terms = list(zip(self.mu, self.alpha, strict=True))
         return _core.Material.ogden(terms=terms, bulk=self.bulk, density=self.density)
 

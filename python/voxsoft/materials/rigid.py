@@ -1,4 +1,4 @@
-"""Rigid parts: printed caps, inserts, flanges bonded to what is soft."""
+"""Rigid parts: printed caps, inserts, flanges bonded to soft parts."""
 
 from __future__ import annotations
 
@@ -54,24 +54,24 @@ class Rigid(Record):
         return math.inf
 
     def poisson(self, voxel_size: float = 1.0) -> float:
-        """Poisson's ratio of what stands for it; nothing depends on it."""
+        """Poisson's ratio of the stiff substitute; nothing depends on it."""
         del voxel_size
         return _POISSON
 
     def beside(self, shear: float) -> NeoHookean:
-        """Return the material that stands for this one beside soft parts.
+        """Return the stiff material that replaces this one beside soft parts.
 
         Parameters
         ----------
         shear
-            The largest shear modulus of the soft parts in Pa.
+            Largest shear modulus of the soft parts in Pa.
         """
         young = 2.0 * (1.0 + _POISSON) * RIGID_RATIO * shear
         return NeoHookean(young_modulus=young, poisson=_POISSON, density=self.density)
 
     @property
     def core(self) -> NoReturn:
-        """Nothing the Rust core could take: only a design knows what is stiff beside it.
+        """Unavailable: only a design knows the soft parts that set the stiffness.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""The closed form of a specimen that is pulled, let go and pulled again, with softening."""
+"""Closed form of a specimen that is loaded, unloaded and loaded again, with softening."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from voxsoft.materials.hyperelastic import Floats, Hyperelastic
 
 
 def cycled_stress(material: Hyperelastic, stretch: ArrayLike, mode: Mode = "uniaxial") -> Floats:
-    """Engineering stress along a history of stretches of incompressible material, in Pa.
+    """Compute the engineering stress of incompressible material along a stretch history, in Pa.
 
     Parameters
     ----------
     material
-        With its `mullins`, if it softens; its Poisson's ratio does not count.
+        Material with its `mullins`, if it softens; its Poisson's ratio is ignored.
     stretch
-        One after the other, (n,), as far apart as one likes but for turning points, which are to be
-        among them: the peak is the largest energy of those so far.
+        Stretches one after the other, (n,), at any spacing but with all turning points among them:
+        the peak is the largest energy of those so far.
     mode
         ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
 
     Returns
     -------
     numpy.ndarray
-        (n,), :func:`nominal_stress` times the part that softening leaves.
+        Stress, (n,): :func:`nominal_stress` times the part that softening leaves.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Where a hyperelastic material is stable: the stretches over which it pushes back ever harder."""
+"""Stability of a hyperelastic material: the stretches over which its stress rises."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from voxsoft.materials.hyperelastic import Floats, Hyperelastic
 
 Flags = NDArray[np.bool_]
 
-#: Stretches between which :func:`stable_range` looks: from a third to five times the length.
+#: Range of stretches of :func:`stable_range`: from a third to five times the length.
 SCANNED: Final = (0.3, 5.0)
 
 _SAMPLES: Final = 2001
@@ -29,12 +29,12 @@ class StableRange(NamedTuple):
     mode
         ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
     monotone
-        Between these stretches the nominal stress rises with the stretch.
+        Stretches between which the nominal stress rises with the stretch.
     drucker
-        Between these a change of true strain in the plane of the sheet always costs work: the
-        Hessian of the energy in logarithmic strains is positive definite (Drucker).
+        Stretches between which a change of true strain in the plane of the sheet always costs work:
+        the Hessian of the energy in logarithmic strains is positive definite (Drucker).
     scanned
-        The range that was looked at; a range that ends there may go on.
+        Scanned range; a stable range that ends there may continue.
     """
 
     mode: Mode
@@ -44,19 +44,19 @@ class StableRange(NamedTuple):
 
     @property
     def stable(self) -> tuple[float, float]:
-        """The stretches that are stable in both senses."""
+        """Stretches that are stable in both senses."""
         return (
             max(self.monotone[0], self.drucker[0]),
             min(self.monotone[1], self.drucker[1]),
         )
 
     def holds(self, low: float, high: float) -> bool:
-        """Whether the material is stable in both senses from stretch `low` to `high`."""
+        """Return True if the material is stable in both senses from stretch `low` to `high`."""
         return self.stable[0] <= low and high <= self.stable[1]
 
     @property
     def sentence(self) -> str:
-        """What a user should know, in one line; empty if all of the range is stable.
+        """Warning in one line; empty if all of the range is stable.
 
         Examples
         --------
@@ -82,16 +82,16 @@ def stable_range(
     Parameters
     ----------
     material
-        Its Poisson's ratio does not count here: volume is kept.
+        Material; its Poisson's ratio is ignored, as volume is kept.
     mode
         ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
     low, high
-        Stretches to look between, below and above 1. Default 0.3 and 5.
+        Limits of the scan, below and above 1. Default 0.3 and 5.
 
     Returns
     -------
     StableRange
-        Ends found on a grid of 2001 stretches, so within 0.15 % of the true ones.
+        Range whose ends are found on a grid of 2001 stretches, so within 0.15 % of the true ones.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def stable_range(
     >>> stable_range(Yeoh(c=["20.4 kPa", "4.5 kPa", "-0.5 kPa"])).monotone[1] < 3
     True
     """
-    # A geometric grid through 1, so that both sides are as fine.
+    # Geometric grid through 1, with equal steps on both sides.
     share = np.log(high) / (np.log(high) - np.log(low)) if high > 1.0 > low else 0.5
     above = max(2, round(share * _SAMPLES))
     grid = np.concatenate(
@@ -129,7 +129,7 @@ def stable_range(
 def stable_ranges(
     material: Hyperelastic, low: float = SCANNED[0], high: float = SCANNED[1]
 ) -> tuple[StableRange, ...]:
-    """Look at all three modes; see :func:`stable_range`.
+    """Find the stable ranges of all three modes; see :func:`stable_range`.
 
     Examples
     --------
@@ -154,7 +154,7 @@ def _convex(hessian: Floats) -> Flags:
 
 
 def _around_one(grid: Floats, good: Flags) -> tuple[float, float]:
-    """Ends of the run of good stretches that holds 1; both 1 where 1 itself is bad."""
+    """Return the ends of the run of good stretches that holds 1; both 1 if 1 itself is bad."""
     start = int(np.searchsorted(grid, 1.0 - 1e-12))
     if not good[start]:
         return 1.0, 1.0

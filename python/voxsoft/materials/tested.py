@@ -1,4 +1,4 @@
-"""How far the specimens were stretched that a material's constants come from."""
+"""Tested range: the stretches of the specimens behind a material's constants."""
 
 from __future__ import annotations
 

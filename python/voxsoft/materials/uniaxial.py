@@ -1,4 +1,4 @@
-r"""The stress of a material that is pulled along one axis with its sides free.
+r"""Stress of a material that is stretched along one axis with its sides free.
 
 The specimen strains evenly, with the stretches ``λ`` along the axis and ``t`` across it. Its sides
 are free where the stress across is zero, which decides ``t``; the nominal stress follows.
@@ -13,7 +13,7 @@ unit of volume holds
 
     W = e/2 Σ (λᵢ - 1)² + √2 e Σ_{i<j} (sᵢⱼ - 1)² + K/2 (J - 1)²,    sᵢⱼ² = (λᵢ² + λⱼ²)/2.
 
-This is the lattice of a large block along the axes of its voxels, whose surface is left out.
+This is the lattice of a large block along the axes of its voxels, without its surface.
 """
 
 from __future__ import annotations
@@ -27,27 +27,27 @@ from voxsoft.errors import MaterialError
 from voxsoft.materials.hyperelastic import Floats, Hyperelastic
 from voxsoft.materials.lattice import Lattice
 
-#: Halvings of the range of the stretch across: what is left is rounding.
+#: Bisections of the range of the transverse stretch, down to rounding.
 _HALVINGS: Final = 60
 
 
 def uniaxial_stress(material: Hyperelastic | Lattice, stretch: ArrayLike) -> Floats:
-    """Nominal stress (force over original area) at uniaxial stretches, in Pa.
+    """Compute the nominal stress (force over original area) at uniaxial stretches, in Pa.
 
-    Unlike :func:`voxsoft.materials.nominal_stress` it takes the volume as the material keeps it,
-    and lattices too.
+    Unlike :func:`voxsoft.materials.nominal_stress` it uses the compressibility of the material, and
+    takes lattices too.
 
     Parameters
     ----------
     material
-        Viscosity and softening are left out: it is the first loading, at rest.
+        Material; viscosity and softening are left out: it is the first loading, at rest.
     stretch
         Current over original length, above zero, (...).
 
     Returns
     -------
     numpy.ndarray
-        (...). Past the limit of a Gent material the volume grows, and the stress with it.
+        Stress, (...). Past the limit of a Gent material the volume grows, and the stress with it.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def uniaxial_stress(material: Hyperelastic | Lattice, stretch: ArrayLike) -> Flo
     if not np.all(along > 0.0):
         what, hint = "a stretch that is not above zero", "a stretch is 1 plus the strain"
         raise MaterialError("stretch", what, hint)
-    # Between the stretch across of what keeps its volume, and of what does not get thinner at all.
+    # Bounds of the transverse stretch: constant volume, and no lateral contraction at all.
     ends = np.stack([-0.5 * np.log(along), np.zeros_like(along)])
     low, high = ends.min(axis=0), ends.max(axis=0)
     for _ in range(_HALVINGS):
@@ -84,7 +84,7 @@ def uniaxial_stress(material: Hyperelastic | Lattice, stretch: ArrayLike) -> Flo
 def _principal(
     material: Hyperelastic | Lattice, along: Floats, across: Floats
 ) -> tuple[Floats, Floats]:
-    """Kirchhoff stresses in Pa along the axis and across it, (...) each."""
+    """Return the Kirchhoff stresses in Pa along the axis and across it, (...) each."""
     if isinstance(material, Lattice):
         return _of_lattice(material, along, across)
     volume = along * across**2

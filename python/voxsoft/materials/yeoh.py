@@ -1,4 +1,4 @@
-"""The Yeoh model: a polynomial of the first invariant."""
+"""Yeoh model: a polynomial of the first invariant."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Yeoh(InvariantModel):
 
     @property
     def elastic_core(self) -> _core.Material:
-        """What the Rust core takes, without branches."""
+        """Material of the Rust core, without branches."""
         return _core.Material.yeoh(c=self.constants, bulk=self.bulk, density=self.density)
 
     def invariant_energy(self, i1: Floats, i2: Floats) -> Floats:

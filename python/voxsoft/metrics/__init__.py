@@ -1,6 +1,6 @@
-"""Metrics: the numbers that objectives and constraints of a design may ask of its state.
+"""Metrics: numbers of a state that objectives and constraints of a design refer to.
 
-:data:`METRICS` lists them all. :func:`metric` adds one of a user's. One of VoxSoft's own is a
+:data:`METRICS` lists them all. :func:`metric` adds a user's own. Each of VoxSoft's is a
 :class:`Metric` with its value, and its slope where it has one, in a file of its own, and its name
 in ``registry.py``.
 """

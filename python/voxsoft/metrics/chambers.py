@@ -1,4 +1,4 @@
-"""How large the chambers are."""
+"""Volume of the chambers, and its change."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""How far the line from a base to a tip has turned, and the curvature of the arc between them.
+"""Rotation of the line from a base to a tip, and the curvature of the arc between them.
 
-Of a body that is straight at rest and bends to an arc of constant curvature, whose base keeps its
-direction: the chord turns by half of the angle of the tip (Webster and Jones 2010,
+Assumes a body that is straight at rest and bends to an arc of constant curvature from a base that
+keeps its direction: the chord turns by half of the angle of the tip (Webster and Jones 2010,
 doi 10.1177/0278364910368147).
 """
 
@@ -18,7 +18,7 @@ from voxsoft.records import closest
 
 
 class _Chord(NamedTuple):
-    """The line at rest and now, (3,) each, m; the angle between them in rad, and its axis."""
+    """Line at rest and now, (3,) each, m; the angle between them in rad, and its axis."""
 
     rest: Floats
     now: Floats
@@ -27,7 +27,7 @@ class _Chord(NamedTuple):
 
 
 def _base(state: State, target: Target) -> str:
-    """The name of the probe at the base; without one, of the only other probe."""
+    """Return the name of the probe at the base; default: the only other probe."""
     others = [name for name in state.places if name != target.probe]
     if target.base is None and target.probe is not None and len(others) == 1:
         return others[0]
@@ -80,7 +80,7 @@ def _slope_of_curvature(state: SlopeState, target: Target) -> Floats:
 
 
 def _turn(chord: _Chord, target: Target) -> Floats:
-    """The derivative of the angle by the end of the line, (3,), 1/m."""
+    """Differentiate the angle by the end of the line, (3,), 1/m."""
     if not chord.axis.any():
         raise SimulationError(
             target.metric,
@@ -92,7 +92,7 @@ def _turn(chord: _Chord, target: Target) -> Floats:
 
 
 def _spread(state: SlopeState, target: Target, by_end: Floats) -> Floats:
-    """The derivative by the end of the line as that by all positions, (n, 3)."""
+    """Turn a derivative by the end of the line into one by all positions, (n, 3)."""
     slope = np.zeros_like(state.positions)
     tip, base = place_of_target(state, target), state.places[_base(state, target)]
     np.add.at(slope, tip.vertices, np.outer(tip.weights, by_end))

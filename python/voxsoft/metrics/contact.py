@@ -1,4 +1,4 @@
-"""What touches: the force, the area, the gap to an object, and how much of it sticks."""
+"""Contact metrics: force, area, gap to an object, and the share that sticks."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def object_problems(metric: Metric, target: Target, design: Design) -> Iterator[
 
 
 def object_of_target(metric: Metric, target: Target, design: Design) -> str:
-    """Return what a target names: an object or the body; without a name, the only object.
+    """Return the name of a target's object or body; default: the only object.
 
     Raises
     ------
@@ -79,9 +79,9 @@ def _named(target: Target, design: Design) -> str:
 
 
 def _contacts(metric: Metric, state: State, target: Target) -> list[Touch]:
-    """The contacts that a target asks for; empty while all are apart.
+    """Return the contacts of a target's object or body; empty while all are apart.
 
-    Of an object those with every body; of one body of several those with the others.
+    Contacts of an object are those with every body; of one body of several, those with the others.
     """
     name = object_of_target(metric, target, state.design)
     bodies = state.design.body_names
@@ -97,12 +97,12 @@ def _contacts(metric: Metric, state: State, target: Target) -> list[Touch]:
 def _force(state: State, target: Target) -> float:
     contacts = _contacts(CONTACT_FORCE, state, target)
     if any(each.of == (BODY, BODY) for each in contacts):
-        return contacts[0].pressed  # what it presses itself with; each pair of forces cancels
+        return contacts[0].pressed  # self-contact: each pair of forces cancels
     return component(force_on_bodies(CONTACT_FORCE, state, target), target) if contacts else 0.0
 
 
 def force_on_bodies(metric: Metric, state: State, target: Target) -> Floats:
-    """The force of what a target names on the bodies, (3,), N; on the named one of two bodies."""
+    """Sum the contact forces of a target on the bodies, (3,), N; on the named one of two bodies."""
     bodies, total = state.design.body_names, np.zeros(3)
     for each in _contacts(metric, state, target):
         turned = target.object in bodies and each.of[0] != target.object
@@ -111,7 +111,7 @@ def force_on_bodies(metric: Metric, state: State, target: Target) -> Floats:
 
 
 def _slope_at_given_forces(state: SlopeState, target: Target) -> Floats:
-    """None by the positions: forces of contact are unknowns of their own beside them."""
+    """Zero derivative by the positions: contact forces are unknowns of their own beside them."""
     return np.zeros_like(state.positions)
 
 
@@ -142,7 +142,7 @@ CONTACT_FORCE: Final = Metric(
 CONTACT_GAP: Final = Metric(
     "contact_gap", "length", _gap, _slope_at_given_forces, frozenset({"object"})
 )
-# Without slopes: they change in jumps, where a point comes into contact or begins to slip.
+# Without slopes: they jump where a point comes into contact or begins to slip.
 CONTACT_AREA: Final = Metric(
     "contact_area", "area", _area, None, frozenset({"object"}), bounds=NOT_NEGATIVE
 )

@@ -1,4 +1,4 @@
-"""What a metric is, and what it may look at."""
+"""Definition of a metric, and the state that it reads."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from voxsoft.fields import Fields
 from voxsoft.mesh import Mesh
 
 Floats = NDArray[np.float64]
-#: What asks for a metric, with its place and its direction.
+#: Objective or constraint that asks for a metric, with its place and its direction.
 Target = Objective | Constraint
-#: Keys of a target that say where, along what or of which voxels a metric is measured.
+#: Keys of a target that select the place, direction or voxels of a metric.
 Option = Literal[
     "probe", "base", "axis", "cavity", "percentile", "object", "tendon", "clamp", "region"
 ]
 
-#: What a metric lacks that does not take a key.
+#: Error text for a key that a metric does not take.
 _LACKS: Final[Mapping[Option, str]] = {
     "probe": "is not measured at a probe",
     "base": "is not measured along a line",
@@ -39,184 +39,183 @@ _LACKS: Final[Mapping[Option, str]] = {
 
 @dataclass(frozen=True)
 class Place:
-    """Vertices with weights that sum to one: what a probe averages over."""
+    """Weighted vertices that a probe averages over; the weights sum to one."""
 
     vertices: NDArray[np.uint32]
     weights: Floats
 
 
 class Depth(Protocol):
-    """How deep a body is in itself or in its floor."""
+    """Penetration of a body into itself or its floor."""
 
     @property
     def depth(self) -> float:
-        """In m; 0 where nothing overlaps."""
+        """Depth in m; 0 where nothing overlaps."""
 
 
 class Touch(Protocol):
-    """What touches what; :class:`~voxsoft.simulation.touching.ContactState` says more."""
+    """Contact of a pair of surfaces; see :class:`~voxsoft.simulation.touching.ContactState`."""
 
     @property
     def of(self) -> tuple[str, str]:
-        """The body and an object, or the body twice."""
+        """Names of the pair: the body and an object, or the body twice."""
 
     @property
     def force(self) -> tuple[float, float, float]:
-        """On the first, N; zero for the body with itself."""
+        """Contact force on the first of the pair, N; zero for the body with itself."""
 
     @property
     def pressed(self) -> float:
-        """The sum of the sizes of all forces, N."""
+        """Sum of the magnitudes of all contact forces, N."""
 
     @property
     def pressure(self) -> float:
-        """The sum of all pressures, N."""
+        """Sum of all pressures, as a force that pushes apart, N."""
 
     @property
     def friction(self) -> tuple[float, float, float]:
-        """The part of the force that is friction, N."""
+        """Part of the force that is friction, N."""
 
     @property
     def bound(self) -> float:
-        """The most that friction can be, N."""
+        """Largest friction force: all pressures times their coefficients, N."""
 
     @property
     def area(self) -> float:
-        """In the unloaded body, m²."""
+        """Contact area in the unloaded body, m²."""
 
     @property
     def slipping(self) -> float:
-        """The part of the pressure under which the surfaces slip, 0 to 1."""
+        """Part of the pressure under which the surfaces slip, 0 to 1."""
 
 
 class Supplied(Protocol):
-    """A volume of gas or liquid; :class:`~voxsoft.simulation.fluids.ChamberState` says more."""
+    """Volume of gas or liquid; see :class:`~voxsoft.simulation.fluids.ChamberState`."""
 
     @property
     def cavities(self) -> tuple[int, ...]:
-        """The indices of its cavities."""
+        """Indices of its cavities."""
 
     @property
     def work(self) -> float:
-        """Done on the walls, J."""
+        """Work done on the walls, J."""
 
     @property
     def energy(self) -> float:
-        """That this took, J."""
+        """Energy that the work took, J."""
 
 
 class Pulled(Protocol):
-    """A tendon; :class:`~voxsoft.simulation.tendons.TendonState` says more."""
+    """Tendon under load; see :class:`~voxsoft.simulation.tendons.TendonState`."""
 
     @property
     def tension(self) -> float:
-        """At the pulled end, N."""
+        """Tension at the pulled end, N."""
 
     @property
     def length(self) -> float:
-        """Of its way, m."""
+        """Length of the tendon's path, m."""
 
 
 class State(Protocol):
-    """What the value of a metric may look at: a body where it is now.
+    """State that the value of a metric reads: a body at its current positions.
 
     A :class:`~voxsoft.simulation.Result` is one.
     """
 
     @property
     def design(self) -> Design:
-        """What was simulated."""
+        """Simulated design."""
 
     @property
     def mesh(self) -> Mesh:
-        """Its mesh, unloaded."""
+        """Unloaded mesh."""
 
     @property
     def places(self) -> Mapping[str, Place]:
-        """What each probe averages over."""
+        """Weighted vertices of each probe, by its name."""
 
     @property
     def positions(self) -> Floats:
-        """Vertices now, (n, 3), m."""
+        """Current positions of the vertices, (n, 3), m."""
 
     @property
     def mass(self) -> float:
-        """In kg."""
+        """Mass, kg."""
 
     @property
     def elastic_energy(self) -> float:
-        """In J."""
+        """Elastic energy, J."""
 
     @property
     def fields(self) -> Fields:
-        """Stress and strain."""
+        """Stress and strain fields."""
 
     @property
     def reaction(self) -> tuple[float, float, float]:
-        """What all supports carry, (3,), N."""
+        """Total reaction of all supports, (3,), N."""
 
     @property
     def clamp_reactions(self) -> Mapping[str, tuple[float, float, float]]:
-        """The force of each clamp on the body by its name, N."""
+        """Reaction of each clamp on the body by its name, N."""
 
     def reaction_in(self, region: Region) -> tuple[float, float, float]:
-        """The force on the body of what holds a region, (3,), N."""
+        """Reaction of the supports in a region on the body, (3,), N."""
 
     @property
     def penetration(self) -> Depth:
-        """Where the body is in itself or in its floor."""
+        """Penetration of the body into itself or its floor."""
 
     @property
     def contacts(self) -> Sequence[Touch]:
-        """What touches what; pairs that are apart are left out."""
+        """Contacts of all pairs that touch."""
 
     def gap_to(self, name: str) -> float:
-        """The smallest distance of the body and an object, m."""
+        """Smallest distance between the body and an object, m."""
 
     def compliance_at(self, place: Place) -> Floats:
-        """How a force along x, y or z, shared by a place, moves it, (3, 3), m/N."""
+        """Compliance of a place, (3, 3), m/N: displacement by a shared force along x, y or z."""
 
     def natural_frequency(self) -> float:
-        """That of the slowest small vibration, Hz."""
+        """Lowest natural frequency, Hz."""
 
     @property
     def cavity_pressures(self) -> Sequence[float]:
-        """The gauge pressure in each cavity of the mesh, Pa."""
+        """Gauge pressure in each cavity of the mesh, Pa."""
 
     @property
     def supplies(self) -> Sequence[Supplied]:
-        """The volumes of gas and liquid."""
+        """Volumes of gas and liquid."""
 
     @property
     def tendons(self) -> Mapping[str, Pulled]:
-        """By name."""
+        """Tendons by name."""
 
 
 class SlopeState(State, Protocol):
-    """What the slope of a metric may look at besides."""
+    """State with the further forces that the slope of a metric reads."""
 
     @property
     def elastic_forces(self) -> Floats:
-        """Forces of the material on its vertices, (n, 3), N."""
+        """Elastic forces of the material on its vertices, (n, 3), N."""
 
     def pushed_triangles(self) -> Iterable[tuple[NDArray[np.int32], float]]:
         """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa."""
 
 
-#: Bounds of what is never negative, and of a share.
+#: Bounds of a number that is never negative, and of a share.
 NOT_NEGATIVE: Final = (0.0, math.inf)
 SHARE: Final = (0.0, 1.0)
 
 
 @dataclass(frozen=True)
 class Metric:
-    """A number that a design may ask for.
+    """Number that a design may ask for.
 
     Attributes
     ----------
     name, kind
-        How a design calls it, and the kind of quantity it is, a key of
-        :data:`voxsoft.units.KINDS`.
+        Name in designs, and kind of quantity, a key of :data:`voxsoft.units.KINDS`.
     value
         The number in SI units, from a state and the target that asks for it.
     slope
@@ -226,16 +225,16 @@ class Metric:
         Keys of the target without which it has no place, and those that it can do without. Others
         are refused.
     is_peak
-        Whether it is the largest or smallest of all voxels unless the target has a percentile. At
+        True if it is the largest or smallest of all voxels unless the target has a percentile. At
         a sharp corner such a number grows as voxels get smaller, without a limit.
     is_costly
-        Whether it takes about as long as the run itself, so that it is found only where asked for.
+        True if it takes about as long as the run itself, so that it is computed only on request.
     is_of
-        Whether a body has what it measures; a result lists it unasked only then. Default: all have.
+        Predicate: a result lists the metric unasked only for states where it holds. Default: all.
     home
         Module and name of the function of a metric that a user added; empty for VoxSoft's own.
     bounds
-        Between which the number lies for every body, in SI units: an estimate beyond is none.
+        Range of the number for every body, in SI units; an estimate beyond it is rejected.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""How far a body moves."""
+"""Displacement of a probe, and the largest of a body."""
 
 from __future__ import annotations
 

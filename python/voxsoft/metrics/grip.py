@@ -1,4 +1,4 @@
-"""How an object is gripped: how hard, with what margin, and what it takes to block a motion."""
+"""Grip of an object: grip force, hold margin, and the force that blocks a motion."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from voxsoft.metrics.contact import object_of_target
 from voxsoft.metrics.definition import Metric, State, Target, Touch
 from voxsoft.metrics.vectors import component
 
-#: Where nothing pulls the margin has no bound, and numbers of files are finite.
+#: Largest hold margin: without a load it has no bound, and numbers of files are finite.
 _LARGEST_MARGIN: Final = 1e9
 
 
@@ -28,12 +28,12 @@ def _contacts(metric: Metric, state: State, target: Target) -> tuple[str, Sequen
 
 
 def _stands(name: str, state: State) -> bool:
-    """Whether the floor carries some of an object."""
+    """Return True if the floor carries a part of an object."""
     return any({name, FLOOR} == set(each.of) and each.pressure > 0.0 for each in state.contacts)
 
 
 def _on(name: str, contact: Touch, force: tuple[float, float, float]) -> NDArray[np.float64]:
-    """A force of a contact, on an object; contacts have it on their first."""
+    """Return a contact's force on an object; contacts store the force on their first."""
     return np.asarray(force) if contact.of[0] == name else -np.asarray(force)
 
 
@@ -45,7 +45,7 @@ def _grip(state: State, target: Target) -> float:
 def _margin(state: State, target: Target) -> float:
     name, contacts = _contacts(HOLD_MARGIN, state, target)
     bound = sum(each.bound for each in contacts)
-    # Apart, without friction, or on the floor: a study would else drop it to hold it best.
+    # No margin if apart, frictionless or on the floor: else a study would drop it to hold it best.
     if bound == 0.0 or _stands(name, state):
         return 0.0
     friction = sum((_on(name, each, each.friction) for each in contacts), np.zeros(3))

@@ -20,7 +20,7 @@ from voxsoft.records import closest
 from voxsoft.records.names import check_name
 from voxsoft.units import KINDS
 
-#: From a state, and from the target that asks where the metric has options, to a number.
+#: Function from a state, and the target where the metric has options, to a number.
 Value = Callable[..., float]
 Slope = Callable[..., Floats]
 
@@ -47,24 +47,25 @@ def metric(
     Parameters
     ----------
     name
-        How designs call it; default: the name of the function.
+        Name in designs; default: the name of the function.
     kind
         The kind of quantity, a key of :data:`voxsoft.units.KINDS`: ``"length"``, ``"force"``,
         ``"angle"``, ...; default: a number without a unit.
     needs, takes
-        Which of ``"probe"``, ``"base"``, ``"axis"``, ``"cavity"``, ``"percentile"`` and
-        ``"object"`` must or may stand beside it. A function of such a metric takes a second
+        Keys of a target that are required or optional: ``"probe"``, ``"base"``, ``"axis"``,
+        ``"cavity"``, ``"percentile"``, ``"object"``. A function of such a metric takes a second
         argument, the objective or constraint that asks.
     slope
-        From the same arguments to the derivative of the value by the positions of all vertices,
-        (n, 3), which ``gradient`` and ``Study.optimize("gradient", ...)`` need; default: none.
+        Function of the same arguments that returns the derivative of the value by the positions of
+        all vertices, (n, 3), for ``gradient`` and ``Study.optimize("gradient", ...)``; default:
+        none.
 
     Returns
     -------
     Callable
         The decorator. Its function takes a :class:`~voxsoft.metrics.State`, such as a
-        :class:`~voxsoft.Result`, and returns one number in SI units. What it makes is the
-        :class:`~voxsoft.metrics.Metric`.
+        :class:`~voxsoft.Result`, and returns one number in SI units. The decorator
+        returns the :class:`~voxsoft.metrics.Metric`.
 
     Raises
     ------
@@ -110,17 +111,17 @@ def metric(
 
 
 def own_metrics(targets: Iterable[Target]) -> tuple[OwnMetric, ...]:
-    """Name the metrics among those of some targets that a user added, each once."""
+    """List the user's own metrics among those of some targets, each once."""
     names = dict.fromkeys(target.metric for target in targets)
     own = [METRICS[name] for name in names if name in METRICS and name not in BUILT_IN]
     return tuple(OwnMetric(each.name, each.home.partition(":")[0]) for each in own)
 
 
 def missing_metrics(wanted: Iterable[OwnMetric]) -> tuple[str, ...]:
-    """Import what registers metrics, and name those that are not known here all the same."""
+    """Import the modules that register metrics, and return the names that stay unknown."""
     missing = []
     for name, module in wanted:
-        # Of a script a worker has a copy, which it ran as it started, if there is a file to run.
+        # A worker has run its own copy of a script as it started, if there is a file to run.
         if name not in METRICS and module not in sys.modules:
             with suppress(ImportError):
                 import_module(module)
@@ -130,13 +131,13 @@ def missing_metrics(wanted: Iterable[OwnMetric]) -> tuple[str, ...]:
 
 
 def _home(function: Value) -> str:
-    """Where a function stands; a worker's copy of a script stands where the script does."""
+    """Return module and name of a function; a worker's copy of a script counts as the script."""
     module = function.__module__
     return f"{'__main__' if module == '__mp_main__' else module}:{function.__qualname__}"
 
 
 def _checked(name: str, function: Value, asked: bool) -> Callable[[State, Target], float]:
-    """Call a function as it wants to be called; what it returns is one number, or an error."""
+    """Wrap a function with checks: it takes the right arguments and returns one number."""
     _check_arguments(name, function, asked)
 
     @wraps(function)

@@ -1,4 +1,4 @@
-"""How deep a body is in itself."""
+"""Penetration depth of a body into itself or its floor."""
 
 from __future__ import annotations
 

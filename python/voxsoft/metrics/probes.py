@@ -1,4 +1,4 @@
-"""Where a metric that is measured at a probe is measured."""
+"""Place of the probe at which a metric is measured."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from voxsoft.records import closest
 
 
 def place_of_target(state: State, target: Target) -> Place:
-    """Return the place of a target's probe; without a name, of the only probe there is.
+    """Return the place of a target's probe; default: the only probe.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What the supports carry: all of them, a clamp, those of a region, or an object."""
+"""Reaction of the supports: of all, of a clamp, of a region, or of an object."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
 from voxsoft.metrics.vectors import component, direction
 from voxsoft.records import closest
 
-#: What says of which supports a reaction is.
+#: Keys of a target that select the supports of a reaction.
 _CHOICES: Final = ("clamp", "region", "object")
 
 
@@ -56,7 +56,7 @@ def _value(state: State, target: Target) -> float:
 
 
 def _slope(state: SlopeState, target: Target) -> Floats:
-    """Of all loads only a pressure on an open surface changes its sum as the body moves.
+    """Differentiate by the positions: only pressure on an open surface changes the sum of loads.
 
     Its triangles carry ``-p A n`` each, with ``A n = (b - a) x (c - a)/2``.
     """

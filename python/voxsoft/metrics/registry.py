@@ -67,16 +67,15 @@ _ALL: Final[dict[str, Metric]] = {
     )
 }
 
-#: The names that every VoxSoft knows.
+#: Names of VoxSoft's own metrics.
 BUILT_IN: Final = frozenset(_ALL)
 
-#: Every metric by the name that objectives and constraints call it; :func:`voxsoft.metric` adds to
-#: them.
+#: Every metric by its name in objectives and constraints; :func:`voxsoft.metric` adds to them.
 METRICS: Final[Mapping[str, Metric]] = MappingProxyType(_ALL)
 
 
 def register(metric: Metric) -> None:
-    """Add a metric of a user's.
+    """Add a user's metric.
 
     Raises
     ------

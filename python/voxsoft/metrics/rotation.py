@@ -1,4 +1,4 @@
-"""How far a body turns."""
+"""Mean rotation at a probe."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _slope(state: SlopeState, target: Target) -> Floats:
 
 
 def _slope_of_turn(rest: Floats, positions: Floats, vector: Floats, by_vector: Floats) -> Floats:
-    """Derivative of a number by the positions, (k, 3), from that by the best rotation's vector.
+    """Differentiate a number by the positions, (k, 3), given its derivative by the rotation vector.
 
     With ``H = Σ before afterᵀ = Q S``, ``Q`` the rotation of rows and ``S`` symmetric, a change of
     ``H`` turns ``Q`` by the skew ``W`` with ``W S + S W = Qᵀ dH - dHᵀ Q``. That is a turn by ``w``,
@@ -69,7 +69,7 @@ def _slope_of_turn(rest: Floats, positions: Floats, vector: Floats, by_vector: F
 
 
 def _inverse_jacobian(vector: Floats) -> Floats:
-    """By how much a rotation's vector changes for a small turn after it, (3, 3)."""
+    """Change of a rotation vector for a small turn after it, (3, 3): the inverse right Jacobian."""
     angle = float(np.linalg.norm(vector))
     cross = np.cross(np.eye(3), vector)  # v × is its matrix
     # 1/12 to the first order, where the difference is rounding.

@@ -1,4 +1,4 @@
-"""How much a body is stressed."""
+"""Von Mises stress of a body."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far a body is stretched, beside the tests of its materials, and how far it is pressed."""
+"""Largest stretch, its share of the tested range of the material, and smallest volume ratio."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ def _stretch_slope(state: SlopeState, target: Target) -> Floats:
 
 
 def _tested(state: State) -> Floats:
-    """The strain up to which the material of each voxel was tested; NaN where it is not known."""
+    """Return the strain up to which the material of each voxel was tested; NaN where not known."""
     ranges = tested_ranges(state.design)
-    # A material that was only pressed was pulled to no strain of which there could be a share.
+    # A material tested in compression only has no tensile strain to take a share of.
     limits = [0.0 if each is None else each.largest - 1.0 for each in ranges]
     of_parts = np.array([limit if limit > 0.0 else np.nan for limit in limits])
     tested: Floats = of_parts[state.fields.parts]

@@ -1,4 +1,4 @@
-"""What supplies do: pressures, work and the energy that it takes."""
+"""Metrics of supplies: pressure, work, energy and efficiency."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from voxsoft.metrics.definition import Metric, State, Supplied, Target
 
 
 def _pressure(state: State, target: Target) -> float:
-    """In the chamber; of several the highest, and without any that of the atmosphere."""
+    """Gauge pressure in the chamber, Pa; the highest of several, 0 (atmospheric) without any."""
     chosen = chosen_cavities(target.cavity, state.mesh, "cavity")
     return max((state.cavity_pressures[index] for index in chosen), default=0.0)
 
@@ -39,7 +39,7 @@ def _are_supplied(state: State) -> bool:
     return bool(state.supplies)
 
 
-# Without slopes: pressures follow from volumes that themselves depend on what is varied.
+# Without slopes: pressures follow from volumes that depend on the varied parameters themselves.
 CHAMBER_PRESSURE: Final = Metric(
     "chamber_pressure",
     "pressure",

@@ -1,4 +1,4 @@
-"""What the tangent at an equilibrium says: how soft a point is, and how slowly the body swings."""
+"""Metrics of the tangent at an equilibrium: compliance, stiffness and natural frequency."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from voxsoft.metrics.probes import place_of_target
 
 
 def _compliance(state: State, target: Target) -> float:
-    """Along an axis, or along the softest direction, by the largest eigenvalue."""
+    """Compliance along an axis, or along the softest direction, by the largest eigenvalue."""
     matrix = state.compliance_at(place_of_target(state, target))
     if target.axis is not None:
         number = "xyz".index(target.axis)

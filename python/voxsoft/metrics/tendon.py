@@ -1,4 +1,4 @@
-"""Tendons: how hard one is pulled, and how long its way is."""
+"""Tension and length of tendons."""
 
 from __future__ import annotations
 

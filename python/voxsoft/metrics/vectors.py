@@ -1,4 +1,4 @@
-"""Metrics that are a component of a vector, or its magnitude."""
+"""Component or magnitude of a vector as a metric."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from voxsoft.metrics.definition import Floats, Target
 
 
 def component(vector: Floats, target: Target) -> float:
-    """The component that a target asks for, or the magnitude."""
+    """Return the component that a target asks for, or the magnitude."""
     if target.axis is None:
         return float(np.linalg.norm(vector))
     return float(vector["xyz".index(target.axis)])
 
 
 def direction(vector: Floats, target: Target) -> Floats:
-    """The derivative of the component or of the magnitude by the vector, (3,).
+    """Differentiate the component or the magnitude by the vector, (3,).
 
     Raises
     ------

@@ -22,7 +22,7 @@ def _elastic_energy(state: State, _: Target) -> float:
 
 
 def _unmoved(state: SlopeState, _: Target) -> Floats:
-    """The slope of what no motion changes."""
+    """Zero slope, for numbers that no motion changes."""
     return np.zeros_like(state.positions)
 
 

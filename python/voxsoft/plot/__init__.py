@@ -57,7 +57,7 @@ __all__ = [
     "plot_workspace",
 ]
 
-# Loaded when first used: the picture of a body needs no fit of coupons.
+# Imported when first used: the picture of a body needs no fit of coupons.
 _HOMES = {
     "body_image": "voxsoft.plot.body",
     "plot_agreement": "voxsoft.plot.comparison",

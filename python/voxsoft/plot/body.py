@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-# Fields of a result by name: what the color bar says, and the kind of quantity.
+# Fields of a result by name: label of the color bar, and kind of quantity.
 _FIELDS: Final[Mapping[str, tuple[str, str]]] = {
     "displacement": ("displacement", "length"),
     "von_mises": ("von Mises stress", "pressure"),
@@ -43,10 +43,10 @@ _FIELDS: Final[Mapping[str, tuple[str, str]]] = {
 #: Pixels of the longer side of the picture; it is computed twice as fine and averaged.
 PIXELS = 900
 _FINER = 2
-# Edges of triangles are drawn where they are at least this many pixels long.
+# Shortest edge of triangles, in pixels, that is drawn.
 _SHORTEST_LINE = 7.0
 _PLAIN_COLOR = "#9fb8c8"
-# The darkest shade of an undeformed body.
+# Darkest shade of an undeformed body.
 _PALEST = 0.68
 
 
@@ -63,44 +63,45 @@ def plot_body(
     frame: int | None = None,
     title: str | None = None,
 ) -> Figure:
-    """Draw a body: shaded, deformed as it is, with its tendons and a scale bar.
+    """Draw a body, shaded and deformed, with its tendons and a scale bar.
 
     Parameters
     ----------
     body
-        A result, which is drawn deformed, or a mesh.
+        Result, which is drawn deformed, or mesh.
     field
-        What the color says: ``"displacement"`` (its magnitude; the default for a result),
+        Quantity shown in color: ``"displacement"`` (its magnitude; the default for a result),
         ``"von_mises"``, ``"max_stretch"`` or ``"energy_density"`` of a result, with contact also
         ``"contact_pressure"``, ``"part"``, ``"plain"`` (the default for a mesh), or one number for
         each vertex, (n,). Where a few values lie far beyond all others, colors end where 99 % of
-        the area do, and the picture says where the farthest is.
+        the area do, and the picture marks the farthest.
     label
-        What the color bar says of such numbers.
+        Label of the color bar for such numbers.
     section
-        Cut away the half that is nearer to the reader: the axis across the cut, alone for a cut
+        Axis normal to a cut that removes the half nearer to the reader: alone for a cut
         through the middle, or with its position in m. Voxels stay whole. Walls of cavities are
         drawn in colors of their own.
     view
         Azimuth and elevation of the eye in degrees.
     ghost
-        Whether to show the undeformed body behind a deformed one.
+        True to show the undeformed body behind a deformed one.
     lines
-        Whether to draw the edges of triangles; default: where they are long enough to be seen.
+        True to draw the edges of triangles; default: where they are long enough to be seen.
     objects
-        Whether to draw the rigid objects and the floor of a result, gray; default: but where the
-        color says what they press. Those of a mesh are given, ``Surroundings.of(design, {})`` of
+        True to draw the rigid objects and the floor of a result, gray; default: unless the color
+        shows their contact pressure. Those of a mesh are given, ``Surroundings.of(design, {})`` of
         ``voxsoft.plot.objects``: a mesh does not know them.
     frame
-        Which recorded frame of a result to draw, in place of its end: a run with ``frames=True``
-        has one for each of ``result.recording.times``. Tendons are drawn at the end alone.
+        Index of the recorded frame of a result to draw, in place of its end: a run with
+        ``frames=True`` has one for each of ``result.recording.times``. Tendons are drawn at the end
+        alone.
     title
-        Default: the name of the design.
+        Title of the picture; default: the name of the design.
 
     Returns
     -------
     matplotlib.figure.Figure
-        A surface of 100,000 triangles takes a few seconds.
+        The picture. A surface of 100,000 triangles takes a few seconds.
 
     Raises
     ------
@@ -151,14 +152,14 @@ def plot_body(
 def body_image(
     body: Result | Mesh, *, pixels: int = 320, view: tuple[float, float] = (-60.0, 25.0)
 ) -> NDArray[np.uint8]:
-    """Draw a body small and without words, as for a list.
+    """Draw a small picture of a body without words, as for a list.
 
     Parameters
     ----------
     body
-        A result, which is drawn deformed and colored by its displacement, or a mesh.
+        Result, which is drawn deformed and colored by its displacement, or mesh.
     pixels
-        Size of the longer side.
+        Size of the longer side in pixels.
     view
         Azimuth and elevation of the eye in degrees.
 
@@ -188,7 +189,7 @@ def body_image(
 
 @dataclass(frozen=True)
 class _Colors:
-    """The color of each corner of each triangle as a number, or of each triangle as it is."""
+    """Color of each corner of each triangle as a number, or of each triangle as it is."""
 
     flat: Floats  # (t, 3) red, green, blue
     values: Floats | None = None  # (t, 3) at the corners
@@ -196,11 +197,11 @@ class _Colors:
     label: str = ""
     colored: NDArray[np.bool_] | None = None  # (t,) where the values count
     extend: str = "neither"
-    clipped: str = ""  # what lies beyond the colors
+    clipped: str = ""  # extremes outside the color range
 
 
 def _around(body: Result | Mesh, *, shown: bool = True) -> Surroundings:
-    """What is around a body and shown."""
+    """Return the rigid objects and floor around a body that are shown."""
     if not shown or not isinstance(body, Result):
         return Surroundings()
     return Surroundings.of(body.design, body.objects)
@@ -213,7 +214,7 @@ def _is(field: str | ArrayLike | None, name: str) -> bool:
 def _plane(
     mesh: Mesh, section: Axis | tuple[Axis, float] | None, camera: Camera
 ) -> tuple[Axis, float, int] | None:
-    """Where a section cuts: the axis, the position on it, and the side that stays."""
+    """Find the plane of a section: the axis, the position on it, and the side that stays."""
     if section is None:
         return None
     if isinstance(section, tuple):
@@ -255,9 +256,9 @@ def _colors(
         return _Colors(flat)
     values, label = _values(body, mesh, field, label)
     of_corners = values[surface.triangles]
-    # With a field on the outside, cavity walls keep their own color, by which they are known.
+    # With a field on the outside, cavity walls keep their own color to be recognized.
     outside = surface.triangles if lined.all() else surface.triangles[~lined]
-    # Most of a body is pressed by nothing, so that 99 % of its area say little.
+    # Most of a body has no contact, so that 99 % of its area say little.
     whole = _is(field, "displacement") or _is(field, "contact_pressure")
     shown = color_range(values, outside, mesh.vertices, clip=not whole)
     norm = Normalize(shown.low, shown.high)
@@ -317,7 +318,7 @@ def _paint(
     camera: Camera,
     lines: bool | None,
 ) -> Floats:
-    """Color and light for every pixel, (h, w, 3), white where there is no body."""
+    """Compute color and light for every pixel, (h, w, 3), white where there is no body."""
     shown = colors.flat[seen.triangle]
     if colors.values is not None and colors.norm is not None and colors.colored is not None:
         from matplotlib import colormaps
@@ -341,7 +342,7 @@ def _long_enough(flat: Floats) -> bool:
 def _with_ghost(
     picture: Floats, seen: Raster, before: Raster, mesh: Mesh, surface: Boundary, camera: Camera
 ) -> Floats:
-    """Draw the undeformed body, as it is seen before, pale behind the deformed one."""
+    """Draw the undeformed body pale behind the deformed one."""
     normals = shading.normals_of(mesh.vertices[surface.triangles])
     light = shading.lit(normals, camera)[before.triangle] * shading.outlines(before)
     pale = before.spread(_PALEST + (1.0 - _PALEST) * light, 1.0)
@@ -349,7 +350,7 @@ def _with_ghost(
 
 
 def _averaged(picture: Floats) -> Floats:
-    """Average the finer pixels that were drawn."""
+    """Average the finer pixels of a picture."""
     height, width = picture.shape[0] // _FINER, picture.shape[1] // _FINER
     cropped = picture[: height * _FINER, : width * _FINER]
     averaged: Floats = cropped.reshape(height, _FINER, width, _FINER, 3).mean(axis=(1, 3))

@@ -1,4 +1,4 @@
-"""The surface of a body that a picture shows: all of it, or what a cut leaves."""
+"""Surface of a body in a picture: all of it, or the part that a cut leaves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from voxsoft.mesh import Mesh
 
 Axis = Literal["x", "y", "z"]
 
-# The four faces of a tetrahedron of positive volume, outward.
+# Four faces of a tetrahedron of positive volume, outward.
 _FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
 
 
@@ -25,9 +25,9 @@ class Boundary:
     triangles : ndarray of int64, shape (t, 3)
         Vertex indices, outward.
     part : ndarray of uint8, shape (t,)
-        The part behind each triangle.
+        Part behind each triangle.
     cavity : ndarray of int64, shape (t,)
-        The cavity in front of each triangle, counted from 0; -1 where it is the outside.
+        Cavity in front of each triangle, counted from 0; -1 where it is the outside.
     """
 
     triangles: NDArray[np.int64]
@@ -43,7 +43,7 @@ def boundary_of(mesh: Mesh, kept: NDArray[np.bool_]) -> Boundary:
     mesh
         The mesh.
     kept
-        Which tetrahedra, (m,).
+        Mask of the tetrahedra, (m,).
 
     Examples
     --------
@@ -65,18 +65,18 @@ def boundary_of(mesh: Mesh, kept: NDArray[np.bool_]) -> Boundary:
 
 
 def beyond(mesh: Mesh, axis: Axis, position: float, side: int) -> NDArray[np.bool_]:
-    """Tell which tetrahedra lie on one side of a plane; voxels stay whole.
+    """Select the tetrahedra on one side of a plane; voxels stay whole.
 
     Parameters
     ----------
     mesh
         The mesh.
     axis
-        The normal of the plane.
+        Normal of the plane.
     position
-        Where the plane cuts the axis, in m.
+        Position of the plane on the axis, in m.
     side
-        1 for what lies beyond the plane along the axis, -1 for what lies before it.
+        Side to select: 1 for beyond the plane along the axis, -1 for before it.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Pictures of calibrations: the search, the fitted shape, and what the data could tell."""
+"""Pictures of calibrations: the search, the fitted shape, and the profiles of the parameters."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 
 _MM = 1e3
 
-# Profiles are shown up to this multiple of the best mean error.
+# Upper limit of the axis of profiles, in multiples of the best mean error.
 _HIGHEST = 2.0
 
 
@@ -42,7 +42,7 @@ def plot_fitness(calibration: Calibration) -> Figure:
     Parameters
     ----------
     calibration
-        What :func:`voxsoft.calibration.calibrate` returned.
+        Result of :func:`voxsoft.calibration.calibrate`.
 
     Returns
     -------
@@ -93,7 +93,7 @@ def plot_shape(calibration: Calibration) -> Figure:
     Parameters
     ----------
     calibration
-        What :func:`voxsoft.calibration.calibrate` returned.
+        Result of :func:`voxsoft.calibration.calibrate`.
 
     Returns
     -------
@@ -117,7 +117,7 @@ def plot_profiles(calibration: Calibration) -> Figure:
     Parameters
     ----------
     calibration
-        What :func:`voxsoft.calibration.calibrate` returned.
+        Result of :func:`voxsoft.calibration.calibrate`.
 
     Returns
     -------
@@ -134,7 +134,7 @@ def plot_profiles(calibration: Calibration) -> Figure:
     if not profiles:
         plain_axes(panels[0], x="", y="", title="no profiles: identify was off")
         return figure
-    # Far from the best value errors grow without bound; what matters is how flat the bottom is.
+    # Far from the best value errors grow without bound; only the flatness of the bottom matters.
     panels[0].set_ylim(0.0, _HIGHEST * calibration.mean_error * _MM + 1e-9)
     panels[0].set_ylabel("smallest mean error (mm)", fontsize=10)
     plain_legend(panels[0], loc="lower left")
@@ -159,7 +159,7 @@ def _draw_shape(axes: Axes, fit: Fit) -> None:
 
 
 def _planes(fit: Fit) -> tuple[int | None, int, str, str]:
-    """Which measured numbers to draw: two of them in space, or one over the stations."""
+    """Choose the measured numbers to draw: two of them in space, or one over the stations."""
     quantities = fit.experiment.measurement.quantities
     if len(quantities) == 1:
         return None, 0, "arc from the clamp (mm)", f"{quantities[0]} (mm)"

@@ -1,4 +1,4 @@
-"""An orthographic view: no perspective, so that a scale bar holds everywhere in the picture."""
+"""Orthographic view: no perspective, so that a scale bar holds everywhere in the picture."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Camera:
-    """Where a body is seen from, and how many pixels a meter is.
+    """View of a body, with the size of a pixel.
 
     Attributes
     ----------
@@ -42,11 +42,11 @@ class Camera:
         Parameters
         ----------
         points
-            What must be seen, (n, 3), m.
+            Points that must be visible, (n, 3), m.
         view
             Azimuth and elevation of the eye in degrees, from x toward y and from there up.
         pixels
-            Size of the longer side of the picture.
+            Size of the longer side of the picture in pixels.
         """
         azimuth, elevation = np.radians(view)
         toward = np.array(
@@ -68,7 +68,7 @@ class Camera:
         return cls(right, up, toward, float(left), float(top), pixel, int(width), int(height))
 
     def project(self, points: Floats) -> Floats:
-        """Give column, row and depth of points, (n, 3); depth is in pixels too."""
+        """Return column, row and depth of points, (n, 3); depth is in pixels too."""
         columns = (points @ self.right - self.left) / self.pixel
         rows = (self.top - points @ self.up) / self.pixel
         return np.column_stack([columns, rows, -(points @ self.toward) / self.pixel])

@@ -1,4 +1,4 @@
-"""Between which values colors run."""
+"""Range of values over which colors run."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-#: Percent of the area whose values the colors tell apart, where a few others lie far away.
+#: Percent of the area whose values the colors distinguish, where a few others lie far away.
 CLIP: Final = 99.0
-#: How far that is: this part of the range of the others.
+#: Distance of far values, as a part of the range of the others.
 FAR: Final = 0.1
 
 
 @dataclass(frozen=True)
 class ColorRange:
-    """The values at the ends of the colors.
+    """Values at the ends of the colors, and the extremes of all.
 
     Attributes
     ----------
     low, high
-        The ends.
+        Values at the ends of the colors.
     least, most
         Vertices with the smallest and the largest of all values.
     clips_low, clips_high
-        Whether those lie beyond the ends.
+        True if those lie beyond the ends.
     """
 
     low: float
@@ -39,7 +39,7 @@ class ColorRange:
 
     @property
     def extend(self) -> str:
-        """The same as matplotlib calls it."""
+        """Argument `extend` of a color bar of matplotlib."""
         names = {(True, True): "both", (True, False): "min", (False, True): "max"}
         return names.get((self.clips_low, self.clips_high), "neither")
 
@@ -60,8 +60,8 @@ def color_range(
     points
         Vertices in m, (n, 3), for the areas.
     clip
-        Whether a few values may lie beyond the ends. Of displacements none does: they have no
-        sharp corners, and the tip that moves most is what a picture is for.
+        True to allow a few values beyond the ends. Displacements are not clipped: they have no
+        singularities at sharp corners, and the tip that moves most is the subject of the picture.
 
     Examples
     --------

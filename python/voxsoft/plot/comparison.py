@@ -1,4 +1,4 @@
-"""Pictures of comparisons: who says what, how it changes with the size of voxels, and the times."""
+"""Pictures of comparisons: agreement of runs, convergence with the size of voxels, and times."""
 
 from __future__ import annotations
 
@@ -28,24 +28,24 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 _MARKERS = "osD^vPX"
-# As many quantities of a kind as one can read under each other; the largest are kept.
+# Most quantities of a kind that can be read under each other; the largest are kept.
 _MOST = 14
 _ORDER = {"length": 0, "angle": 1, "volume": 2, "force": 3}
-# Axes span at least this share of their largest number, so that noise does not look like much.
+# Least span of an axis, as a share of its largest number, so that noise does not look like much.
 _NARROWEST = 0.02
-# A number that changes by less than this share from size to size has nothing to show.
+# Least relative change from size to size of a number that is drawn.
 _LEVEL = 1e-4
 # Distance of error bars that stand side by side, as a share of the largest voxel.
 _ASIDE = 0.03
 
 
 def plot_agreement(comparison: Comparison) -> Figure:
-    """Draw every quantity as each run has it, over each other, with error estimates.
+    """Draw every quantity with the value of each run over each other, with error estimates.
 
     Parameters
     ----------
     comparison
-        What :func:`voxsoft.compare` returned.
+        Result of :func:`voxsoft.compare`.
 
     Returns
     -------
@@ -64,7 +64,7 @@ def plot_agreement(comparison: Comparison) -> Figure:
         names = kinds.setdefault(runs[0].quantities[name].kind, [])
         if len(names) < _MOST:
             names.append(name)
-    # Displacements first, whatever is largest as a number.
+    # Displacements come first, at any size of the numbers.
     kinds = dict(sorted(kinds.items(), key=lambda item: _ORDER.get(item[0], len(_ORDER))))
     heights = [1.1 + 0.34 * len(names) for names in kinds.values()] or [2.0]
     figure = empty_figure(8.4, 0.5 + sum(heights))
@@ -125,7 +125,7 @@ def _error(comparison: Comparison, run: Run, name: str) -> float:
 
 
 def plot_shapes(comparison: Comparison) -> Figure | None:
-    """Draw where the probes went, seen from the side, for every run on the design's own voxels.
+    """Draw the displaced probes, seen from the side, for every run on the design's own voxels.
 
     Returns
     -------
@@ -142,7 +142,7 @@ def plot_shapes(comparison: Comparison) -> Figure | None:
     if not moved:
         return None
     everything = np.concatenate([rest, *moved.values()])
-    # The plane in which most happens, the vertical last.
+    # The plane of the largest extents, the vertical last.
     spread = np.ptp(everything, axis=0)
     across, along = sorted(np.argsort(spread)[-2:].tolist())
     scale = scale_for(everything, "length")
@@ -201,7 +201,7 @@ def plot_convergence(comparison: Comparison) -> Figure | None:
             axes.plot(
                 edges, values, marker=_MARKERS[index], color=color, label=each.series, linewidth=1.2
             )
-            # Series end at the same size: side by side, their bars can be told apart.
+            # Series end at the same size: side by side, their bars can be distinguished.
             place = edges[-1] + _ASIDE * edges[0] * (index - (len(chosen) - 1) / 2)
             bar = estimate.error * unit.factor
             axes.errorbar([place], [values[-1]], yerr=bar, color=color, capsize=4, linewidth=1.2)
@@ -213,7 +213,7 @@ def plot_convergence(comparison: Comparison) -> Figure | None:
 
 
 def plot_times(comparison: Comparison) -> Figure:
-    """Draw how long every run took, on a logarithmic axis."""
+    """Draw the seconds of every run, on a logarithmic axis."""
     runs = comparison.runs
     figure = empty_figure(8.4, 0.9 + 0.3 * len(runs))
     axes = figure.add_subplot()
@@ -233,14 +233,14 @@ def plot_times(comparison: Comparison) -> Figure:
 
 
 def plot_errors(comparison: Comparison, index: int = 0) -> Figure | None:
-    """Draw how far each run is from each station of a measurement.
+    """Draw the distance of each run from each station of a measurement.
 
     Parameters
     ----------
     comparison
-        What :func:`voxsoft.compare` returned.
+        Result of :func:`voxsoft.compare`.
     index
-        Which measurement.
+        Index of the measurement.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Pictures of coupon fits: measured stress, all models, what they leave, what they predict."""
+"""Pictures of coupon fits: measured stress, all models, their errors and their predictions."""
 
 from __future__ import annotations
 
@@ -27,26 +27,27 @@ _COLORS: Final = (*SERIES, GRAY, BLACK)
 _DASHES: Final = ("--", "-.", ":")
 _SHAPES: Final[dict[Mode, str]] = {"uniaxial": "o", "equibiaxial": "s", "planar": "^"}
 _SAMPLES: Final = 200
-# The start that beams in bending feel.
+# Strain range of beams in bending.
 _SMALL: Final = 0.5
 
 
 def plot_coupons(fit: CouponFit, model: str | None = None) -> Figure:
-    """Draw what was measured and every model that was fitted.
+    """Draw the measured curves and every fitted model.
 
     Parameters
     ----------
     fit
-        What :func:`voxsoft.materials.coupon.fit_coupons` returned.
+        Result of :func:`voxsoft.materials.coupon.fit_coupons`.
     model
-        The model to emphasize; default: the recommended one.
+        Name of the model to emphasize; default: the recommended one.
 
     Returns
     -------
     matplotlib.figure.Figure
         Four panels: stress over strain with all models, and the same up to a strain of 50 %; the
-        error of each model; and what the emphasized model says of all three modes, dotted where it
-        is unstable, with a bar for what all models that fit alike say of a mode without a curve.
+        error of each model; and the stress of the emphasized model in all three modes, dotted where
+        it is unstable, with a bar for the range of all models that fit alike in a mode without a
+        curve.
 
     Examples
     --------
@@ -74,7 +75,7 @@ def plot_coupons(fit: CouponFit, model: str | None = None) -> Figure:
 
 
 def _legend_order(fit: CouponFit, chosen: ModelFit) -> list[tuple[ModelFit, str, str]]:
-    """Pair every model with its color and dashes; the same model looks the same in all panels."""
+    """Pair every model with its color and dashes, the same in all panels."""
     looks = [
         (found, _COLORS[i % len(_COLORS)], "-" if found is chosen else _DASHES[i % len(_DASHES)])
         for i, found in enumerate(fit.models)
@@ -138,7 +139,7 @@ def _draw_errors(
     chosen: ModelFit,
     stresses: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
 ) -> None:
-    """Errors in the unit that suits the good models; those of the bad ones leave the panel."""
+    """Draw errors in the unit that suits the good models; those of the bad ones leave the panel."""
     good = sorted(found.max_error for found in fit.models)
     limit = 1.2 * good[len(good) // 2]
     scale = scale_for(limit, "pressure")
@@ -161,7 +162,7 @@ def _draw_errors(
 
 
 def _draw_modes(axes: Axes, fit: CouponFit, chosen: ModelFit, scale: Scale) -> None:
-    """Stress of one model in all modes, from compression to the largest strain of the fit.
+    """Draw the stress of one model in all modes, from compression to the largest strain of the fit.
 
     The panel ends at three times the largest measured stress: a model that goes off there in a mode
     that nobody measured is not to be trusted in it. Bars span all models that fit alike.

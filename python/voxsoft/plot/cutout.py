@@ -21,20 +21,20 @@ Floats = NDArray[np.float64]
 #: Pixels of the longer side.
 PIXELS: Final = 240
 _FINER: Final = 2
-#: Clay.
+#: Color of clay.
 _COLORS: Final = ("#e8b88a",)
 
 
 @dataclass(frozen=True, eq=False)
 class Cutout:
-    """A picture with its scale.
+    """Picture with its scale.
 
     Attributes
     ----------
     pixels
         Red, green, blue and opacity, (h, w, 4).
     per_meter
-        How many pixels a meter is.
+        Number of pixels in a meter.
     """
 
     pixels: NDArray[np.uint8] = field(repr=False)
@@ -50,18 +50,18 @@ def cutout(
     view: tuple[float, float] = (-60.0, 25.0),
     around: Surroundings | None = None,
 ) -> Cutout:
-    """Draw a body in the colors of its parts, with what it is to touch and nothing else around it.
+    """Draw a body in the colors of its parts, with the rigid objects it is to touch.
 
     Parameters
     ----------
     mesh
-        The body.
+        Mesh of the body.
     positions
-        Where its vertices are in m, (n, 3); default: unloaded.
+        Positions of its vertices in m, (n, 3); default: unloaded.
     pixels
-        Size of the longer side.
+        Size of the longer side in pixels.
     colors
-        Of the parts in turn, as ``"#rrggbb"``.
+        Colors of the parts in turn, as ``"#rrggbb"``.
     view
         Azimuth and elevation of the eye in degrees.
     around
@@ -86,7 +86,7 @@ def cutout(
     of_part = palette[(surface.part.astype(np.int64) - 1) % len(palette)] / 255.0
     solid = np.concatenate([of_part[seen.triangle] * light[:, None], np.ones((len(light), 1))], 1)
     drawn = around.drawn_over(seen.spread(solid, 0.0), seen, camera, positions)
-    # Colors are averaged over what is covered alone, so that no seam of another color shows.
+    # Colors are averaged over covered pixels alone, so that no seam of another color shows.
     sums = _averaged(drawn)
     sums, opacity = sums[..., :3], sums[..., 3:]
     color = np.divide(sums, opacity, out=np.zeros_like(sums), where=opacity > 0.0)
@@ -95,7 +95,7 @@ def cutout(
 
 
 def _averaged(picture: Floats) -> Floats:
-    """Average the finer pixels that were drawn; what is left over at the ends is empty."""
+    """Average the finer pixels of a picture; the remainder at the ends is empty."""
     height, width = (-(-side // _FINER) * _FINER for side in picture.shape[:2])
     full = np.zeros((height, width, picture.shape[2]))
     full[: picture.shape[0], : picture.shape[1]] = picture

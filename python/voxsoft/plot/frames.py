@@ -1,4 +1,4 @@
-"""One instant of a run over time, as what is drawn."""
+"""One frame of a run over time, as a result to draw."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from voxsoft.simulation.touching import Pose
 
 
 def at_frame(result: Result, frame: int) -> Result:
-    """Return the result with body and objects where a recorded frame has them.
+    """Return the result with body and objects at their positions in a recorded frame.
 
-    What is known of the end alone, such as forces and what touches, is left out.
+    Numbers that are known for the end alone, such as forces and contacts, are left out.
 
     Parameters
     ----------
     result
-        Of a run with ``frames=True``.
+        Result of a run with ``frames=True``.
     frame
-        Its number; negative ones count from the end.
+        Number of the frame; negative ones count from the end.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What is around a body in its pictures: rigid objects, through which it shows, and the floor."""
+"""Surroundings of a body in its pictures: rigid objects, drawn translucent, and the floor."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 
 
 class _Look(NamedTuple):
-    """The gray of a surface, and how much of a picture it takes: its faces, and its outline."""
+    """Gray of a surface, and opacity of its faces and its outline."""
 
     gray: float
     opacity: float
@@ -31,22 +31,22 @@ class _Look(NamedTuple):
 
 _OBJECT: Final = _Look(0.6, 0.5, 0.9)
 _FLOOR: Final = _Look(0.85, 0.4, 0.4)
-#: How far around a body its surroundings are shown, in lengths of its longest side.
+#: Distance around a body in which its surroundings are shown, in lengths of its longest side.
 _AROUND: Final = 1.0
-#: How far a floor is drawn beyond what stands on it, in lengths of that.
+#: Margin of a floor around the body and objects on it, in lengths of their extent.
 _MARGIN: Final = 0.08
 
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What is beside a body.
+    """Rigid objects and floor beside a body.
 
     Attributes
     ----------
     objects
-        The surfaces of all rigid objects; None where there is none.
+        Surfaces of all rigid objects; None where there is none.
     floor
-        The height of the floor [m]; None where there is none.
+        Height of the floor [m]; None where there is none.
     """
 
     objects: Surface | None = field(default=None, repr=False)
@@ -54,7 +54,7 @@ class Surroundings:
 
     @classmethod
     def of(cls, design: Design, poses: Mapping[str, Pose]) -> Self:
-        """Those of a design, with its objects in some poses; others are where they are at first.
+        """Make those of a design, with its objects in some poses; default: their initial poses.
 
         Raises
         ------
@@ -67,7 +67,7 @@ class Surroundings:
         return cls(_joined(found) if found else None, floor)
 
     def near(self, body: Floats) -> Floats:
-        """What a picture has to hold of them beside a body, (n, 3), which they do not dwarf."""
+        """Return the points that a picture must hold beside a body, (n, 3), near to it."""
         shown, floor = self._standing(body), self._floor_under(body)
         return shown if floor is None else np.concatenate([shown, floor.vertices])
 
@@ -80,22 +80,22 @@ class Surroundings:
         plane: tuple[Axis, float, int] | None = None,
         ghost: Raster | None = None,
     ) -> Floats:
-        """Draw them over a picture where they are in front of its body.
+        """Draw objects and floor over a picture where they are in front of its body.
 
         Parameters
         ----------
         picture
             Red, green and blue, (h, w, 3); or with opacity, (h, w, 4), and colors times that.
         seen
-            What it shows of the body.
+            Raster of the body.
         camera
-            From where.
+            Camera of the picture.
         body
-            The vertices of the body, (n, 3), m.
+            Vertices of the body, (n, 3), m.
         plane
-            Where a section cuts: the axis, the position on it, and the side that stays.
+            Plane of a section: the axis, the position on it, and the side that stays.
         ghost
-            What the picture shows of the undeformed body, which hides the floor too.
+            Raster of the undeformed body, which hides the floor too.
         """
         depth = seen.spread(seen.depth, np.inf).ravel()
         floor = self._floor_under(body)
@@ -111,13 +111,13 @@ class Surroundings:
         return picture
 
     def _standing(self, body: Floats) -> Floats:
-        """Body and objects, as far as a picture shows them."""
+        """Return the vertices of body and objects that a picture shows."""
         if self.objects is None:
             return body
         return np.concatenate([body, np.clip(self.objects.vertices, *_limits(body))])
 
     def _floor_under(self, body: Floats) -> Surface | None:
-        """A rectangle of the floor, seen from both sides; None where it is too far away."""
+        """Make a rectangle of the floor, seen from both sides; None where it is too far away."""
         low, _ = _limits(body)
         if self.floor is None or self.floor < low[2]:
             return None
@@ -139,14 +139,14 @@ def _joined(surfaces: list[Surface]) -> Surface:
 
 
 def _limits(body: Floats) -> tuple[Floats, Floats]:
-    """How far around a body something is shown, m."""
+    """Return the box around a body in which objects are shown, m."""
     low, high = body.min(axis=0), body.max(axis=0)
     around = _AROUND * float((high - low).max())
     return low - around, high + around
 
 
 def cut(surface: Surface, axis: Axis, position: float, side: int) -> Surface:
-    """What a section leaves of surfaces: they are hollow, so that their insides show."""
+    """Cut surfaces by a section: they are hollow, so that their insides show."""
     beyond = side * (surface.vertices[:, "xyz".index(axis)] - position)
     kept = (beyond > 0.0)[surface.triangles]
     count = kept.sum(axis=1)
@@ -168,7 +168,7 @@ def cut(surface: Surface, axis: Axis, position: float, side: int) -> Surface:
 
 
 def _drawn(picture: Floats, depth: Floats, surface: Surface, look: _Look, camera: Camera) -> Floats:
-    """Draw a surface over a picture where it is in front of what is so deep there, (h * w,)."""
+    """Draw a surface over a picture where it is in front of a depth, (h * w,)."""
     if len(surface.triangles) == 0:
         return picture
     points, triangles = camera.project(surface.vertices), surface.triangles.astype(np.int64)

@@ -1,4 +1,4 @@
-"""The picture of a path: its numbers over what changes."""
+"""Picture of a path: its numbers over the varied value."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-#: As many numbers as one picture has unless it is asked for more.
+#: Most numbers of a picture that was not asked for others.
 _MOST: Final = 4
 
 
@@ -31,9 +31,9 @@ def plot_path(
     Parameters
     ----------
     path
-        What :func:`voxsoft.follow` returned.
+        Result of :func:`voxsoft.follow`.
     bars
-        What :func:`voxsoft.comparison.path_error_bars` returned; without it there are no bands.
+        Result of :func:`voxsoft.comparison.path_error_bars`; without it there are no bands.
     names
         Columns of the path; default: the objectives and constraints of the design, or else the
         components of displacements that change most.

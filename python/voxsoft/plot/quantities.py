@@ -1,4 +1,4 @@
-"""Units of axes: the one in which a set of numbers reads best."""
+"""Units of axes, chosen so that a set of numbers is easy to read."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from voxsoft.units import KINDS, parse
 
 
 class Scale(NamedTuple):
-    """How SI numbers are shown on an axis."""
+    """Factor and unit of SI numbers on an axis."""
 
     factor: float
     unit: str
@@ -27,15 +27,15 @@ def scale_for(values: ArrayLike, kind: str) -> Scale:
     Parameters
     ----------
     values
-        In SI units; those that are not finite do not count.
+        Numbers in SI units; those that are not finite do not count.
     kind
-        A key of :data:`voxsoft.units.KINDS`, or ``""`` where it is not known: then the numbers
-        stay as they are and the axis says SI.
+        Kind of quantity, a key of :data:`voxsoft.units.KINDS`, or ``""`` where it is not known:
+        then the numbers stay as they are and the axis is labeled SI.
 
     Returns
     -------
     Scale
-        The factor to multiply with, and the unit.
+        Factor to multiply with, and unit.
 
     Examples
     --------

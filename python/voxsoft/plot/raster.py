@@ -1,4 +1,4 @@
-"""Triangles to pixels: a depth buffer in NumPy.
+"""Rasterization of triangles: a depth buffer in NumPy.
 
 Sorting whole triangles by depth, as matplotlib does, is slow for a mesh of 100,000 triangles and
 wrong where they are of different sizes; a depth buffer decides for each pixel.
@@ -18,20 +18,20 @@ Floats = NDArray[np.float64]
 _PORTION = 2_000_000
 _NOTHING = np.uint64(0xFFFF_FFFF_FFFF_FFFF)
 _DEPTH_STEPS = 2.0**32 - 2
-# What rounding may take from a weight on the edge of a triangle.
+# Largest rounding error of a weight on the edge of a triangle.
 _INSIDE = 1e-9
 
 
 @dataclass(frozen=True)
 class Raster:
-    """What is seen in the pixels that a surface covers.
+    """Visible triangle in each pixel that a surface covers.
 
     Attributes
     ----------
     width, height
         Size of the picture in pixels.
     pixels : ndarray of int64, shape (p,)
-        The pixels that are covered, counted row by row.
+        Covered pixels, counted row by row.
     triangle : ndarray of int64, shape (p,)
         Index of the triangle in front.
     weights : ndarray, shape (p, 3)
@@ -49,7 +49,7 @@ class Raster:
 
     @property
     def covered(self) -> NDArray[np.bool_]:
-        """Where there is a surface, (h, w)."""
+        """Mask of the covered pixels, (h, w)."""
         seen: NDArray[np.bool_] = self.spread(np.ones(len(self.pixels), dtype=bool), False)
         return seen
 
@@ -66,7 +66,7 @@ class Raster:
 
 
 def rasterize(points: Floats, triangles: NDArray[np.integer], width: int, height: int) -> Raster:
-    """Find which triangle is in front in each pixel.
+    """Find the triangle in front in each pixel.
 
     Parameters
     ----------
@@ -77,12 +77,12 @@ def rasterize(points: Floats, triangles: NDArray[np.integer], width: int, height
         Vertex indices, (t, 3), of a closed surface, counterclockwise to a reader: those that face
         away are hidden by others and left out.
     width, height
-        Size in pixels.
+        Size of the picture in pixels.
 
     Returns
     -------
     Raster
-        The same for any order of the triangles, but for pixels where two are equally deep.
+        Raster, equal for any order of the triangles except in pixels where two are equally deep.
 
     Examples
     --------
@@ -109,7 +109,7 @@ def rasterize(points: Floats, triangles: NDArray[np.integer], width: int, height
 
 def _depth_range(points: Floats) -> tuple[float, float]:
     low, high = float(points[:, 2].min()), float(points[:, 2].max())
-    # Rounding may carry a weight a hair out of a triangle.
+    # Rounding may move a weight slightly out of a triangle.
     margin = 1e-3 * (high - low) + 1e-9
     return low - margin, high + margin
 
@@ -155,7 +155,7 @@ def _covered_by(
     a, b, c = corners[portion.triangles].transpose(1, 0, 2)
     ab, ac = b - a, c - a
     area = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
-    # Slopes of the weights of a, b and c along x and y, and those of the depth.
+    # Slopes of the weights of a, b and c along x and y, and of the depth.
     of_b, of_c = np.stack([ac[:, 1], -ac[:, 0]]) / area, np.stack([-ab[:, 1], ab[:, 0]]) / area
     slopes = np.stack([-of_b - of_c, of_b, of_c])
     steepness = of_b * ab[:, 2] + of_c * ac[:, 2]
@@ -172,7 +172,7 @@ def _covered_by(
     first = start.astype(np.int64)
 
     span, along = _spread_out(np.maximum(stop - start + 1.0, 0.0).astype(np.int64))
-    # What the first pixel of a span has, and how it changes along it.
+    # Depth at the first pixel of a span, and its change along the span.
     edge = a[which, 2] + steepness[1, which] * dy
     edge += steepness[0, which] * (first + 0.5 - a[which, 0])
     depth = edge[span] + steepness[0, which[span]] * along
@@ -181,7 +181,7 @@ def _covered_by(
 
 
 def _spread_out(counts: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Number the members of groups of some sizes, (g,): their group and place in it, (p,) each."""
+    """Number the members of groups of some sizes, (g,): return group and place in it, (p,) each."""
     group = np.repeat(np.arange(len(counts)), counts)
     return group, np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts)
 
@@ -197,7 +197,7 @@ def _span(slope: Floats, value: Floats) -> tuple[Floats, Floats]:
 
 
 def _barycentric(corners: Floats, x: NDArray[np.floating], y: NDArray[np.floating]) -> Floats:
-    """Weights of pixels (p,) in triangles (p, 3, 3), by Cramer's rule."""
+    """Return the weights of pixels (p,) in triangles (p, 3, 3), by Cramer's rule."""
     a, b, c = corners[:, :, :2].transpose(1, 0, 2)
     ab, ac = b - a, c - a
     dx, dy = x - a[:, 0], y - a[:, 1]

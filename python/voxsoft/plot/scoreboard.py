@@ -1,4 +1,4 @@
-"""The picture of the scoreboard: where measurements lie in their intervals."""
+"""Picture of the scoreboard: positions of measurements in their intervals."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from voxsoft.scoreboard import Scoreboard
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: Half-widths from the prediction at which the picture ends; what is farther is an arrow at its
-#: edge.
+#: Half-widths from the prediction at which the picture ends; farther measurements are arrows at
+#: its edge.
 _FARTHEST: Final = 4.0
-#: From so many numbers on rows are closer: the height of one in inches, the size of its words.
+#: Number of rows from which on they are closer: height of a row in inches, and font size.
 _MANY: Final = 40
 _ROOMY: Final = (0.24, 8.0)
 _CLOSE: Final = (0.15, 6.0)
 
 
 def plot_scoreboard(board: Scoreboard) -> Figure:
-    """Draw every measurement where it lies in its interval, a row for each.
+    """Draw the position of every measurement in its interval, a row for each.
 
     Parameters
     ----------
     board
-        What :func:`voxsoft.scoreboard.predictions_in` returned.
+        Result of :func:`voxsoft.scoreboard.predictions_in`.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The band is the interval; blue is inside, and an arrow stands for what is beyond the edge.
+        The band is the interval; blue is inside, and an arrow marks a number beyond the edge.
     """
     count = max(1, len(board.predictions))
     height, size = _ROOMY if count < _MANY else _CLOSE

@@ -1,4 +1,4 @@
-"""Light on a rasterized surface."""
+"""Shading of a rasterized surface."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ Floats = NDArray[np.float64]
 _AMBIENT = 0.62
 # Along right, up and toward the reader: the light stands above the reader's left shoulder.
 _LIGHT = np.array([-0.4, 0.7, 0.6]) / np.linalg.norm([-0.4, 0.7, 0.6])
-# Depth contrast: how far it reaches (share of the picture's longer side), and how dark it gets.
+# Depth contrast: its reach (share of the picture's longer side), and its darkest brightness.
 _REACH = 0.012
 _DARKEST = 0.4
-# Lines: width in pixels, and how much light they take.
+# Lines: width in pixels, and the light they remove.
 _LINE_WIDTH = 1.1
 _MESH_LINE = 0.32
 _OUTLINE = 0.75
-# Depth where there is nothing, and the jump in depth (share of the longer side) of an outline.
+# Depth of empty pixels, and the jump in depth (share of the longer side) of an outline.
 _FAR = 1e9
 _JUMP = 0.012
 
 
 def normals_of(corners: Floats) -> Floats:
-    """Unit normals of triangles (t, 3, 3), (t, 3); zero for a triangle without area."""
+    """Return unit normals of triangles (t, 3, 3), (t, 3); zero for a triangle without area."""
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     unit: Floats = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
@@ -34,17 +34,17 @@ def normals_of(corners: Floats) -> Floats:
 
 
 def lit(normals: Floats, camera: Camera) -> Floats:
-    """Brightness of flat faces with these normals, (t,), at most 1."""
+    """Return the brightness of flat faces with these normals, (t,), at most 1."""
     light = _LIGHT @ np.stack([camera.right, camera.up, camera.toward])
     brightness: Floats = _AMBIENT + (1.0 - _AMBIENT) * np.clip(normals @ light, 0.0, 1.0)
     return brightness
 
 
 def depth_contrast(seen: Raster) -> Floats:
-    """Brightness of each covered pixel, (p,), less than 1 where something nearby is in front.
+    """Return the brightness of each covered pixel, (p,), less than 1 behind something nearby.
 
-    The difference between a blurred depth buffer and the depth itself, Luft, Colditz and Deussen
-    (2006), doi:10.1145/1141911.1142016. It tells a pore from a bump.
+    Computed from the difference between a blurred depth buffer and the depth itself, Luft, Colditz
+    and Deussen (2006), doi:10.1145/1141911.1142016. It distinguishes a pore from a bump.
     """
     from scipy.ndimage import gaussian_filter
 
@@ -61,12 +61,12 @@ def depth_contrast(seen: Raster) -> Floats:
 
 
 def mesh_lines(seen: Raster, flat_corners: Floats) -> Floats:
-    """Brightness of each covered pixel, (p,), less than 1 along the edges of triangles.
+    """Return the brightness of each covered pixel, (p,), less than 1 along the edges of triangles.
 
     Parameters
     ----------
     seen
-        What is seen.
+        Raster of the surface.
     flat_corners
         Column and row of the corners of each triangle, (t, 3, 2).
     """
@@ -82,9 +82,9 @@ def mesh_lines(seen: Raster, flat_corners: Floats) -> Floats:
 
 
 def outlines(seen: Raster) -> Floats:
-    """Brightness of each covered pixel, (p,), less than 1 where the surface ends or jumps back."""
+    """Return the brightness of covered pixels, (p,), below 1 where the surface ends or jumps."""
     depth = seen.spread(seen.depth, _FAR)
-    # A face seen at a glance changes depth by several pixels a pixel; a jump is more than that.
+    # A face at a grazing angle changes depth by several pixels a pixel; a jump is more than that.
     jump = _JUMP * max(seen.width, seen.height)
     edge = np.zeros(depth.shape, dtype=bool)
     edge[:, 1:] |= depth[:, :-1] - depth[:, 1:] > jump

@@ -1,4 +1,4 @@
-"""Pictures of studies: the space with the objective in color, the way to the best, trade-offs."""
+"""Pictures of studies: parameter space with the objective in color, history, and Pareto front."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from voxsoft.study import StudyResult, Trial
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: From trials to their coordinates on the axes, one array for each axis.
+#: Function from trials to their coordinates on the axes, one array for each axis.
 Places = Callable[[Sequence[Trial]], list[NDArray[np.float64]]]
 
-# Values of a grid are ticks, up to so many.
+# Most values of a grid that become ticks.
 _MOST_TICKS = 8
 
-# Trials without a number: hollow, so that none is taken for a low value.
+# Markers of trials without a number: hollow, so that none is taken for a low value.
 _MARKERS: dict[str, str] = {
     "no-cavity": "o",
     "disconnected": "s",
@@ -54,7 +54,7 @@ def plot_paths(result: StudyResult, objective: str | None = None) -> Figure:
     result
         A study with `over`.
     objective
-        Default: the first.
+        Name of the objective; default: the first.
 
     Returns
     -------
@@ -110,7 +110,7 @@ def plot_scatter(result: StudyResult, objective: str | None = None) -> Figure:
     result
         A finished study of one, two or three parameters; of more, the first three are axes.
     objective
-        Default: the first.
+        Name of the objective; default: the first.
 
     Returns
     -------
@@ -166,7 +166,7 @@ def plot_history(result: StudyResult, objective: str | None = None) -> Figure:
     result
         A finished study.
     objective
-        Default: the first.
+        Name of the objective; default: the first.
 
     Returns
     -------
@@ -222,7 +222,7 @@ def plot_pareto(result: StudyResult, objectives: tuple[str, str] | None = None) 
     result
         A finished study of two or more objectives.
     objectives
-        Which two; default: the first two.
+        Names of the two; default: the first two.
 
     Raises
     ------
@@ -270,7 +270,7 @@ def _objective(result: StudyResult, name: str | None) -> str:
 
 
 def _kind(result: StudyResult, objective: str) -> str:
-    """The kind of quantity of an objective; unknown where a study measures its own metrics."""
+    """Return the kind of quantity of an objective; empty where a study measures its own metrics."""
     metric = METRICS.get(result.objectives[objective].metric)
     return "" if metric is None else metric.kind
 
@@ -284,7 +284,7 @@ def _places_on(
     result: StudyResult,
     names: tuple[str, ...],
 ) -> Places:
-    """Label an axis for each parameter; return what places trials on them."""
+    """Label an axis for each parameter; return the function that places trials on them."""
     columns: dict[int, list[float]] = {trial.number: [] for trial in result.trials}
     for name, direction in zip(names, "xyz", strict=False):
         values = [trial.parameters[name] for trial in result.trials]
@@ -310,7 +310,7 @@ def _is_numeric(values: Sequence[object]) -> bool:
 
 
 def _numbers(values: Sequence[Any]) -> NDArray[np.float64]:
-    """Numbers as they are; choices numbered in the order in which they appear."""
+    """Return numbers as they are; number choices in the order in which they appear."""
     if _is_numeric(values):
         return np.array(values, dtype=np.float64)
     order = {value: float(index) for index, value in enumerate(dict.fromkeys(values))}

@@ -1,4 +1,4 @@
-"""What all figures share: colors, type sizes, an empty figure that needs no display."""
+"""Style of all figures: colors, font sizes, an empty figure that needs no display."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # Okabe and Ito's palette, https://jfly.uni-koeln.de/color/: eight colors that readers with any
-# of the common kinds of color blindness tell apart.
+# of the common kinds of color blindness distinguish.
 BLACK: Final = "#000000"
 ORANGE: Final = "#e69f00"
 SKY: Final = "#56b4e9"
@@ -25,7 +25,7 @@ SERIES: Final = (BLUE, RED, GREEN, PINK, ORANGE, SKY)
 GRAY: Final = "#7f7f7f"
 PALE: Final = "#d9d9d9"
 
-#: Perceptually uniform, and readable in gray and by color-blind readers.
+#: Perceptually uniform color map, readable in gray and by color-blind readers.
 COLOR_MAP: Final = "viridis"
 
 _DOTS_PER_INCH: Final = 150
@@ -33,7 +33,7 @@ _FONT_SIZE: Final = 10.0
 
 
 def empty_figure(width: float, height: float) -> Figure:
-    """Make a figure of so many inches that belongs to no window and to no list of figures."""
+    """Make a figure with a size in inches that belongs to no window and to no list of figures."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), dpi=_DOTS_PER_INCH, layout="constrained")
@@ -51,7 +51,7 @@ def plain_axes(axes: Axes, *, x: str, y: str, title: str = "") -> None:
 
 
 def plain_legend(axes: Axes, **options: Any) -> None:  # noqa: ANN401 - options of matplotlib
-    """Add a legend without a box, if there is more than one thing to tell apart."""
+    """Add a legend without a box, if there is more than one series."""
     handles, _ = axes.get_legend_handles_labels()
     if len(handles) > 1:
         axes.legend(frameon=False, fontsize=_FONT_SIZE - 1, **options)

@@ -1,4 +1,4 @@
-"""Tendons in pictures of bodies: lines that are seen through the material."""
+"""Tendons in pictures of bodies: lines drawn through the material."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ def draw_tendons(
     Parameters
     ----------
     axes
-        Those of the picture, whose coordinates are its pixels.
+        Axes of the picture, whose coordinates are its pixels.
     tendons
-        Of a result, by name.
+        Tendons of a result, by name.
     camera
-        What the picture was taken with.
+        Camera of the picture.
     finer
-        How many times as fine it was computed.
+        Oversampling factor of the picture.
     """
     for number, (name, tendon) in enumerate(tendons.items()):
         across, down = camera.project(tendon.points)[:, :2].T / finer

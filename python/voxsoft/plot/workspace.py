@@ -1,4 +1,4 @@
-"""The picture of a workspace: its net of places from three sides."""
+"""Picture of a workspace: its net of places from three sides."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from voxsoft.simulation import Workspace
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: The axes across and upward of each view.
+#: Axes across and upward of each view.
 _VIEWS: Final = (("x", "z"), ("y", "z"), ("x", "y"))
 
 
 def plot_workspace(found: Workspace) -> Figure:
-    """Draw where a place can be: front, side and top, with a line along each drive.
+    """Draw the reachable places: front, side and top, with a line along each drive.
 
     Parameters
     ----------
     found
-        What :func:`voxsoft.workspace` returned.
+        Result of :func:`voxsoft.workspace`.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Three panels of one scale; colors go with the first drive, and a ring is where the place
-        is without load.
+        Three panels of one scale; colors follow the first drive, and a ring marks the place without
+        load.
     """
     points, unloaded = found.points, found.unloaded
     scale = scale_for([*points.ravel(), *unloaded], "length")

@@ -1,4 +1,4 @@
-"""The scoreboard of measured robots: predictions with their intervals beside what was measured."""
+"""Scoreboard of measured robots: predictions with their intervals beside measured numbers."""
 
 from voxsoft.scoreboard.board import Scoreboard, read_scores, score
 from voxsoft.scoreboard.prediction import Prediction

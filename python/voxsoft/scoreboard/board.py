@@ -1,4 +1,4 @@
-"""All predictions together: how many hold, and how wide their intervals are."""
+"""Scoreboard of all predictions: share inside their intervals, and mean width of the intervals."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 from voxsoft.errors import FileError
 from voxsoft.scoreboard.prediction import Prediction
 
-#: Columns of the CSV form: what other programs enter their predictions in.
+#: Columns of the CSV form, in which other programs enter their predictions.
 COLUMNS: Final = ("case", "name", "kind", "measured", "predicted", "low", "high", "scale")
 
 
@@ -25,9 +25,9 @@ class Scoreboard:
     Attributes
     ----------
     predictions
-        All of them.
+        All predictions.
     failed
-        What kept a case from being predicted, by its name.
+        Error that kept a case from being predicted, by its name.
     """
 
     predictions: tuple[Prediction, ...]
@@ -35,21 +35,21 @@ class Scoreboard:
 
     @property
     def coverage(self) -> float:
-        """The share of measurements inside their interval; NaN without any."""
+        """Share of measurements inside their interval; NaN without any."""
         return float(np.mean([float(each.inside) for each in self.predictions] or [np.nan]))
 
     @property
     def width(self) -> float:
-        """The mean width of an interval over the size of its number; NaN without any."""
+        """Mean width of an interval over the size of its number; NaN without any."""
         return float(np.mean([each.width for each in self.predictions] or [np.nan]))
 
     @property
     def cases(self) -> list[str]:
-        """The names of the cases, in their order."""
+        """Names of the cases, in their order."""
         return list(dict.fromkeys(each.case for each in self.predictions))
 
     def of(self, case: str) -> Scoreboard:
-        """The predictions of one case."""
+        """Select the predictions of one case."""
         return Scoreboard(tuple(each for each in self.predictions if each.case == case), {})
 
     def summary(self) -> dict[str, Any]:
@@ -62,7 +62,7 @@ class Scoreboard:
         }
 
     def csv(self) -> str:
-        """The form that :func:`read_scores` reads, in SI units."""
+        """Write the CSV form that :func:`read_scores` reads, in SI units."""
         text = io.StringIO()
         rows = csv.writer(text, lineterminator="\n")
         rows.writerow(COLUMNS)
@@ -91,7 +91,8 @@ def read_scores(path: Path) -> Scoreboard:
     Parameters
     ----------
     path
-        The file. The interval must lie around the prediction; ``scale`` may be empty or left out.
+        Path of the file. The interval must lie around the prediction; ``scale`` may be empty or
+        left out.
 
     Raises
     ------
@@ -114,7 +115,7 @@ def read_scores(path: Path) -> Scoreboard:
                 float(row[name]) for name in ("measured", "predicted", "low", "high")
             )
             scale = float(row["scale"]) if row.get("scale") else None
-            # Only the interval is known: it counts as one part.
+            # Only the whole interval is known: it counts as one part.
             half = max(predicted - low, high - predicted)
             each = Prediction(
                 *(row["case"], row["name"], row["kind"], measured, predicted),

@@ -1,4 +1,4 @@
-"""One number that was measured, and what was predicted for it."""
+"""Prediction of one measured number."""
 
 from __future__ import annotations
 
@@ -11,32 +11,32 @@ from voxsoft.units import KINDS
 
 @dataclass(frozen=True)
 class Prediction:
-    """A number predicted with its interval, and the measured one.
+    """Predicted number with its interval, and the measured one.
 
-    The parts of the interval are half-widths within which 90 % are expected, each for a reason of
-    its own, so that their squares add up.
+    The parts of the interval are half-widths within which 90 % are expected, each for a separate
+    reason, so that their squares add up.
 
     Attributes
     ----------
     case
-        Which robot.
+        Name of the robot.
     name
-        Which number of it.
+        Name of the number.
     kind
         A key of :data:`voxsoft.units.KINDS`.
     measured, predicted
-        In SI units.
+        Measured and predicted number in SI units.
     material
-        From constants: their fit, their batch, their scatter.
+        Half-width from constants: their fit, their batch, their scatter.
     geometry
-        From sizes and places that are not known exactly.
+        Half-width from sizes and places that are not known exactly.
     numerics
-        From the voxels: the error bar.
+        Half-width from the voxels: the error bar.
     repeatability
-        From one measurement to the next.
+        Half-width from one measurement to the next.
     scale
-        What the width is compared with; default: the size of the measured number. For a coordinate
-        it is a length of the robot.
+        Reference of the width; default: the size of the measured number. For a coordinate it is a
+        length of the robot.
 
     Examples
     --------
@@ -57,33 +57,33 @@ class Prediction:
     scale: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse a kind that is none: axes and tables take their units from it."""
+        """Refuse an unknown kind: axes and tables take their units from it."""
         if self.kind not in KINDS:
             raise ValueError(f"{self.case}, {self.name}: {self.kind} is not a kind of quantity")
 
     @property
     def half_width(self) -> float:
-        """Half of the interval."""
+        """Half of the width of the interval."""
         return math.hypot(self.material, self.geometry, self.numerics, self.repeatability)
 
     @property
     def low(self) -> float:
-        """The lower end of the interval."""
+        """Lower end of the interval."""
         return self.predicted - self.half_width
 
     @property
     def high(self) -> float:
-        """The upper end of the interval."""
+        """Upper end of the interval."""
         return self.predicted + self.half_width
 
     @property
     def inside(self) -> bool:
-        """Whether the measurement is in the interval."""
+        """True if the measurement is in the interval."""
         return self.low <= self.measured <= self.high
 
     @property
     def width(self) -> float:
-        """The whole interval over the size of the number."""
+        """Width of the interval over the size of the number."""
         size = abs(self.measured) if self.scale is None else self.scale
         return 2.0 * self.half_width / size if size else math.inf
 

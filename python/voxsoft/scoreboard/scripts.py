@@ -1,4 +1,4 @@
-"""Cases of the scoreboard: scripts that predict what was measured."""
+"""Cases of the scoreboard: scripts that predict measured numbers."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from voxsoft.records import closest
 from voxsoft.scoreboard.board import Scoreboard
 from voxsoft.scoreboard.prediction import Prediction
 
-#: The function of a script that makes it a case.
+#: Name of the function of a script that makes it a case.
 FUNCTION: Final = "predictions"
 
-#: Called with the name of a script before it is run, its number, and how many there are.
+#: Function called before a script is run, with its name, its number, and the number of all.
 Announce = Callable[[str, int, int], None]
 
 
@@ -29,16 +29,16 @@ def predictions_in(
     Parameters
     ----------
     folder
-        Where the scripts are.
+        Folder of the scripts.
     names
         Names of files without ``.py``; default: all.
     announce
-        Called before each.
+        Called before each script.
 
     Returns
     -------
     Scoreboard
-        What they predict. A case that fails is among the failed ones, and the others stay.
+        Predictions of all cases. A case that fails is among the failed ones, and the others stay.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def _text(path: Path) -> str:
 
 
 def _module(path: Path) -> ModuleType:
-    """A script as a module; it may import its neighbors."""
+    """Import a script as a module; it may import its neighbors."""
     spec = importlib.util.spec_from_file_location(path.stem, path)
     assert spec is not None  # it is a Python file
     assert spec.loader is not None

@@ -1,6 +1,6 @@
 """Search algorithms: the paper's genetic algorithm, and Optuna's samplers by name.
 
-This module needs NumPy only; :mod:`voxsoft.search.samplers` imports Optuna.
+Importing this module needs NumPy only; :mod:`voxsoft.search.samplers` imports Optuna.
 """
 
 from voxsoft.search.genetic import Genetic, Individual

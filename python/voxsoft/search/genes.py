@@ -1,4 +1,4 @@
-"""From a gene in [0, 1] to a value of a search range."""
+"""Map from a gene in [0, 1] to a value of a search range."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def value_of_gene(distribution: BaseDistribution, gene: float) -> Any:  # noqa: 
     distribution
         An Optuna distribution of floats, whole numbers or choices.
     gene
-        From 0 to 1.
+        Number from 0 to 1.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The paper's genetic algorithm, as ask and tell."""
+"""The paper's genetic algorithm, with an ask-and-tell interface."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from voxsoft.errors import StudyError
 
 
 class Individual(NamedTuple):
-    """One candidate and what it was worth.
+    """One candidate with its fitness.
 
     Attributes
     ----------
     genes
-        Each in [0, 1], (n,).
+        Genes in [0, 1], (n,).
     fitness
-        Larger is better, never negative.
+        Fitness, never negative; larger is better.
     """
 
     genes: NDArray[np.float64]
@@ -30,7 +30,7 @@ class Genetic:
 
     Every generation is a matrix of N individuals with n genes each, all in [0, 1]; the caller
     maps genes to its own ranges (moduli: on a log scale). From one generation with fitness
-    :math:`f_i \ge 0` the next is made of
+    :math:`f_i \ge 0` the next consists of
 
     1. the E fittest, unchanged (the elites);
     2. N - E children. Both parents are drawn by the roulette wheel, individual i with probability
@@ -52,7 +52,7 @@ class Genetic:
     mutation
         Probability m with which a gene is drawn afresh, 0 to 1.
     seed
-        The same seed and the same fitness give the same generations, bit for bit. None draws a
+        Seed; with the same fitness it gives the same generations, bit for bit. None draws a
         seed from the operating system.
 
     Attributes
@@ -79,7 +79,7 @@ class Genetic:
     - where every fitness is zero, the wheel has no widths and parents are drawn uniformly.
 
     The paper counts N evaluations per generation. Elites come back unchanged and first, so a caller
-    whose fitness has no noise can keep what they scored. That makes N + (G - 1)(N - E) evaluations
+    whose fitness has no noise can keep their fitness. That makes N + (G - 1)(N - E) evaluations
     for G generations instead of N G.
 
     Examples
@@ -123,7 +123,7 @@ class Genetic:
 
     @property
     def best(self) -> Individual:
-        """The fittest individual of all generations so far.
+        """Fittest individual of all generations so far.
 
         Raises
         ------
@@ -135,7 +135,7 @@ class Genetic:
         return self._best
 
     def tell(self, fitness: ArrayLike) -> None:
-        """Give the fitness of the current generation, and breed the next one.
+        """Set the fitness of the current generation, and breed the next one.
 
         Parameters
         ----------
@@ -185,7 +185,7 @@ class Genetic:
 
 
 def _roulette_odds(fitness: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Probability of each individual to be a parent, (N,)."""
+    """Return the probability of each individual to be a parent, (N,)."""
     largest = fitness.max()
     if largest == 0.0:
         return np.full(len(fitness), 1.0 / len(fitness))

@@ -23,7 +23,7 @@ from voxsoft.search.optuna_bridge import (
 if TYPE_CHECKING:
     from optuna import Study
 
-# Fitness of the worst trial that finished, where the best has 1 and a failed one 0.
+# Fitness of the worst trial that finished; the best has 1 and a failed one 0.
 _LEAST_FITNESS = 0.1
 
 
@@ -33,11 +33,11 @@ class GeneticSampler(PlacingSampler):
     Parameters
     ----------
     space
-        The distribution of each parameter; one gene each.
+        Distribution of each parameter; one gene each.
     population, elites, mutation, seed
-        As for :class:`~voxsoft.search.Genetic`.
+        See :class:`~voxsoft.search.Genetic`.
     constraints_func
-        From a finished trial to numbers that are at most 0 where a constraint holds.
+        Function from a finished trial to numbers that are at most 0 where a constraint holds.
 
     Raises
     ------
@@ -51,12 +51,12 @@ class GeneticSampler(PlacingSampler):
     worst that finished 0.1; a trial that failed, was pruned, or breaks a constraint has 0.
 
     Elites keep their value and are not evaluated again, so the first generation takes N trials
-    and each later one N - E. The sampler holds no state that the study does not: generations are
+    and each later one N - E. The sampler holds no state beyond the study's: generations are
     bred again from the stored trials, so a study that was stopped goes on as if it had not been.
 
     The next generation can be bred only once every trial of the current one has finished. A
     trial asked for before that (`n_jobs` of Optuna) gets a random point outside the generations;
-    :meth:`room` tells how many trials can be asked for without that.
+    :meth:`room` counts the trials that can be asked for without that.
 
     Examples
     --------
@@ -69,7 +69,7 @@ class GeneticSampler(PlacingSampler):
     True
     """
 
-    #: [generation, index]: which individual a trial evaluates.
+    #: Key of a trial's individual, stored as [generation, index].
     place_key = "genetic:individual"
 
     def __init__(
@@ -147,7 +147,7 @@ class GeneticSampler(PlacingSampler):
             [self._elite_values, [self._value(trials[index]) for index in self._new()]]
         )
         fitness = _scaled(values if direction == StudyDirection.MAXIMIZE else -values)
-        # The order in which Genetic ranks: equal fitness by index.
+        # Ranked as Genetic does: equal fitness by index.
         elites = np.argsort(-fitness, kind="stable")[: self._search.elites]
         self._search.tell(fitness)
         self._elite_values = values[elites]
@@ -156,7 +156,7 @@ class GeneticSampler(PlacingSampler):
         if trial.state != TrialState.COMPLETE:
             return np.nan
         limits = () if self._constraints_func is None else self._constraints_func(trial)
-        # Not "> 0": NaN is unknown, and unknown is broken.
+        # Written without "> 0": NaN is unknown, and unknown counts as broken.
         if not all(broken <= 0 for broken in limits):
             return np.nan
         return float(trial.values[0])
@@ -170,7 +170,7 @@ class GeneticSampler(PlacingSampler):
 
 
 def _scaled(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Fitness of values of which larger is better and NaN means failed, (N,)."""
+    """Scale values, larger being better and NaN meaning failed, to fitness, (N,)."""
     finished = np.isfinite(values)
     if not finished.any():
         return np.zeros(len(values))

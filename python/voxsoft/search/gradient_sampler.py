@@ -1,4 +1,4 @@
-"""Search along gradients as a sampler of Optuna: sequential quadratic programming, many starts."""
+"""Gradient search as a sampler of Optuna: sequential quadratic programming, many starts."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-# A descent ends when a step gains less than this part of the first value.
+# Relative gain, in parts of the first value, below which a step ends a descent.
 _GAIN: Final = 1e-7
 _STEPS: Final = 200
-# A point that cannot be solved counts this much worse than the worst so far, in first values: the
-# search along the line then goes back.
+# Penalty of a point that cannot be solved over the worst so far, in first values: the line search
+# then goes back.
 _PENALTY: Final = 10.0
 
 
 class Answer(NamedTuple):
-    """What one trial tells, objectives to be made small and constraints to be at most 0.
+    """Values and slopes of one trial: objective to minimize, constraints to keep at most 0.
 
     Attributes
     ----------
     value, slope
-        The objective and its derivatives by the parameters, (n,).
+        Objective and its derivatives by the parameters, (n,).
     limits, limit_slopes
         Constraints (m,) and their derivatives, (m, n).
     """
@@ -51,11 +51,11 @@ class GradientSampler(PlacingSampler):
     Parameters
     ----------
     space
-        The distribution of each parameter: ranges without steps.
+        Distribution of each parameter: ranges without steps.
     answers
-        From a finished trial to what it told, or None where it failed.
+        Function from a finished trial to its values and slopes, or None where it failed.
     seed
-        Of the starts after the first, which is the middle of the space.
+        Seed of the starts after the first, which is the middle of the space.
 
     Raises
     ------
@@ -65,12 +65,12 @@ class GradientSampler(PlacingSampler):
     Notes
     -----
     Each descent is sequential least-squares quadratic programming (Kraft 1988, in SciPy) on ranges
-    scaled to [0, 1]. The sampler holds no state that the study does not: descents are gone through
-    again from the stored trials, so a study that was stopped goes on as if it had not been. Trials
+    scaled to [0, 1]. The sampler holds no state beyond the study's: descents are repeated
+    from the stored trials, so a study that was stopped goes on as if it had not been. Trials
     asked for before their descent can go on belong to further starts.
     """
 
-    #: [start, index]: which point of which descent a trial evaluates.
+    #: Key of a trial's point in its descent, stored as [start, index].
     place_key = "gradient:point"
 
     def __init__(
@@ -129,14 +129,14 @@ class GradientSampler(PlacingSampler):
         return self._outside.sample_independent(study, trial, param_name, param_distribution)
 
     def _next(self, start: int, trials: Mapping[int, FrozenTrial]) -> _Wanted | None:
-        """Go through a descent as far as its trials reach; None where it has arrived."""
+        """Repeat a descent as far as its trials go; return the next point, or None at its end."""
         genes = np.full(len(self._space), 0.5)
         if start > 0:
             genes = np.random.default_rng([self._seed, start]).random(len(self._space))
         descent = _Descent(self, trials)
         from scipy.optimize import minimize  # slow to load
 
-        # Its stubs want arrays of one dimension, which NumPy's own types do not tell.
+        # Its stubs require arrays of one dimension, which NumPy's own types do not show.
         run: Any = minimize
         first = trials.get(0)
         count = 0
@@ -162,7 +162,7 @@ class GradientSampler(PlacingSampler):
         return None
 
     def answer(self, trial: FrozenTrial, genes: Floats) -> Answer | None:
-        """Return what a trial told, by genes in place of parameters."""
+        """Return the values of a trial, with slopes by genes in place of parameters."""
         reported = self._answers(trial)
         if reported is None:
             return None
@@ -178,7 +178,7 @@ class GradientSampler(PlacingSampler):
 
 
 class _Wanted(Exception):
-    """The next point of a descent, not evaluated yet."""
+    """Next point of a descent, not evaluated yet."""
 
     def __init__(self, index: int, genes: Floats) -> None:
         super().__init__(index)
@@ -186,7 +186,7 @@ class _Wanted(Exception):
 
 
 class _Descent:
-    """The function that a descent sees: each new point is the next of its trials."""
+    """Objective and constraints of a descent: each new point is the next of its trials."""
 
     def __init__(self, sampler: GradientSampler, trials: Mapping[int, FrozenTrial]) -> None:
         self._sampler, self._trials = sampler, trials

@@ -1,9 +1,9 @@
-"""The one place that stores trials with Optuna, through Optuna's public names only.
+"""The one module that stores trials with Optuna, through Optuna's public names only.
 
-Whoever needs a trial, a study or a storage of Optuna takes it from here; samplers and
-distributions, which hold nothing, are imported where they are used. `tests/architecture` holds
-both. What Optuna's study does not tell of a trial, its number in a storage, this module asks of
-the storage itself, which it made or was given.
+All trials, studies and storages of Optuna are taken from here; samplers and distributions,
+which hold nothing, are imported where they are used. `tests/architecture` checks both. Optuna's
+study hides the number of a trial in its storage, which this module asks of the storage itself,
+made here or given.
 """
 
 from __future__ import annotations
@@ -47,15 +47,15 @@ __all__ = [
 
 Distributions = Mapping[str, BaseDistribution]
 Direction = Literal["maximize", "minimize"]
-#: Samplers that look at completed trials only. CMA-ES does too, and is better off without: a whole
-#: generation that cannot be solved has no best, and its mean would walk at random.
+#: Samplers that look at completed trials only. CMA-ES does too, and is better without unsolved
+#: ones: a generation without a solved design has no best, and its mean would walk at random.
 _LEARN_FROM_COMPLETED: Final = (GPSampler, NSGAIISampler, NSGAIIISampler)
-#: Where a trial stands in the search of a sampler: a generation or start, and an index in it.
+#: Position of a trial in the search of a sampler: a generation or start, and an index in it.
 Place = list[int]
 
 
 class PlacingSampler(BaseSampler):
-    """A sampler that gives each trial a place in its search, and finds it again.
+    """Sampler that gives each trial a place in its search, and finds it again.
 
     Places are stored, so that a study that was stopped goes on as if it had not been: in a
     :class:`StoredStudy` with the trials, in any other study of Optuna as attributes of the study.
@@ -72,11 +72,11 @@ class PlacingSampler(BaseSampler):
         self._store: Callable[[int, str, Place], None] | None = None
 
     def store_with(self, store: Callable[[int, str, Place], None]) -> None:
-        """Store places so from now on; `store` takes a trial's number, the key and the place."""
+        """Set the function that stores places: it takes a trial's number, the key and the place."""
         self._store = store
 
     def give_place(self, study: optuna.Study, trial: FrozenTrial, place: Place) -> None:
-        """Store where a trial stands."""
+        """Store the place of a trial."""
         if self._store is not None:
             self._store(trial.number, self.place_key, place)
         else:
@@ -95,14 +95,14 @@ class PlacingSampler(BaseSampler):
 
 
 class StoredStudy:
-    """A study of Optuna in a storage, written by this process alone.
+    """Study of Optuna in a storage, written by this process alone.
 
     Parameters
     ----------
     name
-        Of the study, which :meth:`create` made.
+        Name of the study, which :meth:`create` made.
     storage
-        The URL of a database, or a storage.
+        URL of a database, or a storage.
 
     Raises
     ------
@@ -153,7 +153,7 @@ class StoredStudy:
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Those that :meth:`create` wrote."""
+        """Attributes that :meth:`create` wrote."""
         attributes: dict[str, Any] = self._study.user_attrs
         return attributes
 
@@ -167,13 +167,13 @@ class StoredStudy:
         return self._storage.get_trial(self._trial_id(number))
 
     def use(self, sampler: BaseSampler) -> None:
-        """Let a sampler suggest what :meth:`ask` asks for, and store the places it gives."""
+        """Set the sampler of :meth:`ask`, and store the places it gives."""
         if isinstance(sampler, PlacingSampler):
             sampler.store_with(self._store_place)
         self._study.sampler = sampler
 
     def room(self, room: Callable[[optuna.Study], int]) -> int:
-        """Return what a sampler says of the study."""
+        """Return a sampler's room, the trials that it can suggest now, in the study."""
         return room(self._study)
 
     def ask(self, space: Distributions) -> tuple[int, dict[str, Any]]:
@@ -197,7 +197,7 @@ class StoredStudy:
         running, number = TrialState.RUNNING, self._held
         template = create_trial(state=running, params=dict(parameters), distributions=dict(space))
         self._study.add_trial(template)
-        # Optuna does not tell the number of what was added: it is the next, where one writes.
+        # Optuna does not return the number of an added trial: it is the next, with one writer.
         if self.trial(number).params != dict(parameters):
             what = "got a trial from another process"
             raise StudyError(self._study.study_name, what, "let one process at a time run it")
@@ -207,7 +207,7 @@ class StoredStudy:
     def complete(self, number: int, space: Distributions) -> dict[str, Any]:
         """Give a trial the parameters that it lacks; return all.
 
-        It was stopped while it was set up, and is asked for what is missing one by one.
+        Missing parameters of a trial stopped during its setup are suggested one by one.
         """
         trial = optuna.Trial(self._study, self._trial_id(number))
         with warnings.catch_warnings():
@@ -215,7 +215,7 @@ class StoredStudy:
             return {name: _suggested(trial, name, domain) for name, domain in space.items()}
 
     def write(self, number: int, key: str, value: object) -> None:
-        """Write an attribute of a trial that runs."""
+        """Write an attribute of a running trial."""
         self._storage.set_trial_user_attr(self._trial_id(number), key, value)
 
     def tell(self, number: int, values: Sequence[float]) -> None:
@@ -226,8 +226,8 @@ class StoredStudy:
         """End a trial without values so that the sampler in use learns from it.
 
         TPE and the samplers of VoxSoft learn from pruned trials; CMA-ES fills its generations with
-        designs that were solved. The others forget all but completed trials, and are told the
-        worst value of each objective: infinity, which they rank last whatever the scale.
+        designs that were solved. The others forget all but completed trials, and get the worst
+        value of each objective: infinity, which they rank last whatever the scale.
         """
         if isinstance(self._study.sampler, _LEARN_FROM_COMPLETED):
             minimize = StudyDirection.MINIMIZE
@@ -253,8 +253,8 @@ def ask_in_memory(
     Returns
     -------
     tuple
-        How to ask for a number of trials, and how to tell the value of each by its number; less is
-        better.
+        Function to ask for a number of trials, and function to set the value of each by its number;
+        less is better.
 
     Examples
     --------
@@ -288,7 +288,7 @@ def study_names(storage: BaseStorage) -> list[str]:
 
 
 def _suggested(trial: optuna.Trial, name: str, domain: BaseDistribution) -> object:
-    """Ask a trial for one parameter; one that it has stays as it is."""
+    """Suggest one parameter of a trial; one that it has stays as it is."""
     if isinstance(domain, optuna.distributions.CategoricalDistribution):
         return trial.suggest_categorical(name, domain.choices)
     if isinstance(domain, optuna.distributions.IntDistribution):
@@ -304,7 +304,7 @@ def _opened(storage: str | BaseStorage) -> BaseStorage:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep Optuna from announcing that it made a study."""
+    """Silence Optuna's message about a new study."""
     before = optuna.logging.get_verbosity()
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     try:

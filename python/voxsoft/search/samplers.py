@@ -21,7 +21,7 @@ from voxsoft.units import round_significant
 Constraints = Callable[[FrozenTrial], Sequence[float]]
 Answers = Callable[[FrozenTrial], Answer | None]
 
-#: The names that :func:`sampler_named` knows, and what each is for.
+#: Names that :func:`sampler_named` knows, with the use of each.
 SAMPLERS: Final[Mapping[str, str]] = {
     "grid": "every combination of the steps and choices",
     "random": "uniform draws",
@@ -35,11 +35,11 @@ SAMPLERS: Final[Mapping[str, str]] = {
 }
 
 
-#: Designs in a generation of NSGA, as in the paper's genetic algorithm: Optuna's 50 leave a budget
+#: Number of designs in a generation of NSGA, as in the paper: Optuna's 50 leave a budget
 #: of 100 with two generations, the first of which is drawn at random.
 _POPULATION: Final = 30
-#: Chance that NSGA draws a parameter afresh, as in the paper. Optuna's 1 / parameters is half of
-#: all in two dimensions, so that a fresh draw leads back to where nothing can be solved.
+#: Mutation probability of NSGA, as in the paper. Optuna's 1 / parameters is one half in two
+#: dimensions, so that a fresh draw leads back to points that cannot be solved.
 _MUTATION: Final = 0.05
 
 #: Samplers that take one objective only.
@@ -59,16 +59,16 @@ def sampler_named(
     Parameters
     ----------
     name
-        A key of :data:`SAMPLERS`.
+        Key of :data:`SAMPLERS`.
     space
-        The distribution of each parameter.
+        Distribution of each parameter.
     seed
-        The same seed and the same answers give the same suggestions.
+        Seed of the sampler; the same seed and the same answers give the same suggestions.
     constraints
-        From a finished trial to numbers that are at most 0 where a constraint holds. It reaches
-        the samplers that know constraints: all but ``grid``, ``random`` and ``cma-es``.
+        Function from a finished trial to numbers that are at most 0 where a constraint holds. It
+        reaches the samplers that know constraints: all but ``grid``, ``random`` and ``cma-es``.
     answers
-        From a finished trial to its values and slopes, which ``gradient`` needs.
+        Function from a finished trial to its values and slopes, which ``gradient`` needs.
 
     Raises
     ------

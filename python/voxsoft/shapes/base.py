@@ -1,4 +1,4 @@
-"""What every shape can do: be combined, moved, thickened, built and sampled."""
+"""Base of all shapes: combination, motion, thickening, compilation and sampling."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Triple = tuple[float, float, float]
 
-#: Shapes nested deeper are refused, long before Python's own limit.
+#: Largest depth of nested shapes, long before Python's own limit.
 _DEEPEST = 100
 
 
@@ -50,7 +50,7 @@ class Shape(Record):
 
     @classmethod
     def _positional(cls) -> tuple[str, ...]:
-        """Names of what a shape must have, which may be given by position: ``Sphere(5 * mm)``."""
+        """Names of required fields, which may be given by position: ``Sphere(5 * mm)``."""
         fields = cls.model_fields.items()
         return tuple(name for name, info in fields if info.is_required() and name != "kind")
 
@@ -59,12 +59,12 @@ class Shape(Record):
         """Return the compiled shape; `scope` builds the operands."""
 
     def build(self, names: Mapping[str, Shape] | None = None) -> _core.Shape:
-        """Return the shape in the form that the sampler takes.
+        """Return the shape in the compiled form that the sampler takes.
 
         Parameters
         ----------
         names : mapping of str to Shape, optional
-            The shapes that operands given by name refer to.
+            Shapes that operands given by name refer to.
 
         Raises
         ------
@@ -74,12 +74,12 @@ class Shape(Record):
         return Scope(names or {}).build(self)
 
     def every(self, names: Mapping[str, Shape] | None = None) -> Iterator[Shape]:
-        """Go through this shape and all that it is made of, each once.
+        """Iterate over this shape and all of its operands, each once.
 
         Parameters
         ----------
         names : mapping of str to Shape, optional
-            The shapes that operands given by name refer to; without it those are left out.
+            Shapes that operands given by name refer to; without it those are left out.
 
         Examples
         --------
@@ -91,7 +91,8 @@ class Shape(Record):
         ahead: list[str | Shape] = [self]
         while ahead:
             found = ahead.pop()
-            # Taken out, a name is followed once, also where it refers to itself.
+            # Removed on the first visit, so that a name is followed once, also if it refers to
+            # itself.
             shape = known.pop(found, None) if isinstance(found, str) else found
             if shape is not None:
                 yield shape
@@ -106,9 +107,9 @@ class Shape(Record):
         Parameters
         ----------
         points : array_like, shape (n, 3)
-            Places [m].
+            Points [m].
         names : mapping of str to Shape, optional
-            The shapes that operands given by name refer to.
+            Shapes that operands given by name refer to.
 
         Returns
         -------
@@ -220,14 +221,14 @@ class Shape(Record):
 
 
 def _flat(shape: Shape, kind: type[Union] | type[Intersection]) -> tuple[str | Shape, ...]:
-    """Open a sharp union in a union, so that a long sum of shapes stays shallow."""
+    """Flatten a sharp union in a union, so that a long sum of shapes stays shallow."""
     if isinstance(shape, kind) and shape.smooth == 0:
         return shape.of
     return (shape,)
 
 
 class Scope:
-    """The shapes that names refer to, while one shape is built.
+    """Shapes that names refer to, while one shape is built.
 
     Parameters
     ----------
@@ -242,7 +243,7 @@ class Scope:
         self._depth = 0
 
     def resolve(self, operand: str | Shape) -> Shape:
-        """Return the shape that an operand is or names."""
+        """Return an operand, or the shape that it names."""
         if isinstance(operand, Shape):
             return operand
         if operand not in self._names:

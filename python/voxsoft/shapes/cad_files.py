@@ -1,10 +1,10 @@
-"""Files of CAD programs, which hold no triangles: what to say of them."""
+"""Files of CAD programs, which hold no triangles, and the error message for them."""
 
 from __future__ import annotations
 
 from typing import Final
 
-#: Endings of files that hold curved faces as formulas, of any case.
+#: Suffixes of files that hold curved faces as formulas, in any case.
 CAD_SUFFIXES: Final = (
     *(".step", ".stp", ".p21", ".iges", ".igs", ".brep", ".brp", ".fcstd"),
     *(".sldprt", ".sldasm", ".ipt", ".f3d", ".x_t", ".x_b", ".sat", ".3dm"),
@@ -17,7 +17,7 @@ HINT: Final = (
 
 
 def is_cad_file(name: str) -> bool:
-    """Whether a file of this name is a CAD model.
+    """Return True if a file name is that of a CAD model.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""All shapes as one type: what a design's ``shapes`` table and every operand hold."""
+"""Union type of all shapes, for a design's ``shapes`` table and every operand."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from voxsoft.shapes import (
 )
 from voxsoft.shapes.base import Shape
 
-#: The files of shapes, in the order of lists that people read.
+#: Modules of shapes, in the order of lists for people.
 FILES = (
     primitives,
     periodic,
@@ -46,7 +46,7 @@ def _shapes_of(file: ModuleType) -> Iterator[type[Shape]]:
                 yield model
 
 
-#: The class of each kind.
+#: Class of each kind.
 KINDS: dict[str, type[Shape]] = {
     shape.model_fields["kind"].default: shape for file in FILES for shape in _shapes_of(file)
 }
@@ -54,9 +54,9 @@ KINDS: dict[str, type[Shape]] = {
 if TYPE_CHECKING:
     AnyShape = Shape
 else:
-    #: Any shape, told apart by its ``kind``.
+    #: Any shape, discriminated by its ``kind``.
     AnyShape = Annotated[reduce(or_, KINDS.values()), Field(discriminator="kind")]
 
-# Operands may be any shape, which exists only now.
+# Operands may be any shape, a type that exists only now.
 for _shape in KINDS.values():
     _shape.model_rebuild(_types_namespace={"AnyShape": AnyShape})

@@ -41,7 +41,7 @@ def _as_text(value: object) -> object:
     return value.text if isinstance(value, Expression) else value
 
 
-#: Text of an expression, checked; an :class:`Expression` is taken too.
+#: Text of an expression, checked; an :class:`Expression` is accepted too.
 ExpressionText = Annotated[str, BeforeValidator(_as_text), AfterValidator(_readable)]
 
 
@@ -166,7 +166,7 @@ _NEEDED = {"+": (1, 2), "-": (1, 2), "*": (2, 4), "/": (2, 4), "%": (2, 4), "**"
 
 
 def _infix(left: Expression | float, operator: str, right: Expression | float) -> Expression:
-    """Write an operation with as few parentheses as keep its meaning."""
+    """Write an operation with as few parentheses as its meaning requires."""
     of_left, of_right = _NEEDED[operator]
     space = "" if operator == "**" else " "
     return Expression(

@@ -1,4 +1,4 @@
-"""How much of a cell shapes fill: small cubes, each cut by the plane that fits the surface."""
+"""Fill fractions of cells: small cubes, each cut by the plane that fits the surface."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from voxsoft import _core
 
 Floats = NDArray[np.float64]
 
-#: Small cubes of edge w along each edge of a cell. Planes are met exactly by any number of them;
-#: that of a sphere of radius R lies w²/(12 R) too far out, the curvature that planes leave out.
+#: Number of small cubes of edge w along each edge of a cell. Any number of them meets a plane
+#: exactly; the plane at a sphere of radius R lies w²/(12 R) too far out, its neglected curvature.
 SUBCELLS = 4
 
 #: Normals with a smaller component (of a sum of one) count as parallel to a face.
@@ -20,7 +20,7 @@ _PARALLEL = 1e-7
 
 
 def below_plane(level: Floats, normal: Floats) -> Floats:
-    """Return the part of a unit cube in which ``level + normal · x`` is negative.
+    """Return the fraction of a unit cube in which ``level + normal · x`` is negative.
 
     The cube is centered at the origin. The part depends continuously on level and normal, and has a
     continuous derivative wherever the plane is not parallel to a face.
@@ -30,12 +30,12 @@ def below_plane(level: Floats, normal: Floats) -> Floats:
     level : ndarray, shape (...)
         Value of the function at the center.
     normal : ndarray, shape (..., 3)
-        Its gradient; where it is zero, the sign of the level decides.
+        Gradient of the function; where it is zero, the sign of the level decides.
 
     Returns
     -------
     ndarray, shape (...)
-        Between 0 and 1.
+        Fraction between 0 and 1.
 
     References
     ----------
@@ -50,7 +50,7 @@ def below_plane(level: Floats, normal: Floats) -> Floats:
     total = np.abs(normal).sum(axis=-1)
     steep = np.isfinite(total) & (total > 0.0)
     scale = np.where(steep, total, 1.0)
-    # The least corner is at 0 and the greatest at 1; what lies above 1/2 is a mirror image.
+    # The least corner is at 0 and the greatest at 1; heights above 1/2 are mirror images.
     with np.errstate(invalid="ignore"):
         height = np.clip(0.5 - np.where(steep, level / scale, 0.0), 0.0, 1.0)
     a = np.minimum(height, 1.0 - height)
@@ -84,7 +84,7 @@ def below_plane(level: Floats, normal: Floats) -> Floats:
 def fill(
     shapes: Sequence[_core.Shape], corners: Floats, size: float
 ) -> tuple[Floats, Floats, Floats]:
-    """Return how much of each small cube of some cells the shapes fill together.
+    """Return the filled fraction of each small cube of some cells, and the share of each shape.
 
     Parameters
     ----------
@@ -98,19 +98,19 @@ def fill(
     Returns
     -------
     filled : ndarray, shape (k, SUBCELLS**3)
-        The filled part of each small cube, in C order.
+        Filled fraction of each small cube, in C order.
     normals : ndarray, shape (k, SUBCELLS**3, 3)
-        A vector across the surface that is nearest to each small cube, out of the shapes.
+        Outward normal of the surface nearest to each small cube.
     shares : ndarray, shape (k, len(shapes))
-        The part of each cell that each shape takes; they sum to the mean of `filled`.
+        Fraction of each cell that each shape takes; they sum to the mean of `filled`.
 
     Notes
     -----
     In each small cube a shape is taken as the plane with its value at the center and its mean
-    slopes between the centers of opposite faces. What two shapes have in common in a cube that
-    both cut is not told by two fractions: it is interpolated with the cosine of the angle between
-    their planes, and is exact where they share a surface, abut, or meet at a right angle along the
-    axes.
+    slopes between the centers of opposite faces. The common part of two shapes in a cube that
+    both cut does not follow from two fractions: it is interpolated with the cosine of the angle
+    between their planes, and is exact where they share a surface, abut, or meet at a right angle
+    along the axes.
 
     Examples
     --------
@@ -137,7 +137,7 @@ def fill(
 
 
 def _common(first: Floats, normal: Floats, second: Floats, other: Floats) -> Floats:
-    """The part of each small cube that two shapes share: by the angle between their planes."""
+    """Return the part of each small cube in both shapes, by the angle between their planes."""
     lengths = np.linalg.norm(normal, axis=-1) * np.linalg.norm(other, axis=-1)
     products = np.einsum("...i,...i->...", normal, other)
     cosine = np.divide(products, lengths, out=np.zeros_like(products), where=lengths > 0.0)
@@ -147,7 +147,7 @@ def _common(first: Floats, normal: Floats, second: Floats, other: Floats) -> Flo
 
 
 def _planes(shape: _core.Shape, corners: Floats, size: float) -> tuple[Floats, Floats]:
-    """Level (k, n³) and slopes across (k, n³, 3) of a shape in each small cube."""
+    """Return level (k, n³) and slopes (k, n³, 3) of a shape in each small cube."""
     n, count = SUBCELLS, len(corners)
     points = corners[:, None, :] + (size / (2 * n)) * _STEPS
     values = shape.evaluate(np.ascontiguousarray(points.reshape(-1, 3))).reshape(count, -1)
@@ -159,7 +159,7 @@ def _planes(shape: _core.Shape, corners: Floats, size: float) -> tuple[Floats, F
         slopes = (np.diff(x, axis=1), np.diff(y, axis=2), np.diff(z, axis=3))
     normal = np.stack([slope.reshape(count, -1) for slope in slopes], axis=-1)
     normal = np.where(np.isfinite(normal), normal, 0.0)
-    # A seam of two bodies through the very center has neither level nor slope; its sides do.
+    # A seam of two bodies exactly through the center has neither level nor slope; its sides do.
     sides = (x[:, 1:] + x[:, :-1] + y[:, :, 1:] + y[:, :, :-1] + z[..., 1:] + z[..., :-1]).reshape(
         count, -1
     ) / 6.0
@@ -169,7 +169,7 @@ def _planes(shape: _core.Shape, corners: Floats, size: float) -> tuple[Floats, F
 
 
 def _steps() -> Floats:
-    """Centers of the small cubes, then of their faces across x, y, z, in halves of a cube."""
+    """List centers of the small cubes, then of their faces across x, y, z, in halves of a cube."""
     odd, even = np.arange(1, 2 * SUBCELLS, 2), np.arange(0, 2 * SUBCELLS + 1, 2)
     grids = [(odd, odd, odd), (even, odd, odd), (odd, even, odd), (odd, odd, even)]
     rows = [np.stack(np.meshgrid(*g, indexing="ij"), axis=-1).reshape(-1, 3) for g in grids]

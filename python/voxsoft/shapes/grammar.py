@@ -29,11 +29,11 @@ def random_shape(rng: Rng | int, depth: int = 3, size: float = 0.05) -> Shape:
     Parameters
     ----------
     rng : numpy.random.Generator or int
-        Source of randomness, or its seed.
+        Random generator, or its seed.
     depth : int, default 3
-        Most operators on the way from the shape to a primitive.
+        Most operators from the shape down to a primitive.
     size : float, default 0.05
-        The shape lies within a cube of this half edge around the origin [m].
+        Half edge of a cube around the origin that contains the shape [m].
 
     Returns
     -------

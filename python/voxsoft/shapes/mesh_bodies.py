@@ -1,4 +1,4 @@
-"""Parts and regions of a file of tetrahedra: whole, and as surfaces that shapes are made of."""
+"""Parts and regions of a file of tetrahedra: as a mesh, and as surfaces for shapes."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ Floats = NDArray[np.float64]
 
 #: Corners of the faces of a tetrahedron, outward.
 _FACES: Final = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3))
-#: Part of its length by which the box of a flat region is thicker than that.
+#: Excess thickness of the box around a flat region, as a part of its length.
 _ROOM: Final = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class MeshBody:
-    """The tetrahedra of a file, in the file's own unit.
+    """Tetrahedra of a file, in the file's own unit.
 
     Attributes
     ----------
     mesh
-        Its tetrahedra.
+        Tetrahedra of the file.
     parts
-        Names of its parts, and their numbers in the mesh.
+        Names of its parts, with their numbers in the mesh.
     regions
-        Names of its regions, and the vertices of each.
+        Names of its regions, with the vertices of each.
     """
 
     mesh: Mesh
@@ -52,7 +52,7 @@ class MeshBody:
         Raises
         ------
         ShapeError
-            The file, which messages call `name`, has no such part.
+            The file, called `name` in messages, has no such part.
         """
         if part not in self.parts:
             raise ShapeError("part", f'{name} has no part "{part}"', closest(part, self.parts))
@@ -71,7 +71,7 @@ class MeshBody:
         Raises
         ------
         ShapeError
-            The file, which messages call `name`, has no such region.
+            The file, called `name` in messages, has no such region.
         """
         if region not in self.regions:
             hint = closest(region, self.regions)
@@ -100,7 +100,7 @@ class MeshBody:
 
 
 def sizes_in_units(longest: float) -> str:
-    """Word how long a body would be [m] in each unit that its numbers may be in.
+    """List the length of a body [m] in each unit that its numbers may be in.
 
     Examples
     --------
@@ -115,7 +115,7 @@ def sizes_in_units(longest: float) -> str:
 
 
 def read_body(file: Path) -> MeshBody:
-    """Read a file of tetrahedra, once for as long as it does not change.
+    """Read a file of tetrahedra, cached until it changes.
 
     Raises
     ------
@@ -132,12 +132,12 @@ def read_body(file: Path) -> MeshBody:
 
 @lru_cache(maxsize=8)
 def _read(file: Path, changed: tuple[int, int]) -> MeshBody:
-    """Read a file; `changed` is other where its content may be."""
+    """Read a file; `changed` differs where its content may."""
     del changed
     # `files` lies above shapes: a shape or a design reaches up for its mesh, when it is read.
     from voxsoft.files.meshes import read_mesh_file
 
-    # As if in m: the numbers of the file as they are, to which users add the unit.
+    # Read as if in m: the numbers of the file stay as they are, and users add the unit.
     found = read_mesh_file(file, unit="m")
     names = {} if found.report is None else found.report.parts
     numbers = np.unique(found.mesh.tet_part).tolist()

@@ -1,10 +1,10 @@
-"""Closed shells of a triangle surface: which lies in which, and which of them enclose material.
+"""Nesting of the closed shells of a triangle surface: which of them enclose material.
 
-A shell is a closed surface that hangs together. Outermost shells enclose material, whichever side
+A shell is a closed, connected surface. Outermost shells enclose material, whichever side
 their faces were on. A shell within another encloses a void where it faces the other way than the
 outermost one around it, and material where it faces likewise; or, by `nested = "void"`, material
-and voids alternate by depth. A shell that encloses again what is around it is left out. So the
-winding number of what remains is one in material and zero in voids.
+and voids alternate by depth. A shell with the same content as the one around it is left
+out. So the winding number of the remaining shells is one in material and zero in voids.
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Nested = Literal["solid", "void"]
 
-#: Triangles of a shell that are looked up in another one, at most.
+#: Most triangles of a shell that are looked up in another one.
 _SAMPLES: Final = 128
-#: Winding numbers on the two sides of a face, with what the fast sum is off near it.
+#: Thresholds of the winding number on the two sides of a face, with the error of the fast sum.
 _OUTSIDE, _INSIDE = 0.25, 0.75
-#: Shells of less than this part of the cube around the surface are flat, and enclose nothing.
+#: Volume, as a part of the cube around the surface, below which a shell is flat and encloses
+#: nothing.
 _FLAT: Final = 1e-12
 
 
@@ -32,13 +33,13 @@ class Nest(NamedTuple):
     Attributes
     ----------
     shells
-        Closed shells of the surface.
+        Number of closed shells of the surface.
     inverted
-        Outermost shells that faced inward, where others do not; they were turned outward.
+        Number of outermost shells that faced inward, where others do not; they were turned outward.
     alike
-        Shells within another of the same sense.
+        Number of shells within another of the same sense.
     center
-        Middle of the largest of those.
+        Center of the largest of those.
     solid, hollow
         Volume of the material around them when such shells enclose no void, and when material
         and voids alternate by depth.
@@ -53,16 +54,16 @@ class Nest(NamedTuple):
 
 
 def taken_once(triangles: Indices) -> tuple[Indices, int]:
-    """Take faces that occur several times once, and walls between two bodies not at all.
+    """Keep repeated faces once, and remove walls between two bodies.
 
-    Faces that hang together and all occur twice are a wall where others begin at their rim, as two
-    bodies that meet there have one each. Without such a rim the body was written twice.
+    Connected faces that all occur twice are a wall where others begin at their rim, as two bodies
+    that meet there have one each. Without such a rim the body was written twice.
 
     Returns
     -------
     triangles : ndarray, shape (t, 3)
     doubled : int
-        Faces of bodies that were written twice with opposite sense.
+        Number of faces of bodies that were written twice with opposite sense.
 
     Examples
     --------
@@ -109,7 +110,7 @@ def unnested(
     Returns
     -------
     triangles : ndarray, shape (k, 3)
-        Without shells that enclose what is around them.
+        Triangles, without shells of the same content as the one around them.
     nest : Nest
 
     Examples
@@ -176,27 +177,27 @@ def _nest(
 def _material(
     volume: Floats, parent: Indices, solid: NDArray[np.bool_], of: NDArray[np.bool_]
 ) -> float:
-    """Volume of the material of some nests: each shell changes it by what differs around it."""
+    """Sum the volume of material of some nests: a shell counts if it changes the content."""
     around = (parent >= 0) & solid[parent]
     change = solid.astype(np.float64) - around
     return float((np.abs(volume) * change)[of].sum())
 
 
 def _parity(triangles: Indices) -> Floats:
-    """1 where the corners of a triangle rise in its sense, -1 where they fall."""
+    """Return 1 where the corners of a triangle rise in its sense, -1 where they fall."""
     a, b, c = triangles.T
     return np.where(((a < b).astype(int) + (b < c) + (c < a)) == 2, 1.0, -1.0)
 
 
 def _edges(triangles: Indices) -> tuple[Indices, NDArray[np.int64]]:
-    """The number of each triangle's edges, and the sense in which it runs along them."""
+    """Return the number of each triangle's edges, and the sense in which it runs along them."""
     ends = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     _, edge = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)
     return edge.reshape(-1).astype(np.int64), np.where(ends[:, 0] < ends[:, 1], 1, -1)
 
 
 def _joined(triangles: Indices, through: NDArray[np.bool_]) -> Indices:
-    """Number triangles by what hangs together through some of their edges, (t,)."""
+    """Number triangles by their component, connected through some of their edges, (t,)."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -213,9 +214,9 @@ def _joined(triangles: Indices, through: NDArray[np.bool_]) -> Indices:
 
 
 def _shells(points: Floats, triangles: Indices) -> Indices:
-    """Number the closed shells: of each triangle, -1 where it belongs to none, (t,).
+    """Number the closed shells: label of each triangle, -1 where it belongs to none, (t,).
 
-    What ends at edges of three or more faces is joined with its neighbors there.
+    Components that end at edges of three or more faces are joined with their neighbors there.
     """
     edge, sense = _edges(triangles)
     face = np.repeat(np.arange(len(triangles)), 3)
@@ -231,7 +232,7 @@ def _shells(points: Floats, triangles: Indices) -> Indices:
 def _is_open(
     label: Indices, face: Indices, edge: Indices, sense: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
-    """Of each component, whether its faces leave an edge unbalanced."""
+    """Return True for each component whose faces leave an edge unbalanced."""
     count = int(edge.max()) + 1
     _, index = np.unique(label[face] * count + edge, return_inverse=True)
     balance = np.bincount(index.reshape(-1), weights=sense)
@@ -241,7 +242,7 @@ def _is_open(
 
 
 def _volumes(points: Floats, triangles: Indices, label: Indices) -> Floats:
-    """Volume of each shell, negative where it faces inward."""
+    """Return the volume of each shell, negative where it faces inward."""
     a, b, c = (points[triangles[:, corner]] - points[triangles[0, 0]] for corner in range(3))
     own = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
     of = label >= 0
@@ -249,7 +250,7 @@ def _volumes(points: Floats, triangles: Indices, label: Indices) -> Floats:
 
 
 def _parents(points: Floats, triangles: Indices, label: Indices, volume: Floats) -> Indices:
-    """The smallest shell around each shell, -1 for none, (s,)."""
+    """Find the smallest shell around each shell, -1 for none, (s,)."""
     import igl
 
     count = len(volume)

@@ -37,7 +37,7 @@ class Periodic(Shape):
     period: PositiveLength = Field(description="Edge of the repeated cubic cell.")
 
     def make_graded(self, period: Graded | None, thickness: Graded | None) -> _core.Shape:
-        """Return the compiled shape with other numbers, or a number for every place."""
+        """Return the compiled shape with other numbers, or with numbers that vary in space."""
         raise NotImplementedError
 
     def make(self, scope: Scope) -> _core.Shape:
@@ -60,7 +60,7 @@ class _Surface(Periodic):
 
     @classmethod
     def _positional(cls) -> tuple[str, ...]:
-        """The period and, of a sheet, its thickness."""
+        """Period and, for a sheet, its thickness."""
         return ("period", "thickness")
 
     @model_validator(mode="after")
@@ -74,7 +74,7 @@ class _Surface(Periodic):
         return self
 
     def make_graded(self, period: Graded | None, thickness: Graded | None) -> _core.Shape:
-        """Return the compiled shape with other numbers, or a number for every place."""
+        """Return the compiled shape with other numbers, or with numbers that vary in space."""
         period = self.period if period is None else period
         wall = self.thickness if thickness is None else thickness
         if wall is None:
@@ -150,7 +150,7 @@ class _Struts(Periodic):
     thickness: PositiveLength = Field(description="Diameter of the bars.")
 
     def make_graded(self, period: Graded | None, thickness: Graded | None) -> _core.Shape:
-        """Return the compiled shape with other numbers, or a number for every place."""
+        """Return the compiled shape with other numbers, or with numbers that vary in space."""
         period = self.period if period is None else period
         bar = self.thickness if thickness is None else thickness
         return _core.Shape.struts(self.kind, period, bar)

@@ -1,4 +1,4 @@
-"""Where the grid of a body lies: faces of voxels on faces of the body."""
+"""Phase of the grid of a body: faces of voxels on faces of the body."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from voxsoft.shapes.base import Triple
 
-#: Phases of so many digits, in voxels, are told from rounding.
+#: Digits of a phase, in voxels, that are more than rounding.
 _DIGITS = 4
 
 
@@ -23,7 +23,7 @@ def choose_phase(
 ) -> Triple:
     """Return the phase of a body's grid along each axis [m], 0 to one voxel.
 
-    Along an axis it is 0, so that a corner of a voxel lies at the origin of coordinates, unless
+    The phase along an axis is 0, so that a corner of a voxel lies at the origin, unless
 
     - the body is a whole number of voxels long and begins elsewhere: then it begins on a face;
     - the body is symmetric and its voxels at 0 are not: then its middle lies on a face of voxels
@@ -38,11 +38,11 @@ def choose_phase(
     voxel_size
         Edge of a cell [m].
     snap
-        Rounding of places, in voxels.
+        Tolerance of positions, in voxels.
     look
-        The filled cells of the body, (nx, ny, nz), for a phase [m].
+        Function that returns the filled cells of the body, (nx, ny, nz), for a phase [m].
     given
-        Phases that are given, such as those of planes of symmetry [m].
+        Given phases, such as those of planes of symmetry [m].
 
     Examples
     --------
@@ -83,7 +83,7 @@ def _is_whole(number: float, snap: float) -> bool:
 
 
 def _within(place: float, size: float, snap: float) -> float:
-    """The place of a face within the first voxel [m]."""
+    """Return the position of a face within the first voxel [m]."""
     part = place / size - math.floor(place / size)
     near = round(part, _DIGITS)
     if abs(part - near) <= snap:
@@ -92,7 +92,7 @@ def _within(place: float, size: float, snap: float) -> float:
 
 
 def _is_symmetric(cells: NDArray[np.bool_], axis: int) -> bool:
-    """Whether cells are their own mirror image across the middle of what is filled."""
+    """Return True if cells are their own mirror image across the middle of the filled ones."""
     filled = np.flatnonzero(cells.any(axis=tuple({0, 1, 2} - {axis})))
     if not len(filled):
         return False

@@ -51,7 +51,7 @@ class _CornerOrCenter(Shape):
 
     @property
     def middle(self) -> tuple[float, float, float]:
-        """The center [m]."""
+        """Center of the box [m]."""
         if self.center is not None:
             return self.center
         (x, y, z), (a, b, c) = self.corner or _ORIGIN, self.size
@@ -250,7 +250,7 @@ class HalfSpace(Shape):
 
     @classmethod
     def _positional(cls) -> tuple[str, ...]:
-        """The normal and the point, which both have a default."""
+        """Normal and point, which both have a default."""
         return ("normal", "point")
 
     def make(self, scope: Scope) -> _core.Shape:

@@ -1,4 +1,4 @@
-"""From shapes to cells."""
+"""Sampling of shapes to cells."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ from voxsoft.shapes.ties import SampledPart, decided, tie_width
 from voxsoft.units import to_si
 from voxsoft.voxels import Voxels
 
-#: Sides closer to a cell face than this part of a voxel lie on it.
+#: Distance, in voxels, within which a side lies on a cell face.
 _SNAP = 1e-6
-#: Bytes that a cell takes until its grid is made; measured: 3.4 to 4.0 for 10 to 250 million cells.
+#: Memory of a cell in bytes until its grid is made; measured: 3.4 to 4.0 for 10 to 250 million
+#: cells.
 BYTES_PER_CELL = 4
 
 
@@ -33,7 +34,7 @@ def inside(
     origin: Triple = (0.0, 0.0, 0.0),
     names: Mapping[str, Shape] | None = None,
 ) -> NDArray[np.bool_]:
-    """Tell which cells of a grid have their center inside a shape.
+    """Test which cells of a grid have their center inside a shape.
 
     A center that lies on the surface, to rounding, is decided half-open: of two opposite faces of
     a body one takes such cells and the other does not (see :mod:`voxsoft.shapes.ties`). The answer
@@ -50,7 +51,7 @@ def inside(
     origin : three floats, default (0, 0, 0)
         Lowest corner of the grid [m].
     names : mapping of str to Shape, optional
-        The shapes that operands given by name refer to.
+        Shapes that operands given by name refer to.
 
     Returns
     -------
@@ -60,7 +61,7 @@ def inside(
     ------
     ShapeError
         If the shape cannot be built, has no value (NaN) at some center, or the cells do not fit in
-        the memory that is available (said before anything is allocated).
+        the memory that is available (raised before anything is allocated).
 
     Examples
     --------
@@ -111,12 +112,12 @@ def voxelize(
     voxel_size : float
         Edge of a cell [m].
     bounds : pair of corners, optional
-        Lowest and highest corner [m] of the part of space to look at; needed where the shape has no
+        Lowest and highest corner [m] of the sampled space; needed where the shape has no
         end. The shape's own bounds by default.
     names : mapping of str to Shape, optional
-        The shapes that operands given by name refer to.
+        Shapes that operands given by name refer to.
     phase : three floats, optional
-        A corner of a cell [m]. By default chosen along each axis as for the body of a design
+        Corner of a cell [m]. By default chosen along each axis as for the body of a design
         (:func:`voxsoft.shapes.phase.choose_phase`): 0 unless a body of whole voxels lies elsewhere,
         or a symmetric one would lose its symmetry; and 0 where `bounds` are given.
 
@@ -124,7 +125,7 @@ def voxelize(
     ------
     ShapeError
         If the shape has no end and `bounds` is missing, if no cell center is inside, and for all
-        that :func:`inside` refuses.
+        errors of :func:`inside`.
 
     Examples
     --------
@@ -144,7 +145,7 @@ def voxelize(
 
 
 class _Cells(NamedTuple):
-    """The part of each cell (from 1, 0 for none), the lowest cell on the grid, empty parts."""
+    """Part of each cell (from 1, 0 for none), lowest cell on the grid, mask of empty parts."""
 
     parts: NDArray[np.uint8]
     low: NDArray[np.int64]
@@ -157,15 +158,15 @@ class Body:
     Parameters
     ----------
     shapes
-        Of the parts.
+        Shapes of the parts.
     voxel_size
         Edge of a cell [m].
     names
-        The shapes that operands given by name refer to.
+        Shapes that operands given by name refer to.
     given
-        Phases along the axes that are given [m], None where they are chosen.
+        Given phases along the axes [m], None where they are chosen.
     bounds
-        Lowest and highest corner of what is looked at [m]; default: those of the shapes.
+        Lowest and highest corner of the sampled space [m]; default: those of the shapes.
     """
 
     def __init__(
@@ -237,7 +238,7 @@ class Body:
 
 
 def _together(lows: list[NDArray[np.int64]], parts: list[NDArray[np.bool_]]) -> _Cells:
-    """Cells of parts on one grid, the first part where they overlap."""
+    """Merge cells of parts on one grid, the first part where they overlap."""
     is_empty = [not held.any() for held in parts]
     if len(parts) == 1:
         return _Cells(parts[0].view(np.uint8), lows[0], is_empty)
@@ -252,7 +253,7 @@ def _together(lows: list[NDArray[np.int64]], parts: list[NDArray[np.bool_]]) -> 
 
 
 def _empty(shape: Shape, voxel_size: float, names: Mapping[str, Shape] | None) -> ShapeError:
-    """Why nothing is inside: an open surface encloses nothing at any voxel size."""
+    """Make the error of an empty shape: an open surface encloses nothing at any voxel size."""
     from voxsoft.shapes.triangles import TriangleMesh
 
     for part in shape.every(names):

@@ -1,4 +1,4 @@
-"""Edges and corners of a traced surface, where marching cubes cut them off."""
+"""Sharpening of edges and corners of a traced surface, which marching cubes cut off."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from voxsoft import _core
 Floats = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
-#: Normals at the ends of an edge lie on two sides of a ridge where their cosine is below this: 30
-#: degrees, the angle of the finest feature that Kobbelt et al. keep.
+#: Cosine between the normals at the ends of an edge below which it crosses a ridge: 30 degrees,
+#: the angle of the finest feature that Kobbelt et al. keep.
 _RIDGE: Final = np.cos(np.deg2rad(30.0))
-#: Differences of the shape are taken over this part of a step, on both sides.
+#: Step of finite differences of the shape to both sides, as a part of a step.
 _DIFFERENCE: Final = 1e-3
-#: A new vertex lies no farther from the middle of its edge, in steps.
+#: Largest distance of a new vertex from the middle of its edge, in steps.
 _REACH: Final = 1.5
-#: And no farther from the surface, in steps.
+#: Largest distance of a new vertex from the surface, in steps.
 _OFF: Final = 0.02
-#: Triangles of less area, in squares of a step, are needles: beside a ridge all three corners may
-#: come to lie on it.
+#: Area, in squares of a step, below which a triangle is a needle: beside a ridge all three corners
+#: may come to lie on it.
 _NEEDLE: Final = 1e-8
-#: Newton's steps of a vertex to the surface.
+#: Number of Newton's steps of a vertex to the surface.
 _TO_SURFACE: Final = 3
 
 
@@ -33,7 +33,8 @@ def sharpened(
 ) -> tuple[Floats, Triangles]:
     """Restore edges and corners of a surface that marching cubes traced.
 
-    Vertices go to the surface. Each edge of the mesh that crosses a ridge is split where the planes
+    Vertices move to the surface. Each edge of the mesh that crosses a ridge is split where the
+    planes
     at its ends meet, nearest to its middle; a triangle of three such edges gets a vertex where the
     three planes at its corners meet. The surface stays closed.
 
@@ -42,9 +43,9 @@ def sharpened(
     shape
         The shape, built.
     vertices, triangles
-        What was traced, (n, 3) in m and (t, 3).
+        Traced mesh, (n, 3) in m and (t, 3).
     step
-        Between the samples that it was traced by [m].
+        Distance of the samples of the tracing [m].
 
     References
     ----------
@@ -62,7 +63,7 @@ def sharpened(
     True
     """
     moved = to_surface(shape, vertices, step)
-    # All corners of a triangle beside a ridge may come to lie on it: they stay where they were.
+    # All corners of a triangle beside a ridge may come to lie on it: such corners are not moved.
     needles = _areas(moved, triangles) < _NEEDLE * step**2
     moved[np.unique(triangles[needles])] = vertices[np.unique(triangles[needles])]
     normals = _normals(shape, moved, step)
@@ -82,7 +83,7 @@ def sharpened(
 
 
 class _Split(NamedTuple):
-    """A mesh after its edges were split, and the triangle that each of its own is a part of."""
+    """Mesh after its edges were split, with the parent of each of its triangles."""
 
     vertices: Floats
     triangles: Triangles
@@ -99,7 +100,7 @@ def _split(
     places: Floats,
     step: float,
 ) -> _Split:
-    """Split the edges that are bent at given places, and the triangles that have them."""
+    """Split the bent edges at given places, and their triangles."""
     split = np.full(len(bent), -1, dtype=np.int64)
     split[bent] = len(vertices) + np.arange(int(bent.sum()))
     found = np.concatenate([vertices, places[bent]])
@@ -159,12 +160,12 @@ def _normals(shape: _core.Shape, points: Floats, step: float) -> Floats:
 def _meeting(
     points: Floats, normals: Floats, shape: _core.Shape, step: float
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    """Where planes through points (e, k, 3) meet nearest to their middle; whether on a ridge."""
+    """Intersect planes through points (e, k, 3), nearest to their middle; True on a ridge."""
     if not len(points):
         return np.zeros((0, 3)), np.zeros(0, dtype=bool)
     middle = points.mean(axis=1)
     heights = np.einsum("eki,eki->ek", points - middle[:, None], normals)
-    # The shortest way that satisfies all planes; nearly parallel ones count as one.
+    # The shortest displacement that satisfies all planes; nearly parallel ones count as one.
     ways = np.einsum("eik,ek->ei", np.linalg.pinv(normals, rcond=0.1), heights)
     places = middle + ways
     off = np.abs(shape.evaluate(np.ascontiguousarray(places)))
@@ -173,7 +174,7 @@ def _meeting(
 
 
 def _halves(triangles: Triangles, cut: Triangles) -> Triangles:
-    """Parts of triangles with one split side."""
+    """Return the parts of triangles with one split side."""
     corner = (cut >= 0).argmax(axis=1)
     a, b, c = _turned(triangles, corner)
     new = cut[np.arange(len(cut)), corner]
@@ -181,7 +182,7 @@ def _halves(triangles: Triangles, cut: Triangles) -> Triangles:
 
 
 def _thirds(triangles: Triangles, cut: Triangles, vertices: Floats) -> Triangles:
-    """Parts of triangles with two split sides: the ridge goes from one to the other."""
+    """Return the parts of triangles with two split sides: the ridge goes from one to the other."""
     corner = (cut < 0).argmax(axis=1)  # opposite to the whole side
     a, b, c = _turned(triangles, corner)
     on_ca, on_ab = (cut[np.arange(len(cut)), (corner + k) % 3] for k in (1, 2))
@@ -195,7 +196,7 @@ def _thirds(triangles: Triangles, cut: Triangles, vertices: Floats) -> Triangles
 
 
 def _sixths(triangles: Triangles, cut: Triangles, middle: Triangles) -> Triangles:
-    """Parts of triangles with three split sides, around a vertex in the middle."""
+    """Return the parts of triangles with three split sides, around a vertex in the middle."""
     rows = []
     for corner in range(3):
         after, before = cut[:, (corner + 2) % 3], cut[:, (corner + 1) % 3]
@@ -205,7 +206,7 @@ def _sixths(triangles: Triangles, cut: Triangles, middle: Triangles) -> Triangle
 
 
 def _turned(triangles: Triangles, corner: Triangles) -> tuple[Triangles, Triangles, Triangles]:
-    """The corners of triangles in their order, beginning with a given one of each."""
+    """Return the corners of triangles in their order, beginning with a given one of each."""
     rows = np.arange(len(triangles))
     a, b, c = (triangles[rows, (corner + k) % 3] for k in range(3))
     return a, b, c

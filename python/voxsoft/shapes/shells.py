@@ -1,4 +1,4 @@
-"""What is wrong with a triangle surface: faces that are turned, and holes."""
+"""Defects of a triangle surface: turned faces, and holes."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ Indices = NDArray[np.int64]
 
 
 class Hole(NamedTuple):
-    """Edges in a row that belong to one triangle only.
+    """Loop of edges that belong to one triangle only.
 
     Attributes
     ----------
     edges
-        How many.
+        Number of edges.
     width
         Length of the longest side of the box around them.
     center
-        Middle of that box.
+        Center of that box.
     """
 
     edges: int
@@ -31,7 +31,7 @@ class Hole(NamedTuple):
 def in_one_sense(points: NDArray[np.float64], triangles: Indices) -> tuple[Indices, int]:
     """Turn triangles so that neighbors agree on which side is outside.
 
-    A patch is what hangs together by edges of two triangles. Within it, the sense of most of its
+    A patch is a component connected by edges of two triangles. Within it, the sense of most of its
     area stays: an inner shell that was turned against the outer one is a cavity, and remains one.
 
     Parameters
@@ -45,7 +45,7 @@ def in_one_sense(points: NDArray[np.float64], triangles: Indices) -> tuple[Indic
     -------
     triangles : ndarray, shape (t, 3)
     turned : int
-        How many were turned.
+        Number of turned triangles.
 
     Examples
     --------
@@ -66,7 +66,7 @@ def in_one_sense(points: NDArray[np.float64], triangles: Indices) -> tuple[Indic
 
 
 def _rolled(triangles: Indices) -> Indices:
-    """Corners of each triangle in their order, the least first."""
+    """Rotate the corners of each triangle so that the least comes first."""
     first = triangles.argmin(axis=1)[:, None]
     return np.take_along_axis(triangles, (first + np.arange(3)) % 3, axis=1)
 

@@ -1,4 +1,4 @@
-"""The surface of one shape by itself, in a fraction of a second and as fine as that allows."""
+"""Preview surface of one shape by itself, in a fraction of a second and as fine as that allows."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ from voxsoft.shapes.tracing import contour
 
 Floats = NDArray[np.float64]
 
-#: Samples of one shape: the slowest, a gyroid, takes some 3 µs for each.
+#: Most samples of one shape: the slowest, a gyroid, takes some 3 µs for each.
 MOST_SAMPLES: Final = 250_000
-#: Triangles of one shape: more would take the page too long to read.
+#: Most triangles of one shape: more would take the page too long to read.
 MOST_TRIANGLES: Final = 150_000
-#: Steps between samples along the longest side, and along each one at least.
+#: Number of steps between samples along the longest side, and the least along each one.
 _ALONG: Final = 48
 _ACROSS: Final = 8
-#: Samples as near to a surface as this are outside, in steps: the sign of others would be chance.
+#: Distance from a surface, in steps, within which samples count as outside: signs would be random.
 _ON_SURFACE: Final = 1e-5
 
 
 class Sketch(NamedTuple):
-    """A surface that shows what a shape is.
+    """Preview surface of a shape.
 
     Attributes
     ----------
     vertices
-        Its points [m], (n, 3).
+        Vertices [m], (n, 3).
     triangles
-        Outward, (t, 3); none where no sample is inside.
+        Triangles, outward, (t, 3); none where no sample is inside.
     step
-        The longest way from one sample to the next [m]: thinner walls may be missing.
+        Longest distance from one sample to the next [m]: thinner walls may be missing.
     clipped
-        The axes, of ``"xyz"``, along which the shape goes on beyond what is shown.
+        Axes, of ``"xyz"``, along which the shape continues beyond the sketch.
     """
 
     vertices: Floats
@@ -54,11 +54,11 @@ def sketch(shape: _core.Shape, room: tuple[Triple, Triple], detail: float) -> Sk
     Parameters
     ----------
     shape
-        The shape.
+        Compiled shape.
     room
-        Lowest and highest corner [m] of what is shown of a shape without end.
+        Lowest and highest corner [m] of the sketch of a shape without end.
     detail
-        What shall be seen of it [m], as far as the samples allow it; such as half a voxel.
+        Size of the smallest detail [m], as far as the samples allow it; such as half a voxel.
 
     Examples
     --------
@@ -92,12 +92,12 @@ def _traced(
     endless: NDArray[np.bool_],
     counts: NDArray[np.intp],
 ) -> Sketch:
-    """Trace a shape between two corners in so many steps; it is closed where it goes on."""
+    """Trace a shape between two corners in some steps; it is closed where it is clipped."""
     step = (high - low) / counts
     first = low - step / 2
     points = first + step * np.indices(tuple(counts + 2)).reshape(3, -1).T
     values = shape.evaluate(points)
-    # The larger of two distances is that of what is common to both.
+    # The larger of two distances is the distance of the intersection.
     for end, (corner, sign) in enumerate(((low, -1.0), (high, 1.0))):
         for axis in np.flatnonzero(endless[end]):
             values = np.maximum(values, sign * (points[:, axis] - corner[axis]))
@@ -109,7 +109,7 @@ def _traced(
 
 
 def _counts(size: Floats, step: float) -> NDArray[np.intp]:
-    """How many steps of about some length there are along each side, as far as samples allow."""
+    """Return the number of steps of about some length along each side, as far as samples allow."""
     step = max(step, (float(np.prod(size)) / MOST_SAMPLES) ** (1 / 3))
     while True:
         counts: NDArray[np.intp] = np.maximum(np.ceil(size / step), _ACROSS).astype(np.intp)

@@ -1,4 +1,4 @@
-"""Operators on the function's value: they move or thicken the surface, or mix two shapes."""
+"""Operators on the function's value: they offset or thicken the surface, or mix two shapes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cells whose center lies on a surface: which of them are inside."""
+"""Ties: cells whose center lies on a surface, and whether they are inside."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ Ints = NDArray[np.int64]
 INSIDE: Final = 1
 TIED: Final = 2
 
-#: Values at a center as near to zero as this part of a voxel are a tie.
+#: Distance of a center from the surface, in voxels, below which it is a tie.
 _TIE = 1e-9
-#: Float32, in which STL files keep their corners, holds a number to 2⁻²⁴ of it. Four times that is
+#: Relative rounding of float32, in which STL files keep their corners, is 2⁻²⁴. Four times that is
 #: a tie: both ends of a distance are rounded, and programs compute in float32 before they write.
 _OF_FLOAT32 = 2.0**-22
-#: A tie is decided this far from the center, in voxels and in widths of a tie.
+#: Distance from the center at which a tie is decided, in voxels and in widths of a tie.
 _STEP, _STEPS = 1e-6, 8.0
-#: No tie is wider than this part of a voxel.
+#: Largest width of a tie, in voxels.
 _WIDEST = 1e-3
-#: Steps leave every plane through the center that is across an axis or a diagonal.
+#: Direction of a step, which leaves every plane through the center across an axis or a diagonal.
 _WAY: Final = np.array([1.0, 0.73, 0.41])
-#: Rounding of a place on the grid, in voxels.
+#: Rounding of a position on the grid, in voxels.
 _ON_GRID = 1e-6
 
 
 class SampledPart(NamedTuple):
-    """Where the centers of cells are that a part may fill.
+    """Sampled centers of the cells that a part may fill.
 
     Attributes
     ----------
     shape
-        The built shape.
+        Compiled shape.
     low
-        The lowest cell on the grid of the body, (3,).
+        Lowest cell on the grid of the body, (3,).
     codes
-        Of each cell as :meth:`voxsoft._core.Shape.sample` gives it, (nx, ny, nz).
+        Code of each cell from :meth:`voxsoft._core.Shape.sample`, (nx, ny, nz).
     """
 
     shape: _core.Shape
@@ -53,9 +53,9 @@ class SampledPart(NamedTuple):
 def tie_width(
     shapes: Iterable[Shape], voxel_size: float, names: Mapping[str, Shape] | None
 ) -> float:
-    """Return how near to a surface [m] a center counts as on it.
+    """Return the distance from a surface [m] within which a center counts as on it.
 
-    A billionth of a voxel; for surfaces from files the rounding of float32 numbers of their size.
+    It is a billionth of a voxel; for surfaces from files, the rounding of float32 of their size.
 
     Examples
     --------
@@ -83,9 +83,9 @@ def decided(
 ) -> list[NDArray[np.bool_]]:
     """Decide the ties of the parts of one body.
 
-    A tied cell is decided by the value a short way from its center, up along all axes: of two
+    A tied cell is decided by the value a short step from its center, up along all axes: of two
     opposite faces one takes the cell and the other does not, and of two parts that meet on a center
-    one. Where the mirror image of the cell across the middle of the body is tied too, the way is
+    one. Where the mirror image of the cell across the middle of the body is tied too, the step is
     toward the middle, so that a symmetric body stays symmetric.
 
     Parameters
@@ -93,18 +93,18 @@ def decided(
     parts
         The parts of the body.
     phase
-        Where the grid lies: a corner of a cell [m].
+        Phase of the grid: a corner of a cell [m].
     voxel_size
         Edge of a cell [m].
     tie
-        How near to a surface a center counts as on it [m].
+        Distance from a surface within which a center counts as on it [m].
     middle
-        Of the body [m]; None for no mirror images.
+        Middle of the body [m]; None for no mirror images.
 
     Returns
     -------
     list of ndarray of bool
-        For each part, which of its cells it holds.
+        Mask of the cells that each part holds.
     """
     found = [part.codes == INSIDE for part in parts]
     tied = [np.argwhere(part.codes == TIED) + part.low for part in parts]
@@ -123,7 +123,7 @@ def decided(
 def _ways(
     cells: Ints, everywhere: Ints, phase: Triple, voxel_size: float, middle: Triple | None
 ) -> NDArray[np.float64]:
-    """Of each cell whether it is decided above (1) or below (-1) its center, along each axis."""
+    """Return the side on which each cell is decided, above (1) or below (-1) its center."""
     ways = np.ones(cells.shape)
     if middle is None or not len(cells):
         return ways
@@ -140,7 +140,7 @@ def _ways(
 
 
 def _among(cells: Ints, others: Ints) -> NDArray[np.bool_]:
-    """Whether cells are among others, (n,)."""
+    """Return True for cells that are among others, (n,)."""
     low = np.minimum(cells.min(axis=0), others.min(axis=0))
     counts = np.maximum(cells.max(axis=0), others.max(axis=0)) - low + 1
     codes = [np.ravel_multi_index(tuple((each - low).T), tuple(counts)) for each in (cells, others)]

@@ -1,4 +1,4 @@
-"""The surface of shapes as triangles, as near to voxels of them as it goes."""
+"""Smooth surface of shapes as triangles, traced as near to their voxels as possible."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Floats = NDArray[np.float64]
 
 #: Samples along a voxel, the finer first: a slit or wall of one voxel has two in any position.
 SAMPLES: Final = (3, 2)
-#: Samples of the shapes, and of the grid that holds them, beyond which there is no smooth surface.
+#: Most samples of the shapes, and cells of the sample grid, for a smooth surface.
 MOST_SAMPLES: Final = 2_000_000
 LARGEST_GRID: Final = 16_000_000
-#: Samples as near to a surface as this are outside, in steps between samples.
+#: Distance from a surface, in steps between samples, within which samples count as outside.
 _ON_SURFACE: Final = 1e-5
 #: Corners of a cube in the order of marching cubes, as (i, j, k).
 _CORNERS: Final = (
@@ -32,21 +32,21 @@ def trace(
 ) -> tuple[Floats, NDArray[np.int64], NDArray[np.uint8]] | None:
     """Trace the surface of shapes by marching cubes on samples finer than the voxels.
 
-    The shapes are asked within a voxel of the surface of the voxels, and elsewhere the voxels are:
-    what no voxel was made of is not shown. Samples lie off the faces of voxels, where the sides of
-    shapes often are and the sign of a sample would be chance.
+    The shapes are sampled within a voxel of the surface of the voxels; elsewhere the voxels are
+    used, so that parts without a voxel are not shown. Samples lie off the faces of voxels, where
+    the sides of shapes often are and the sign of a sample would be random.
 
     Parameters
     ----------
     shapes
-        Of the parts, in their order.
+        Shapes of the parts, in their order.
     voxels
-        What was made of them.
+        Voxels of the shapes.
 
     Returns
     -------
     tuple or None
-        Vertices [m], (n, 3); triangles, (t, 3); of each the part, from 0, (t,). None where the
+        Vertices [m], (n, 3); triangles, (t, 3); part of each triangle, from 0, (t,). None where the
         grid would be too large.
     """
     from scipy import ndimage
@@ -80,9 +80,9 @@ def contour(
     values
         Samples of a shape on a grid, (nx, ny, nz), negative inside.
     first
-        The place of the first sample [m].
+        Position of the first sample [m].
     step
-        From one sample to the next [m], along all axes or along each.
+        Distance from one sample to the next [m], along all axes or along each.
 
     Returns
     -------
@@ -116,7 +116,7 @@ def contour(
 
 
 def _refined(cells: NDArray[np.bool_], along: int) -> NDArray[np.bool_]:
-    """Each cell as so many samples along each axis."""
+    """Repeat each cell as several samples along each axis."""
     for axis in range(3):
         cells = cells.repeat(along, axis)
     return cells
@@ -124,13 +124,13 @@ def _refined(cells: NDArray[np.bool_], along: int) -> NDArray[np.bool_]:
 
 def _union(shapes: Sequence[_core.Shape], points: Floats, step: float) -> Floats:
     values: Floats = np.min([shape.evaluate(points) for shape in shapes], axis=0)
-    # Of a side that goes through samples: chance would leave holes, and triangles without area.
+    # A side that goes through samples: random signs would leave holes, and triangles without area.
     values[np.abs(values) < _ON_SURFACE * step] = _ON_SURFACE * step
     return np.nan_to_num(values, nan=step, posinf=step, neginf=-step)
 
 
 def _mixed(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Whether the eight corners of a cube are not all on one side."""
+    """Return True for cubes whose eight corners are not all on one side."""
     some = every = inside
     for axis in range(3):
         low = [slice(None)] * 3
@@ -143,7 +143,7 @@ def _mixed(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def _owners(shapes: Sequence[_core.Shape], points: Floats, step: float) -> NDArray[np.uint8]:
-    """The first part on whose surface some points of the common surface are."""
+    """Find the first part on whose surface each point of the common surface lies."""
     values = np.array([shape.evaluate(points) for shape in shapes])
     close = values <= values.min(axis=0) + step / 4
     owners: NDArray[np.uint8] = close.argmax(axis=0).astype(np.uint8)

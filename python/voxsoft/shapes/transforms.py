@@ -1,4 +1,4 @@
-"""Shapes moved, turned, scaled, mirrored and deformed."""
+"""Transforms of shapes: translation, rotation, scaling, mirror images and deformations."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """Shapes from triangle meshes: closed or broken, by generalized winding numbers.
 
-The winding number tells how often a surface wraps around a point: 1 inside a closed surface, 0
-outside, −1 inside one whose faces are turned, and something between near a hole. Inside is where
-its size exceeds one half [1]_. Neighbors that disagree on which side is outside are turned to agree
-first; then :mod:`voxsoft.shapes.nesting` decides what closed shells enclose.
+The winding number counts how often a surface wraps around a point: 1 inside a closed surface, 0
+outside, −1 inside one whose faces are turned, and a fraction near a hole. A point is inside if
+its size exceeds one half [1]_. Neighbors that disagree on which side is outside are turned to
+agree first; then :mod:`voxsoft.shapes.nesting` decides which closed shells enclose material.
 
 References
 ----------
@@ -37,28 +37,28 @@ __all__ = [
     "TriangleMesh",
 ]
 
-#: Where more than this part of the edges belong to one triangle only, nothing is enclosed.
+#: Part of the edges that belong to one triangle only, above which nothing is enclosed.
 _MOST_OPEN = 0.5
 
-#: Part of its length by which the box of a flat sheet is thicker than the sheet.
+#: Excess thickness of the box around a flat sheet, as a part of its length.
 _ROOM = 1e-6
 
 
 class SurfaceState(NamedTuple):
-    """What is doubtful about a surface.
+    """Doubtful features of a surface.
 
     Attributes
     ----------
     turned
-        Triangles that had to be turned, as their neighbors have their outside on the other side.
+        Number of triangles that had to be turned to agree with their neighbors.
     holes
-        The widest first, in m.
+        Holes, the widest first, in m.
     doubled
-        Triangles of bodies that occur twice with opposite sense, and were taken once.
+        Number of triangles of bodies that occur twice with opposite sense, and were taken once.
     nest
         Shells that lie in others, in m and m³.
     nested
-        How the shape says that they are read; None where it does not.
+        Reading of nested shells set by the shape; None where it is not set.
     """
 
     turned: int
@@ -69,7 +69,7 @@ class SurfaceState(NamedTuple):
 
     @property
     def opening(self) -> str:
-        """The holes in words; empty where there are none.
+        """Holes in words; empty where there are none.
 
         Examples
         --------
@@ -92,7 +92,7 @@ def _is_length_unit(unit: str) -> str:
 
 
 def _whole_path(path: object) -> object:
-    """Complete a path, so that it leads to the file from everywhere."""
+    """Make a path absolute, so that it leads to the file from everywhere."""
     if isinstance(path, (str, os.PathLike)) and os.fspath(path):
         return os.path.abspath(path)  # noqa: PTH100 - as text, and without asking the disk
     return path
@@ -152,7 +152,7 @@ class TriangleMesh(Shape):
         return _core.Shape.sampled(solid.distances, solid.low, solid.high, solid.is_closed)
 
     def state(self) -> SurfaceState:
-        """Return what is doubtful about the surface: turned faces and holes [m].
+        """Return the doubtful features of the surface: turned faces and holes [m].
 
         Raises
         ------
@@ -176,7 +176,7 @@ class TriangleMesh(Shape):
 def _solid(
     path: Path, changed: int, factor: float, part: str | None, nested: Nested | None
 ) -> _Solid:
-    """Read a file once for as long as it does not change."""
+    """Read a file, cached until it changes."""
     surface = read_surface(path) if part is None else _body(path).surface_of(part, path.name)
     return _Solid(surface.points * factor, surface.triangles, str(path), nested)
 
@@ -188,7 +188,7 @@ def _body(path: Path) -> MeshBody:
         raise ShapeError("path", f"{path.name}: {error.what}", error.hint) from None
 
 
-# libigl's objects must go before its module does, or it reports them as leaked.
+# Objects of libigl must go before its module does, or it reports them as leaked.
 atexit.register(_solid.cache_clear)
 
 
@@ -202,9 +202,9 @@ class _Solid:
     triangles
         Vertices of each triangle, shape (t, 3).
     name
-        What error messages call it.
+        Name in error messages.
     nested
-        How shells within others are read.
+        Reading of shells within others.
     """
 
     def __init__(
@@ -225,7 +225,7 @@ class _Solid:
         self.is_closed = _is_closed(triangles)
         used = points[np.unique(triangles)]
         low, high = used.min(axis=0), used.max(axis=0)
-        # A flat sheet has no room in its box; a wall can still be made of it.
+        # A flat sheet has no volume in its box; a wall can still be made of it.
         room = _ROOM * float((high - low).max()) * (high == low)
         self.low: Triple = tuple((low - room).tolist())
         self.high: Triple = tuple((high + room).tolist())
@@ -257,11 +257,11 @@ def _refuse_soup(triangles: NDArray[np.int64], name: str) -> None:
 
 
 def _is_closed(triangles: NDArray[np.int64]) -> bool:
-    """Tell whether each edge is run through as often in one direction as in the other.
+    """Check that each edge is run through as often in one direction as in the other.
 
     Then the winding number is whole and jumps at triangles only, so the signed distance changes by
     no more than the distance moved, and whole blocks can be decided from their middle. In a broken
-    mesh the sign also flips across holes, far from any triangle: every cell must be asked.
+    mesh the sign also flips across holes, far from any triangle: every cell must be sampled.
     """
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     forward = edges[:, 0] < edges[:, 1]

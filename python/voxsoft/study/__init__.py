@@ -1,7 +1,7 @@
 """Studies: a design family, a space, objectives; grids and searches that survive interruption.
 
-Names are loaded when first used: a worker process needs the evaluation of a design, and neither
-Optuna nor the rest of this package.
+Lazy imports: a worker process needs the evaluation of a design, and neither Optuna nor the rest
+of this package.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a study is about, as plain data, so that a folder is never resumed with another study."""
+"""Definition of a study as plain data, so that a folder is never resumed with another study."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ def definition(
     seed: int,
     folder: Path,
 ) -> dict[str, Any]:
-    """Write everything that decides the results of a study as plain data.
+    """Write all data that decide the results of a study as plain data.
 
     A function, also that of a metric of the user's, is written as its name and a hash of its
-    source text, where it has one. Files below `folder`, that of the study, are written as seen from
-    there, so that it can be moved.
+    source text, where it has one. Files below `folder`, the folder of the study, get relative
+    paths, so that it can be moved.
     """
     written = {
         "schema": SCHEMA,
@@ -56,12 +56,12 @@ def definition(
 
 
 def require_same(stored: Mapping[str, Any], now: Mapping[str, Any], where: str) -> None:
-    """Refuse to go on with a study that was defined otherwise.
+    """Refuse to resume a study with another definition.
 
     Raises
     ------
     StudyError
-        Saying what differs.
+        Names the differences.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def _dumped(targets: Mapping[str, Objective] | Mapping[str, Constraint]) -> dict
 
 
 def _without_own_targets(document: Mapping[str, Any]) -> dict[str, Any]:
-    """Leave out what the study states itself."""
+    """Drop the targets, which the study states itself."""
     return {k: v for k, v in document.items() if k not in ("objectives", "constraints")}
 
 

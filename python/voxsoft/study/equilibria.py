@@ -1,4 +1,4 @@
-"""Equilibria on disk, by the identity of each design, so that they are drawn and shown at once."""
+"""Equilibria on disk, by the hash of each design, so that they are drawn and shown at once."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ from voxsoft.simulation.touching import Pose
 
 Floats = NDArray[np.float64]
 
-#: Name of the folder of a study that holds those of its designs.
+#: Name of the folder in a study's folder that holds the equilibria of its designs.
 FOLDER: Final = "equilibria"
-#: What the files of one folder may take together [bytes].
+#: Largest total size of the files of one folder [bytes].
 ROOM: Final = 256 * 1024 * 1024
 _SUFFIX: Final = ".npz"
 
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """Where a body came to rest.
+    """Equilibrium of a body.
 
     Attributes
     ----------
     positions
-        Of its vertices in m, (n, 3).
+        Positions of its vertices in m, (n, 3).
     mesh
-        A checksum of the vertices at rest: the positions are those of this mesh and no other.
+        Checksum of the vertices at rest: the positions are those of this mesh and no other.
     state
-        What else was found, of a design whose positions do not say it: contact, supplies, what
-        softened. None of other designs, whose positions are measured anew.
+        Further state of a design that positions do not determine: contact, supplies, softening.
+        None for other designs, whose results are computed anew from the positions.
     """
 
     positions: Floats = field(repr=False)
@@ -57,12 +57,12 @@ class Equilibrium:
 
     @classmethod
     def read(cls, content: Mapping[str, NDArray[Any]]) -> Self:
-        """Read what :meth:`written` gives.
+        """Read the arrays of :meth:`written`.
 
         Raises
         ------
         ValueError, KeyError, TypeError
-            It is damaged.
+            The content is damaged.
         """
         positions = np.asarray(content["positions"], dtype=np.float64)
         state = None
@@ -73,10 +73,11 @@ class Equilibrium:
         return cls(positions, int(content["mesh"]), state)
 
     def result(self, setup: Setup) -> Result | None:
-        """The equilibrium of a body as a result; None where it is not that, or not all is known.
+        """Make a result of the equilibrium; None if it is not that of the body, or is incomplete.
 
-        One that positions give is measured anew, and is none where forces do not balance under the
-        loads of the design. Of others, with contact, supplies or softening, all is as it was found.
+        An equilibrium that positions determine is measured anew, and is none if forces do not
+        balance under the loads of the design. Others, with contact, supplies or softening, are read
+        as stored.
 
         Parameters
         ----------
@@ -86,7 +87,7 @@ class Equilibrium:
         Raises
         ------
         VoxSoftError
-            The body cannot be solved, or what was stored is damaged or of another version.
+            The body cannot be solved, or the stored state is damaged or of another version.
         """
         if is_given_by_positions(setup.design):
             message = "at rest, as it was solved before"
@@ -99,11 +100,11 @@ class Equilibrium:
 
     @property
     def objects(self) -> Mapping[str, Pose]:
-        """Where the rigid objects are, by name; empty where there is none."""
+        """Poses of the rigid objects, by name; empty without any."""
         return {} if self.state is None else self.state.objects
 
     def written(self) -> dict[str, Any]:
-        """Write it as arrays by name."""
+        """Write the equilibrium as arrays by name."""
         written: dict[str, Any] = {"positions": self.positions, "mesh": self.mesh}
         if self.state is not None:
             written["state"] = np.frombuffer(self.state.text.encode(), dtype=np.uint8)
@@ -113,7 +114,7 @@ class Equilibrium:
 
 
 def checksum(mesh: Mesh) -> int:
-    """A number that tells the unloaded vertices of a mesh from others."""
+    """Compute a number that identifies the unloaded vertices of a mesh."""
     return zlib.crc32(np.ascontiguousarray(mesh.vertices, dtype="<f8").tobytes())
 
 
@@ -123,9 +124,9 @@ class Equilibria:
     Parameters
     ----------
     folder
-        Made when there is something to keep.
+        Folder, made when the first equilibrium is kept.
     room
-        What its files may take together [bytes].
+        Largest total size of its files [bytes].
 
     Examples
     --------
@@ -146,7 +147,7 @@ class Equilibria:
         self._used: int | None = None
 
     def keep(self, design_hash: str, equilibrium: Equilibrium) -> None:
-        """Write an equilibrium down. What cannot be written costs no more than a later solution."""
+        """Write an equilibrium to disk; a failed write only costs a later solution."""
         beside = self._folder / f".{uuid.uuid4().hex}{_SUFFIX}"
         with suppress(OSError):
             self._folder.mkdir(parents=True, exist_ok=True)
@@ -162,7 +163,7 @@ class Equilibria:
                 self._make_room()
 
     def find(self, design_hash: str, mesh: Mesh) -> Equilibrium | None:
-        """Where the body of a mesh is at rest under the loads of its design, if that is known."""
+        """Return the equilibrium of a design on a mesh, or None if it is not stored."""
         file = self._file(design_hash)
         try:
             with np.load(file, allow_pickle=False) as content:
@@ -172,11 +173,11 @@ class Equilibria:
         if found.mesh != checksum(mesh) or found.positions.shape != mesh.vertices.shape:
             return None
         with suppress(OSError):
-            file.touch()  # what is looked at is the last to go
+            file.touch()  # a file that was read is the last to go
         return found
 
     def holds(self, design_hash: str) -> bool:
-        """Whether there is something to be found of a design."""
+        """Return True if a file of a design is stored."""
         return self._file(design_hash).is_file()
 
     def _file(self, design_hash: str) -> Path:

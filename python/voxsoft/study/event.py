@@ -1,4 +1,4 @@
-"""What a running study tells after each trial."""
+"""Event of a running study after each trial."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from voxsoft.study.trial import Trial
 
 @dataclass(frozen=True)
 class TrialEvent:
-    """One finished trial, and how far the study is.
+    """One finished trial, and the progress of the study.
 
     Attributes
     ----------
     trial
-        The trial that has just finished.
+        Trial that has just finished.
     best
-        The best value of the first objective so far, in SI units; None while no trial is
+        Best value of the first objective so far, in SI units; None while no trial is
         feasible.
     done, total
-        Finished trials, earlier runs included, and how many there will be.
+        Number of finished trials, earlier runs included, and of all trials in the end.
     doubts
-        What is doubtful about the best trial, each in a sentence.
+        Warnings about the best trial, each in a sentence.
     """
 
     trial: Trial

@@ -1,8 +1,8 @@
-"""A gate before the trials of a study: while it is closed, those end that have begun, and no more.
+"""Gate before the trials of a study: while it is closed, running trials end and none begins.
 
 Trials wait for it in the worker processes, so that closing also holds the trials that a pool has
-taken already. What the processes share is replaced with every pool, and the main process takes no
-lock of it: a worker that is killed can leave one locked.
+taken already. The shared values are replaced with every pool, and the main process takes no lock
+of them: a worker that is killed can leave one locked.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from multiprocessing.context import BaseContext
 from multiprocessing.sharedctypes import Synchronized
 from typing import Any, Final, TypeVar
 
-#: Seconds between two looks at a gate that is closed.
+#: Seconds between two checks of a closed gate.
 _LOOK: Final = 0.02
 
 Answer = TypeVar("Answer")
 
 
 class Gate:
-    """Holds back the trials of a study that have not begun.
+    """Gate that holds back the trials of a study that have not begun.
 
     It is closed and opened by any thread of the process that runs the study. Workers of this
     machine stop and go on at once; trials handed to another executor, or to a cluster, go on.
@@ -42,19 +42,19 @@ class Gate:
 
     @property
     def closed(self) -> bool:
-        """Whether no trial may begin."""
+        """True while no trial may begin."""
         return self._closed
 
     @property
     def begun(self) -> int:
-        """How many trials have begun on workers of this machine, and are not stored yet."""
+        """Number of trials that have begun on workers of this machine, and are not stored yet."""
         if self._shared is None:
             return 0
         return max(0, int(self._shared.begun.get_obj().value) - self._stored)
 
     @property
     def waiting(self) -> int:
-        """How many workers hold a trial back because the gate is closed."""
+        """Number of workers that hold a trial back because the gate is closed."""
         return 0 if self._shared is None else int(self._shared.waiting.get_obj().value)
 
     def close(self) -> None:
@@ -66,11 +66,11 @@ class Gate:
         self._set(closed=False)
 
     def stored(self) -> None:
-        """Say that a trial which a worker evaluated is stored."""
+        """Count a trial of a worker as stored."""
         self._stored += 1
 
     def for_pool(self, context: BaseContext) -> SharedGate:
-        """Make what a new pool of processes shares with this one."""
+        """Make the values that a new pool of processes shares with this one."""
         self._shared, self._stored = SharedGate(context), 0
         self._set(closed=self._closed)
         return self._shared
@@ -90,7 +90,7 @@ class SharedGate:
         self.waiting: Synchronized[int] = context.Value(c_int32, 0)
 
     def through(self, task: Callable[..., Answer], *arguments: object) -> Answer:
-        """Do a task once the gate is open."""
+        """Run a task once the gate is open."""
         if not self._entered():
             _count(self.waiting, 1)
             while not self._entered():
@@ -101,7 +101,7 @@ class SharedGate:
     def _entered(self) -> bool:
         if self.closed.value:
             return False
-        # Counted before the second look: a gate that is closed with none counted holds all.
+        # Counted before the second check: a gate that is closed with none counted holds all.
         _count(self.begun, 1)
         if not self.closed.value:
             return True
@@ -124,6 +124,6 @@ def keep_gate(gate: SharedGate | None) -> None:
 
 
 def through_gate(task: Callable[..., Answer], *arguments: object) -> Answer:
-    """Do a task in a worker process, once its gate is open."""
+    """Run a task in a worker process, once its gate is open."""
     gate = _gate_of_worker
     return task(*arguments) if gate is None else gate.through(task, *arguments)

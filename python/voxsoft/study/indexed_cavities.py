@@ -1,4 +1,4 @@
-"""Whether cavities that a study means by their index are the same ones in all of its trials."""
+"""Check that cavities that a study selects by index are the same ones in all of its trials."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from voxsoft.simulation.chambers import center_of, indices_used
 if TYPE_CHECKING:
     from voxsoft.study.trial import Trial
 
-#: As many trials are named one by one.
+#: Most trials that a warning lists by number.
 _NAMED: Final = 8
 
 
 @dataclass(frozen=True)
 class IndexedCavities:
-    """Where the cavities of one design are that it means by their index.
+    """Centers of the cavities of a design that selects some by their index.
 
     Attributes
     ----------
     indices
-        The index at each place of the design that has one, ``"loads[0].cavity"``.
+        Index at each place of the design that has one, ``"loads[0].cavity"``.
     centers
-        The center of every cavity, from 0 to 1 along each axis of the body's bounding box, so that
+        Center of every cavity, from 0 to 1 along each axis of the body's bounding box, so that
         bodies of other sizes can be compared; empty where no index is used.
     """
 
@@ -39,7 +39,7 @@ class IndexedCavities:
 
     @classmethod
     def of(cls, design: Design, mesh: Mesh) -> Self:
-        """Look at a design and its mesh."""
+        """Collect the indices of a design and the centers of its mesh's cavities."""
         indices = dict(indices_used(design))
         if not indices or not mesh.cavities:
             return cls()
@@ -49,13 +49,13 @@ class IndexedCavities:
 
     @classmethod
     def read(cls, record: Mapping[str, Any] | None) -> Self:
-        """Read what :meth:`record` wrote; older trials have None."""
+        """Read the output of :meth:`record`; older trials have None."""
         if record is None:
             return cls()
         return cls(record["indices"], tuple(tuple(center) for center in record["centers"]))
 
     def record(self) -> dict[str, Any]:
-        """The same as plain data."""
+        """Write the indices and centers as plain data."""
         return {"indices": dict(self.indices), "centers": [list(each) for each in self.centers]}
 
 
@@ -68,7 +68,7 @@ def switched_cavities(trials: Iterable[Trial]) -> Iterator[Diagnostic]:
     Parameters
     ----------
     trials
-        Of one study.
+        Trials of one study.
     """
     known = [trial for trial in trials if trial.cavities.centers]
     if not known:
@@ -95,5 +95,5 @@ def _means_another(trial: Trial, where: str, index: int, places: NDArray[np.floa
     if trial.cavities.indices.get(where) != index or index >= min(len(centers), len(places)):
         return False
     gaps = np.linalg.norm(places - np.array(centers[index]), axis=1)
-    # Of concentric cavities, which are equally near, the own one counts.
+    # Among concentric cavities, which are equally near, the own one counts.
     return bool(gaps.min() < gaps[index] - 1e-6)

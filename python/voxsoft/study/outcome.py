@@ -1,4 +1,4 @@
-"""What one evaluation of a design gave."""
+"""Outcome of one evaluation of a design."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ from voxsoft.study.indexed_cavities import IndexedCavities
 
 @dataclass(frozen=True)
 class Outcome:
-    """How an evaluation ended, and its numbers.
+    """Status of an evaluation, and its numbers.
 
     Attributes
     ----------
     status
-        ``ok``, or why the numbers cannot be compared.
+        ``ok``, or the reason why the numbers cannot be compared.
     message
         The status in a sentence.
     metrics
-        In SI units. An ``ok`` outcome holds every objective and constraint under its name.
+        Metrics in SI units. An ``ok`` outcome holds every objective and constraint under its name.
     seconds
         Wall-clock time of the evaluation.
     warnings
-        What is doubtful about the numbers, each in a sentence.
+        Warnings about the numbers, each in a sentence.
     cavities
-        Where the cavities are, if the design means any by an index.
+        Centers of the cavities, if the design selects any by an index.
     path
-        Where equilibria were followed: the values of what changed, by its key, and those of each
-        objective and constraint beside them.
+        Path of equilibria, if one was followed: the values of the varied key, by that key, and
+        those of each objective and constraint beside them.
     equilibrium
-        Where the body came to rest under the loads of the design, if it did.
+        Equilibrium under the loads of the design, if one was found.
     """
 
     status: Status
@@ -49,17 +49,17 @@ class Outcome:
     equilibrium: Equilibrium | None = field(default=None, repr=False, compare=False)
 
 
-#: Evaluates a design in a worker process; it is sent there by pickle.
+#: Function that evaluates a design in a worker process; it is sent there by pickle.
 Evaluate = Callable[[Design], Outcome]
 
 
 def evaluate_design(design: Design) -> Outcome:
-    """Simulate a design and give a status to whatever happens.
+    """Simulate a design and give a status to every result, errors included.
 
     Parameters
     ----------
     design
-        With the objectives and constraints of the study.
+        Design with the objectives and constraints of the study.
 
     Returns
     -------
@@ -76,20 +76,20 @@ def evaluate_design(design: Design) -> Outcome:
 
 
 def evaluate_path(over: str, design: Design) -> Outcome:
-    """Follow the equilibria of a design along a path, as :func:`evaluate_design` simulates one.
+    """Follow the equilibria of a design along a path; see :func:`evaluate_design`.
 
     Parameters
     ----------
     over
-        What changes, as :func:`voxsoft.follow` takes it.
+        Varied key and its values, as in :func:`voxsoft.follow`.
     design
-        With the objectives and constraints of the study; each says by `along` which number of the
-        path counts.
+        Design with the objectives and constraints of the study; each selects by `along` the number
+        of the path that counts.
 
     Returns
     -------
     Outcome
-        It has a path, too. A path that is lost is not ``ok``.
+        Outcome with a path. A path that is lost is not ``ok``.
 
     Examples
     --------
@@ -137,14 +137,14 @@ def _along(over: str, design: Design) -> Outcome:
 def evaluate_with_metrics(
     wanted: tuple[OwnMetric, ...], evaluate: Evaluate, design: Design
 ) -> Outcome:
-    """Evaluate a design where metrics of the user's are known: in a worker that knows them not yet.
+    """Evaluate a design after the user's metrics are imported, for workers that do not know them.
 
     Parameters
     ----------
     wanted
-        Metrics that the study asks for and VoxSoft does not have.
+        User's metrics that the study asks for.
     evaluate, design
-        What is done, and with what.
+        Evaluation, and its design.
     """
     missing = missing_metrics(wanted)
     if missing:
@@ -153,14 +153,14 @@ def evaluate_with_metrics(
 
 
 def outcome_of_result(result: Result, metrics: Mapping[str, float]) -> Outcome:
-    """Make an outcome of a result, with what is doubtful about it.
+    """Make an outcome of a result, with its warnings.
 
     Parameters
     ----------
     result
-        How the simulation ended.
+        Result of the simulation.
     metrics
-        Its numbers in SI units.
+        Metrics of the result in SI units.
     """
     warnings = tuple(str(warning) for warning in result.warnings)
     cavities = IndexedCavities.of(result.design, result.mesh)

@@ -16,8 +16,8 @@ from voxsoft.units import format_quantity
 def alike(trials: Iterable[Trial]) -> list[list[Trial]]:
     """Group trials whose metrics are equal to the last digit, in the order of the first of each.
 
-    Two bodies that differ in one voxel differ in their mass; what is equal in all that was measured
-    is one body on its grid, or differs in what changes nothing.
+    Two bodies that differ in one voxel differ in their mass; designs that are equal in all metrics
+    are one body on its grid, or differ in a parameter without effect.
     """
     groups: dict[tuple[tuple[str, float], ...], list[Trial]] = {}
     for trial in trials:
@@ -55,7 +55,7 @@ def repeated(trials: Iterable[Trial]) -> Iterator[Diagnostic]:
 
 
 def below_voxels(design: Design, space: Mapping[str, Domain]) -> Iterator[Diagnostic]:
-    """Warn of lengths that are varied by less than a voxel, before anything is solved.
+    """Warn of lengths that are varied by less than a voxel, before any trial is solved.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def below_voxels(design: Design, space: Mapping[str, Domain]) -> Iterator[Diagno
 
 
 def _step(domain: Domain) -> float | None:
-    """The least difference of two values that are tried; the whole range where any may be."""
+    """Return the least difference of two tried values; the whole range where any may be."""
     if isinstance(domain, Range):
         return float(domain.step or domain.high - domain.low)
     assert isinstance(domain, Choices)

@@ -1,4 +1,4 @@
-"""Which trials to evaluate next: all points of a grid, or what a sampler suggests."""
+"""Next trials to evaluate: all points of a grid, or the suggestions of a sampler."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Distributions = Mapping[str, BaseDistribution]
 
 @dataclass(frozen=True)
 class Proposal:
-    """A trial that is to be evaluated."""
+    """Trial that is to be evaluated."""
 
     number: int
     parameters: Mapping[str, Any]
@@ -58,22 +58,22 @@ def sampled_proposals(
     batch: int | None,
     sampler: Callable[[int], BaseSampler],
 ) -> Proposals:
-    """Propose what a sampler suggests, in batches, until the study holds `budget` trials.
+    """Propose trials from a sampler, in batches, until the study holds `budget` trials.
 
     Parameters
     ----------
     study
-        Where suggestions become trials.
+        Study in which suggestions become trials.
     space
-        The distribution of each parameter.
+        Distribution of each parameter.
     budget
         Number of trials in the end, those of earlier runs included.
     batch
         Trials suggested before their outcomes are seen; default: a generation for the genetic
         algorithm, 1 along gradients, else :data:`DEFAULT_BATCH`. Batches start at multiples of
-        it, so that a study that was stopped suggests what it would have suggested.
+        it, so that a study that was stopped and resumed gives the same suggestions.
     sampler
-        From the number of the next trial to the sampler that suggests it.
+        Function from the number of the next trial to the sampler that suggests it.
     """
     study.use(sampler(0))
     yield unfinished(study, space)
@@ -100,7 +100,7 @@ def seeded_samplers(
     """Make a sampler anew for each trial, seeded by the study's seed and the trial's number.
 
     A study that was stopped and resumed then suggests the same trials as one that ran through.
-    Optuna's samplers keep what they learn in the study, not in themselves.
+    Optuna's samplers keep their state in the study, not in themselves.
     """
     if name in ("genetic", "gradient"):
         # Generations are bred from one stream of random numbers; starts have seeds of their own.

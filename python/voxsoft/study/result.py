@@ -1,4 +1,4 @@
-"""What a study found."""
+"""Result of a study."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-#: Trials that a printed result lists.
+#: Number of trials that a printed result lists.
 _SHOWN: Final = 3
 
 
@@ -42,18 +42,18 @@ class StudyResult(Shown):
     name
         Name of the study.
     folder
-        Where it is stored, or None for a database.
+        Folder of the study, or None for a database.
     trials
         Every finished trial in order of its number, whatever its status.
     objectives
-        What was asked, by name.
+        Objectives by name.
     parameters
         Names of the parameters, in the order of the space.
     kinds
         Kind of quantity of each parameter by name (a key of :data:`voxsoft.units.KINDS`); empty
-        where the family is a function, which does not say.
+        where the family is a function, for which they are unknown.
     over
-        The path that each design was followed along; None where each was solved once.
+        Path that each design was followed along; None where each was solved once.
     """
 
     name: str
@@ -82,7 +82,7 @@ class StudyResult(Shown):
         return f"{', '.join(values)} at {', '.join(sizes)}"
 
     def _repr_html_(self) -> str:
-        """The table of all trials, as pandas shows it."""
+        """Show the table of all trials, as pandas does."""
         return str(self.table().to_html(max_rows=20))
 
     @property
@@ -93,22 +93,22 @@ class StudyResult(Shown):
 
     @property
     def best(self) -> Trial | None:
-        """The best feasible trial by the first objective, or None if there is none."""
+        """Best feasible trial by the first objective, or None if there is none."""
         return self.ranking[0] if self.ranking else None
 
     @cached_property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Why trials cannot be compared: they are one body, or an index of cavities changes."""
+        """Warnings against comparing trials: they are one body, or a cavity index switches."""
         return (*switched_cavities(self.trials), *repeated(self.trials))
 
     @cached_property
     def distinct(self) -> int:
-        """How many distinct bodies the solved designs are, by all that was measured of them."""
+        """Number of distinct bodies among the solved designs, by all of their metrics."""
         return len(alike(trial for trial in self.trials if trial.status == "ok"))
 
     @cached_property
     def ranks(self) -> tuple[int, ...]:
-        """The rank of each of :attr:`ranking`; designs that are one body share a place."""
+        """Rank of each trial of :attr:`ranking`; designs that are one body share a place."""
         places: dict[int, int] = {}
         for group in alike(self.ranking):
             first = 1 + min(self.ranking.index(trial) for trial in group)
@@ -117,13 +117,13 @@ class StudyResult(Shown):
 
     @cached_property
     def plateau(self) -> dict[str, tuple[float, float]]:
-        """Between which values of the parameters the best design stays one body; SI units."""
+        """Range of each parameter in which the best design stays one body; SI units."""
         groups = alike(self.ranking)
         return spans(groups[0]) if groups else {}
 
     @cached_property
     def ranking(self) -> tuple[Trial, ...]:
-        """The feasible trials, best by the first objective first."""
+        """Feasible trials, best by the first objective first."""
         return self.ranked_by(next(iter(self.objectives)))
 
     def ranked_by(self, objective: str) -> tuple[Trial, ...]:
@@ -148,7 +148,7 @@ class StudyResult(Shown):
     def pareto_front(self) -> tuple[Trial, ...]:
         """Feasible trials that no other beats in one objective without losing in another.
 
-        In order of the first objective, best first. Of trials with the same design only the
+        Sorted by the first objective, best first. Among trials with the same design only the
         first is listed.
         """
         candidates = [trial for trial in self.ranking if trial.same_as is None]
@@ -162,7 +162,7 @@ class StudyResult(Shown):
     def scatter(
         self, objective: str | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return what a scatter of parameters colored by an objective needs.
+        """Return the data of a scatter plot of parameters colored by an objective.
 
         Parameters
         ----------
@@ -186,7 +186,7 @@ class StudyResult(Shown):
     def history(
         self, objective: str | None = None
     ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-        """Return how an objective went from trial to trial.
+        """Return the history of an objective over the trials.
 
         Parameters
         ----------
@@ -338,7 +338,7 @@ class StudyResult(Shown):
         return name
 
     def _sign(self, objective: str) -> float:
-        """1 where smaller is better, -1 where larger is."""
+        """Return 1 where smaller is better, -1 where larger is."""
         return 1.0 if self.objectives[objective].direction == "minimize" else -1.0
 
     def _costs(self, trial: Trial) -> list[float]:

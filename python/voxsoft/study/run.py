@@ -1,4 +1,4 @@
-"""Evaluate proposals on workers and store every outcome as it comes."""
+"""Evaluation of proposals on workers, and storage of every outcome as it comes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from voxsoft.study.proposals import Proposal
 from voxsoft.study.trial import OUTCOME_KEY, Trial, outcome_of, read_trial, record_of
 from voxsoft.study.workers import Workers
 
-#: Seconds between two looks at a gate that is closed.
+#: Seconds between two checks of a closed gate.
 _LOOK: Final = 0.05
 
 Build = Callable[[Mapping[str, Any]], Design]
@@ -41,15 +41,15 @@ class StudyRun:
     Parameters
     ----------
     study
-        Where trials are stored; only this process writes it.
+        Storage of the trials; only this process writes it.
     build
-        From parameters to the design.
+        Function from parameters to the design.
     evaluate
-        From the design to its outcome, on a worker.
+        Function from the design to its outcome, on a worker.
     objectives, constraints
-        Of the study, by name.
+        Objectives and constraints of the study, by name.
     workers
-        Who evaluates.
+        Workers that evaluate.
     progress
         Called after each trial.
     total
@@ -57,7 +57,7 @@ class StudyRun:
     gate
         While it is closed no trial begins; those that have are stored as they end.
     equilibria
-        Where to keep the states of designs that came to rest, if anywhere.
+        Storage for the states of designs that came to rest, if any.
     """
 
     study: StoredStudy
@@ -78,7 +78,7 @@ class StudyRun:
     _done: int = 0
 
     def __post_init__(self) -> None:
-        """Take over what earlier runs stored."""
+        """Take over the outcomes that earlier runs stored."""
         for stored in self.study.trials():
             if OUTCOME_KEY not in stored.user_attrs:
                 continue
@@ -88,14 +88,14 @@ class StudyRun:
             self._learn(read_trial(stored, self.objectives, self.constraints), outcome_of(record))
 
     def evaluate_all(self, batches: Iterable[Iterable[Proposal]]) -> None:
-        """Evaluate batch after batch; each is asked for once the one before is stored."""
+        """Evaluate batch after batch; each is drawn once the one before is stored."""
         with Interrupts() as interrupts:
             for batch in batches:
                 for proposal in batch:
                     interrupts.stop_if_interrupted()
                     self._wait_for_gate(interrupts)
                     self._begin(proposal)
-                    # A few more than run at once wait at the workers, so that none is idle.
+                    # Queue a few more than run at once at the workers, so that none is idle.
                     while len(self._running) >= 2 * self.workers.slots:
                         self._collect()
                 while self._running:
@@ -128,13 +128,13 @@ class StudyRun:
         try:
             future = self.workers.submit(self.evaluate, job.design)
         except BrokenExecutor:
-            # Noticed by the pool before any of its futures said so.
+            # The pool noticed a dead worker before any of its futures reported it.
             self._recover([])
             future = self.workers.submit(self.evaluate, job.design)
         self._running[future] = job
 
     def _collect(self, patience: float | None = None) -> None:
-        """Store what has finished; wait for at least one trial, or for some seconds."""
+        """Store finished trials; wait for at least one, or for some seconds."""
         lost = []
         try:
             finished, _ = wait(self._running, patience, FIRST_COMPLETED)
@@ -151,7 +151,7 @@ class StudyRun:
             self._recover(lost)
 
     def _keep_finished(self) -> None:
-        """Store what has finished before the study stops; nobody is told of it any more."""
+        """Store finished trials before the study stops, without calling `progress`."""
         self.progress = None
         for future in [each for each in self._running if each.done()]:
             job = self._running.pop(future)
@@ -187,7 +187,7 @@ class StudyRun:
             self.gate.stored()
 
     def _finish(self, job: _Job, outcome: Outcome) -> None:
-        # The state first: whoever is told of the trial may look for it.
+        # Store the state first: a listener may look for it when it learns of the trial.
         if outcome.equilibrium is not None:
             if self.equilibria is not None:
                 self.equilibria.keep(job.hash, outcome.equilibrium)
@@ -211,7 +211,7 @@ class StudyRun:
             self.progress(TrialEvent(trial, self._best, self._done, total, self._doubts))
 
     def _tell(self, number: int, outcome: Outcome) -> None:
-        """Tell the sampler, which learns to avoid designs that cannot be solved."""
+        """Report a trial to the sampler, which learns to avoid designs that cannot be solved."""
         if outcome.status == "ok":
             values = [outcome.metrics[name] for name in self.objectives]
             self.study.tell(number, values)
@@ -231,7 +231,7 @@ class StudyRun:
 
 
 def _outcome(future: Future[Outcome], objectives: Mapping[str, Objective]) -> Outcome:
-    """Read the answer of a worker; whatever went wrong there becomes a status."""
+    """Read the answer of a worker; an error there becomes a status."""
     try:
         outcome = future.result()
     except CancelledError:

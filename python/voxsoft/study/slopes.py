@@ -1,4 +1,4 @@
-"""Trials that also tell how their numbers change with the parameters."""
+"""Trials with derivatives of their objectives and constraints by the parameters."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from voxsoft.simulation.path_gradient import LARGEST_WITH_FRICTION, has_friction
 from voxsoft.study.outcome import Outcome, outcome_of_result
 from voxsoft.study.trial import OUTCOME_KEY
 
-# Residual of each solution: slopes are as right as the state.
+# Residual of each solution: slopes are as exact as the state.
 _TOLERANCE: Final = 1e-8
 # A descent ends on a bound from either side, by less than this part of it; aiming so far inside
 # keeps its end feasible.
@@ -43,7 +43,7 @@ def evaluate_slopes(design: Design, parameters: Sequence[str]) -> Outcome:
     Parameters
     ----------
     design
-        With the objectives and constraints of the study.
+        Design with the objectives and constraints of the study.
     parameters
         Names of the parameters.
 
@@ -83,12 +83,12 @@ def answers_of(
     constraints: Mapping[str, Constraint],
     parameters: Sequence[str],
 ) -> Callable[[FrozenTrial], Answer | None]:
-    """Read what trials of a study told, for the sampler.
+    """Make a function that reads the trials of a study for the sampler.
 
     Parameters
     ----------
     objectives
-        One, made small: a maximum is the minimum of its negative.
+        One objective, minimized: a maximum is the minimum of its negative.
     constraints
         Each bound is scaled by its size.
     parameters
@@ -120,7 +120,7 @@ def answers_of(
                 np.array(limits),
                 np.array(slopes).reshape(len(limits), len(parameters)),
             )
-        except KeyError:  # the outcome of another sampler, which asked for no slopes
+        except KeyError:  # the outcome of another sampler, which computed no slopes
             return None
 
     return answer
@@ -132,7 +132,7 @@ def require_slopes(family: object, parameters: Sequence[str]) -> Design:
     Raises
     ------
     StudyError
-        Saying what to use in place of it.
+        Names an alternative.
     """
     if not isinstance(family, Design):
         what = '"gradient" needs a parametric design, and the family is a function'

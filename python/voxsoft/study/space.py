@@ -1,4 +1,4 @@
-"""The space a study searches: a range or a list of choices for each parameter."""
+"""Search space of a study: a range or a list of choices for each parameter."""
 
 from __future__ import annotations
 
@@ -60,14 +60,15 @@ class Range(Record):
 
     @property
     def distribution(self) -> BaseDistribution:
-        """The same as Optuna writes it."""
+        """Optuna's distribution of the range."""
         from optuna.distributions import FloatDistribution, IntDistribution  # slow to load
 
         if isinstance(self.low, int) and isinstance(self.high, int) and _whole(self.step):
             return IntDistribution(self.low, self.high, log=self.log, step=int(self.step or 1))
         if self.step is None:
             return FloatDistribution(float(self.low), float(self.high), log=self.log)
-        # Optuna shortens a range that is no multiple of its step, with a warning: say it here.
+        # Optuna shortens a range that is no multiple of its step, with a warning: done here
+        # instead.
         count = int((self.high - self.low) / self.step * (1 + 1e-9))
         last = round_significant(self.low + count * self.step)
         return FloatDistribution(float(self.low), last, step=float(self.step))
@@ -88,21 +89,21 @@ class Choices(Record):
 
     @property
     def distribution(self) -> BaseDistribution:
-        """The same as Optuna writes it."""
+        """Optuna's distribution of the choices."""
         from optuna.distributions import CategoricalDistribution  # slow to load
 
         return CategoricalDistribution(self.values)
 
 
-#: What one parameter may be.
+#: Domain of one parameter.
 Domain = Range | Choices
 
-#: What one parameter may be, by name.
+#: Domain of each parameter, by name.
 Space = Mapping[str, Domain]
 
 
 def space_of(design: Design) -> dict[str, Domain]:
-    """Read the space of a parametric design: every parameter with a min and a max.
+    """Read the search space of a parametric design: every parameter with a min and a max.
 
     Raises
     ------
@@ -130,12 +131,12 @@ def space_of(design: Design) -> dict[str, Domain]:
 
 
 def read_space(given: Mapping[str, object], design: Design | None) -> dict[str, Domain]:
-    """Read a space as a user types it.
+    """Read a search space in the form that users type.
 
     Parameters
     ----------
     given
-        By name: a :class:`Range` or :class:`Choices`; a tuple ``(low, high)``,
+        Domain by name: a :class:`Range` or :class:`Choices`; a tuple ``(low, high)``,
         ``(low, high, step)`` or ``(low, high, "log")``; or a list or array of choices. Numbers are
         SI; texts such as ``"5 mm"`` carry their unit.
     design
@@ -196,7 +197,7 @@ def _read(given: object, parameter: Parameter | None) -> Domain:
 
 
 def _number(value: Any, parameter: Parameter | None) -> Any:  # noqa: ANN401 - the models check it
-    """Bring a text with a unit, and a quantity of pint, to SI; leave everything else."""
+    """Convert a text with a unit, or a quantity of pint, to SI; leave other values alone."""
     if not isinstance(value, str) and not is_pint(value):
         return value
     quantity = quantity_of(value, "") if is_pint(value) else parse_any(value, where="")

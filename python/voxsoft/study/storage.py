@@ -1,4 +1,4 @@
-"""Where the trials of a study are kept: a folder, or a database that Optuna can reach."""
+"""Storage of the trials of a study: a folder, or a database that Optuna can reach."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _DEFINITION_KEY: Final = "definition"
 
 
 class TrialStorage:
-    """The stored trials of one study.
+    """Stored trials of one study.
 
     Parameters
     ----------
@@ -36,9 +36,9 @@ class TrialStorage:
     directions
         ``maximize`` or ``minimize`` for each objective.
     definition
-        What the study is about; a storage that holds another definition is refused.
+        Definition of the study; a storage that holds another one is refused.
     place
-        A folder, or an Optuna storage: its URL or the object.
+        Folder, or Optuna storage: its URL or the object.
 
     Raises
     ------
@@ -58,7 +58,7 @@ class TrialStorage:
 
     @property
     def where(self) -> str:
-        """The folder, or the name of the study in its database."""
+        """Folder, or the name of the study in its database."""
         return str(self._place) if isinstance(self._place, Path) else f'study "{self._name}"'
 
     @contextlib.contextmanager
@@ -108,7 +108,7 @@ class TrialStorage:
         return stored
 
     def _refuse_a_folder_of_another_name(self) -> None:
-        """Tables and pictures beside the journal are those of one study."""
+        """Raise if the folder holds the tables and pictures of a study of another name."""
         if not isinstance(self._place, Path):
             return
         with StudyJournal(self._place / JOURNAL_NAME, write=False) as journal:
@@ -119,7 +119,7 @@ class TrialStorage:
 
     @staticmethod
     def _write_definition(folder: Path, definition: Mapping[str, Any]) -> None:
-        """Write a copy of the definition for people; the journal holds the one that counts."""
+        """Write a copy of the definition for people; the journal holds the valid one."""
         text = json.dumps(definition, indent=2, ensure_ascii=False) + "\n"
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -131,7 +131,7 @@ class TrialStorage:
 
 @contextlib.contextmanager
 def _database_errors(where: str) -> Iterator[None]:
-    """Turn the errors of a database into ours."""
+    """Convert the errors of a database to StorageError or StudyError."""
     # Optuna brings SQLAlchemy along; it is slow to import and studies in a folder do without.
     from sqlalchemy.exc import SQLAlchemyError
 

@@ -1,4 +1,4 @@
-"""The study: what a user makes, runs, and resumes."""
+"""Study: made, run and resumed by a user."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _Target = TypeVar("_Target", Objective, Constraint)
 
 
 class Study:
-    """A design family, a space of its parameters, and what makes a design good.
+    """Design family with a search space of its parameters, objectives and constraints.
 
     Trials are stored as they finish. A study that was stopped, by Ctrl-C, a crash or a power
     cut, goes on when the same lines run again, and never repeats a finished trial. Parameters
@@ -57,30 +57,30 @@ class Study:
         A parametric :class:`~voxsoft.design.Design`, or a function from parameters (as keywords)
         to a design. Default: the paper's cylindrical actuator, 105 designs.
     space
-        What each parameter may be, by name: ``(low, high)``, ``(low, high, step)``,
+        Domain of each parameter, by name: ``(low, high)``, ``(low, high, step)``,
         ``(low, high, "log")`` in SI units or texts with units, or a list of choices. Default:
         every parameter of the design that has a min and a max. A function needs a space.
     objectives
-        By name; several make a study with a Pareto front. Default: those of the design.
+        Objectives by name; several make a study with a Pareto front. Default: those of the design.
     constraints
         Metrics to keep within bounds, by name. Default: those of the design. A trial that
         breaks one is recorded and not feasible.
     folder
-        Where trials are stored; default ``studies/NAME``. One process at a time writes it. The
+        Folder of the trials; default ``studies/NAME``. One process at a time writes it. The
         equilibria of its designs are kept there too, up to 256 MB, so that the studio shows them
         at once.
     storage
         An Optuna storage, as its URL or object; trials then go there and not to the folder.
     name
-        Default: the name of the design or function.
+        Name of the study; default: the name of the design or function.
     seed
-        Decides every suggestion of a sampler, whatever the number of workers.
+        Seed of every suggestion of a sampler, whatever the number of workers.
     over
-        A path of equilibria that each design is followed along, as :func:`voxsoft.follow` takes it:
-        ``"loads[0].value=0..30 kPa/8"``. Objectives and constraints say by `along` which number of
-        it counts. Default: each design is solved once.
+        A path of equilibria that each design is followed along, see :func:`voxsoft.follow`:
+        ``"loads[0].value=0..30 kPa/8"``. Objectives and constraints select by `along` the number of
+        the path that counts. Default: each design is solved once.
     evaluate
-        From a design to an :class:`~voxsoft.study.Outcome` that holds each objective and
+        Function from a design to an :class:`~voxsoft.study.Outcome` that holds each objective and
         constraint under its name; default: simulate, or follow the path. It must be importable
         where the workers are.
 
@@ -133,7 +133,8 @@ class Study:
                 "are missing",
                 'write {"rise": {"maximize": "displacement", "probe": "top", "axis": "z"}}',
             )
-        # Of a design, once for all trials; a function may return one with other probes each time.
+        # Set once for all trials of a design; a function may return one with other probes each
+        # time.
         self._asked = None if own is None else self._asking(own)
         usual = Path("studies", folder_name(self.name, "study"))
         beside = Path(folder or usual)
@@ -189,7 +190,7 @@ class Study:
             A range without a step; a storage that is full, damaged or in use; workers that do
             not start.
         KeyboardInterrupt
-            After Ctrl-C; finished trials are stored, and the message says how to go on.
+            After Ctrl-C; finished trials are stored, and the message explains how to go on.
         """
         space, total = self._distributions, self.grid_size
         return self._run(
@@ -224,7 +225,7 @@ class Study:
             :meth:`grid` and ends with it.
         budget
             Number of trials in the end, whatever their status, those of earlier runs included.
-            A study that was stopped suggests what it would have suggested; one whose budget is
+            A study that was stopped gives the same suggestions when it goes on; one whose budget is
             raised later sees the outcomes of its last, cut batch earlier.
         batch
             Trials that are suggested before their outcomes are seen. Suggestions depend on it,
@@ -232,7 +233,7 @@ class Study:
             ``"gradient"`` (more are further starts), else 8;
             a cluster of more workers than that needs a larger one to be busy.
         executor, scheduler, workers, progress, gate
-            As for :meth:`grid`.
+            See :meth:`grid`.
 
         Returns
         -------
@@ -242,11 +243,11 @@ class Study:
         Raises
         ------
         StudyError
-            As for :meth:`grid`; an unknown sampler, or one that cannot take the objectives.
+            The errors of :meth:`grid`; an unknown sampler, or one that cannot take the objectives.
         MissingPackageError
             ``"gp"`` without PyTorch.
         KeyboardInterrupt
-            After Ctrl-C; finished trials are stored, and the message says how to go on.
+            After Ctrl-C; finished trials are stored, and the message explains how to go on.
         """
         if budget < 1 or (batch is not None and batch < 1):
             raise StudyError("budget" if budget < 1 else "batch", "expected at least 1")
@@ -273,7 +274,7 @@ class Study:
                 evaluate = partial(evaluate_slopes, parameters=tuple(space))
                 answers = answers_of(self.objectives, self.constraints, tuple(space))
             samplers = seeded_samplers(sampler, space, self.seed, constraints, answers)
-            samplers(0)  # says what is wrong with it before any worker starts
+            samplers(0)  # raises for bad settings before any worker starts
         else:
             own: BaseSampler = sampler
             samplers = lambda number: own  # noqa: E731
@@ -289,13 +290,13 @@ class Study:
         )
 
     def result(self) -> StudyResult:
-        """Return what is stored so far, also while another process runs the study."""
+        """Return the trials that are stored so far, also while another process runs the study."""
         with self._storage.open(write=False) as study:
             return self._result(study)
 
     @property
     def begun(self) -> int:
-        """Number of trials that are stored, those included that were begun and not finished."""
+        """Number of stored trials, unfinished ones included."""
         with self._storage.open(write=False) as study:
             return len(study.trials())
 
@@ -354,7 +355,7 @@ class Study:
             return self._result(study)
 
     def _build(self, parameters: Mapping[str, Any]) -> Design:
-        """Make the design of one trial, which asks for what the study asks."""
+        """Make the design of one trial, with the objectives and constraints of the study."""
         if self._asked is not None:
             return self._asked.with_parameters(**parameters)
         design = self.family(**parameters) if callable(self.family) else self.family
@@ -363,7 +364,7 @@ class Study:
         return self._asking(design)
 
     def _asking(self, design: Design) -> Design:
-        """The design with the objectives and constraints of the study."""
+        """Return the design with the objectives and constraints of the study."""
         return design.replace(objectives=self.objectives, constraints=self.constraints)
 
     def _violations(self, trial: FrozenTrial) -> tuple[float, ...]:
@@ -387,7 +388,7 @@ class Study:
 
     @property
     def _kinds(self) -> dict[str, str]:
-        """Kind of quantity of each parameter, which only a parametric design tells."""
+        """Kind of quantity of each parameter, known only for a parametric design."""
         parameters = self.family.parameters if isinstance(self.family, Design) else {}
         return {name: parameters[name].kind for name in self.space if name in parameters}
 
@@ -400,12 +401,12 @@ class Study:
 
 
 def _evaluate(over: str | None, evaluate: Evaluate | None) -> Evaluate:
-    """What is done with each design."""
+    """Return the function that evaluates each design."""
     if over is None:
         return evaluate or evaluate_design
     if evaluate is not None:
         raise StudyError("over", "is not used beside an evaluate of your own", "give one of them")
-    Over.read(over)  # says what is wrong with it before any worker starts
+    Over.read(over)  # raises for a bad path before any worker starts
     return partial(evaluate_path, over)
 
 

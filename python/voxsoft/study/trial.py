@@ -14,42 +14,42 @@ from voxsoft.study.indexed_cavities import IndexedCavities
 from voxsoft.study.outcome import Outcome
 from voxsoft.units import round_significant
 
-#: Where the outcome of a trial is kept among the attributes of Optuna's trial.
+#: Key of the outcome of a trial among the user attributes of Optuna's trial.
 OUTCOME_KEY = "outcome"
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One evaluated design, whatever became of it.
+    """One evaluated design, whatever its status.
 
     Attributes
     ----------
     number
-        Its place in the study, from 0.
+        Number of the trial in the study, from 0.
     parameters
-        By name, in SI units.
+        Parameters by name, in SI units.
     status, message
-        How the evaluation ended; only ``ok`` trials have objectives that may be compared.
+        Status of the evaluation; only ``ok`` trials have objectives that may be compared.
     objectives
-        By name, in SI units; empty unless the status is ``ok``.
+        Objectives by name, in SI units; empty unless the status is ``ok``.
     metrics
-        Everything else that was measured, if anything was.
+        All other metrics, if any were measured.
     feasible
-        Whether the status is ``ok`` and every constraint holds.
+        True if the status is ``ok`` and every constraint holds.
     hash
-        Identity of the design; empty if there was none.
+        Hash of the design; empty if there was none.
     same_as
         Number of the trial with the same design whose outcome this trial shares, or None if it
         was evaluated itself.
     seconds
         Wall-clock time of the evaluation; 0 for a shared outcome.
     warnings
-        What is doubtful about the numbers, each in a sentence.
+        Warnings about the numbers, each in a sentence.
     cavities
-        Where the cavities are, if the design means any by an index.
+        Centers of the cavities, if the design selects any by an index.
     path
-        In a study along a path: what changed, by its key, and the objectives and constraints beside
-        it, in SI units.
+        Values of the varied key in a study along a path, and the objectives and constraints
+        beside them, in SI units.
     """
 
     number: int
@@ -84,7 +84,7 @@ def rounded(parameters: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def record_of(outcome: Outcome, design_hash: str, same_as: int | None) -> dict[str, Any]:
-    """Write an outcome as plain data, as :func:`read_trial` reads it."""
+    """Write an outcome as plain data, for :func:`read_trial`."""
     record = {
         "status": outcome.status,
         "message": outcome.message,
@@ -123,7 +123,7 @@ def read_trial(
     stored
         A trial with an outcome among its attributes.
     objectives, constraints
-        Those of the study, by name.
+        Objectives and constraints of the study, by name.
     """
     record = stored.user_attrs[OUTCOME_KEY]
     metrics, ok = record["metrics"], record["status"] == "ok"
@@ -147,12 +147,12 @@ def read_trial(
 
 
 def _number(value: float | None) -> float:
-    """A metric as a number; None, as an evaluation of the user's may say it, is unknown."""
+    """Return a metric as a number; None, as a user's evaluation may return, is unknown (NaN)."""
     return nan if value is None else float(value)
 
 
 def _warnings(record: Mapping[str, Any]) -> tuple[str, ...]:
-    """Those of a record; journals that are older than warnings have none."""
+    """Return the warnings of a record; journals that are older than warnings have none."""
     return tuple(record.get("warnings", ()))
 
 
@@ -163,7 +163,7 @@ def _path(record: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
 def violations(
     metrics: Mapping[str, float], constraints: Mapping[str, Constraint]
 ) -> tuple[float, ...]:
-    """Say by how much each bound is broken: at most 0 where it holds, infinite if unknown.
+    """Return the violation of each bound: at most 0 where it holds, infinite if unknown.
 
     A metric that is missing, None or NaN is unknown: comparisons with NaN are all false, so that
     the largest of some numbers would depend on their order.

@@ -1,4 +1,4 @@
-"""Who evaluates the trials: processes of this machine, any executor, or a Dask cluster."""
+"""Workers that evaluate the trials: processes of this machine, any executor, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ from voxsoft.study.gate import Gate, SharedGate, keep_gate, through_gate
 
 #: Seconds to wait for a Dask scheduler.
 DASK_TIMEOUT: Final = 10.0
-#: What a worker process takes with a small body: 25 MB were measured, its share of common pages
+#: Memory of a worker process with a small body: 25 MB were measured, its share of common pages
 #: included, and as much again for larger ones.
 _WORKER_BYTES: Final = 50 * 10**6
-#: Seconds for the thread that minds a pool whose processes were killed to see it.
+#: Seconds for the manager thread of a pool to notice that its processes were killed.
 _MANAGER_PATIENCE: Final = 5.0
 
 Answer = TypeVar("Answer")
 
 
 class Workers(Protocol):
-    """What evaluates trials, some side by side."""
+    """Workers that evaluate trials, some side by side."""
 
     @property
     def slots(self) -> int:
-        """How many trials run side by side."""
+        """Number of trials that run side by side."""
         ...
 
     def submit(self, task: Callable[..., Answer], *arguments: object) -> Future[Answer]:
@@ -42,11 +42,11 @@ class Workers(Protocol):
         ...
 
     def recover(self) -> None:
-        """Make ready for more after a worker died (:class:`BrokenExecutor`)."""
+        """Prepare for further tasks after a worker died (:class:`BrokenExecutor`)."""
         ...
 
     def close(self, *, now: bool) -> None:
-        """Let go of everything that this object started, also of running tasks if `now`."""
+        """Release everything that this object started, also running tasks if `now`."""
         ...
 
 
@@ -56,7 +56,7 @@ def make_workers(
     count: int | None,
     gate: Gate | None = None,
 ) -> Workers:
-    """Choose who evaluates.
+    """Choose the workers.
 
     Parameters
     ----------
@@ -66,9 +66,9 @@ def make_workers(
         Address of a running Dask scheduler, ``"tcp://host:port"``.
     count
         Processes on this machine; default: one for each core this process may use. With an
-        executor: how many trials to hand it at a time (default the same).
+        executor: the number of trials to hand it at a time (default the same).
     gate
-        What tasks of processes of this machine wait for.
+        Gate that the tasks of processes of this machine wait for.
 
     Raises
     ------
@@ -118,8 +118,8 @@ class LocalProcesses:
         try:
             return self._pool.submit(through_gate, task, *arguments)
         except OSError as error:
-            # The pool was starting a worker as it noticed that another one had died: it closes the
-            # pipes that the new one would have had.
+            # The pool was starting a worker when it noticed that another one had died: it closes
+            # the pipes of the new one.
             raise BrokenExecutor("a worker died while another one was started") from error
 
     def recover(self) -> None:
@@ -133,10 +133,10 @@ class LocalProcesses:
             self._pool.shutdown(cancel_futures=True)
             return
         for process in self._context.processes:
-            if process.pid is not None:  # it was started
+            if process.pid is not None:  # was started
                 process.kill()
-        # The thread that minds the pool closes its pipe; the end of the program, which writes to
-        # it, must not come between.
+        # The manager thread of the pool closes its pipe; the exit of the program, which writes to
+        # it, must not come first.
         ending = threading.Thread(
             target=self._pool.shutdown, kwargs={"cancel_futures": True}, daemon=True
         )
@@ -172,7 +172,7 @@ class LocalProcesses:
 
 
 class _RememberingContext:
-    """A way to start processes that knows those it started: a pool does not tell its own."""
+    """Multiprocessing context that records the processes it started, which a pool hides."""
 
     def __init__(self, context: BaseContext) -> None:
         self._context = context
@@ -190,7 +190,7 @@ class _RememberingContext:
 
 
 class ForeignExecutor:
-    """An executor of the user's, which stays open."""
+    """User's executor, which stays open."""
 
     def __init__(self, executor: Executor, slots: int) -> None:
         self._executor, self.slots = executor, slots
@@ -213,7 +213,7 @@ class ForeignExecutor:
 
 
 class DaskCluster:
-    """A running Dask cluster, which replaces lost workers and repeats their tasks itself."""
+    """Running Dask cluster, which replaces lost workers and repeats their tasks itself."""
 
     def __init__(self, address: str) -> None:
         try:
@@ -259,7 +259,7 @@ def require_metrics(workers: Workers, wanted: tuple[OwnMetric, ...]) -> None:
     Raises
     ------
     StudyError
-        They do not: the metrics were typed into a session, or stand in a module that the workers
+        They do not: the metrics were typed into a session, or are in a module that the workers
         cannot import.
     """
     missing = workers.submit(missing_metrics, wanted).result() if wanted else ()

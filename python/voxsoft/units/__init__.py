@@ -1,7 +1,7 @@
 """Physical quantities: plain SI floats in Python, text with a unit in files.
 
-Inside VoxSoft every number is SI and ``float``. For typing there are factors, so that
-``5 * mm`` reads as it should; in a design file a number carries its unit as text, ``"5 mm"``.
+Inside VoxSoft every number is SI and ``float``. For input in Python there are factors, so that
+``5 * mm`` is 5 millimeters; in a design file a number carries its unit as text, ``"5 mm"``.
 The annotated types (:data:`Length`, :data:`Pressure`, ...) let a pydantic model take either:
 a float that is SI already, or text with a unit of the right kind. When a *file* is read
 (validation context ``{"source": "file"}``) a bare number other than zero is refused.

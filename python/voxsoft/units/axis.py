@@ -1,4 +1,4 @@
-"""Axes: those of coordinates by name, or any direction."""
+"""Axes: coordinate axes by name, or any direction."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _AXES: dict[str, tuple[float, float, float]] = {
 
 
 def direction(axis: str | tuple[float, float, float]) -> tuple[float, float, float]:
-    """Return the three numbers of an axis.
+    """Return the unit vector of a named axis; other directions as they are.
 
     Examples
     --------

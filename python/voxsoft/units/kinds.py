@@ -26,13 +26,13 @@ class Dimension(NamedTuple):
     temperature: int = 0
 
     def times(self, other: Dimension, power: int = 1) -> Dimension:
-        """Dimension of a product with `other` raised to `power`."""
+        """Return the dimension of a product with `other` raised to `power`."""
         return Dimension(*(a + power * b for a, b in zip(self, other, strict=True)))
 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A number in SI units together with its dimension; what a formula evaluates to."""
+    """Number in SI units together with its dimension; the value of a formula."""
 
     value: float
     dimension: Dimension
@@ -42,15 +42,15 @@ class Quantity:
 
 
 class Number(float):
-    """What a formula without dimension evaluates to.
+    """Value of a formula without dimension.
 
-    A plain float stands for SI where a unit belongs; this one is known to be no quantity.
+    A plain float counts as SI where a unit is expected; this one is known to be no quantity.
     """
 
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """A kind of quantity: its name, dimension and the units it is written in, preferred first."""
+    """Kind of quantity: its name, dimension and the units it is written in, preferred first."""
 
     name: str
     dimension: Dimension
@@ -58,7 +58,7 @@ class Kind:
 
     @property
     def article(self) -> str:
-        """The name with its article, as error messages say it: ``"an area"``."""
+        """Name with its article, for error messages: ``"an area"``."""
         return f"{'an' if self.name[0] in 'aeiou' else 'a'} {self.name}"
 
     @property
@@ -103,7 +103,7 @@ KINDS: Final = MappingProxyType({kind.name: kind for kind in _ALL})
 
 
 def describe_dimension(dimension: Dimension) -> str:
-    """Say a dimension in words: the kind's name, or the exponents where it has none.
+    """Describe a dimension in words: the kind's name, or the exponents where it has none.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Read and write quantities as text: ``"5 mm"``, ``"1070 kg/m^3"``, ``"9.81 m/s^2"``."""
+"""Reading and writing of quantities as text: ``"5 mm"``, ``"1070 kg/m^3"``, ``"9.81 m/s^2"``."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SIGNIFICANT_DIGITS: Final = 12
 
 _LONGEST_TEXT: Final = 120
-_LONGEST_SHOWN: Final = 40  # degrees of an angle in radians have digits without end
+_LONGEST_SHOWN: Final = 40  # degrees of an angle in radians have infinitely many digits
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?")
 _JOINT: Final = r"(\s*[*/]\s*|\s+)"
 _NAME: Final = r"([A-Za-z\u00b5\u03bc°%]+|1)(?:\^?(-?[1-9]))?(?![\d.])"
@@ -34,8 +34,8 @@ _LENGTH, _MASS, _TIME, _ANGLE = (KINDS[k].dimension for k in ("length", "mass", 
 _PRESSURE, _FORCE = KINDS["pressure"].dimension, KINDS["force"].dimension
 _ENERGY, _VOLUME, _RATE = (KINDS[k].dimension for k in ("energy", "volume", "rate"))
 
-#: The units that soft-robotics designs are written in. Everything else is asked of pint,
-#: whose registry takes most of a second to load.
+#: Common units of soft-robotics designs. Most others are looked up by pint, whose registry takes
+#: most of a second to load.
 COMMON_UNITS: Final[dict[str, Dimension]] = {
     **dict.fromkeys(("um", "mm", "cm", "m", "inch"), _LENGTH),
     **dict.fromkeys(("mg", "g", "kg"), _MASS),
@@ -62,12 +62,12 @@ def parse(text: str, kind: str, *, where: str = "") -> float:
     kind
         A key of :data:`voxsoft.units.KINDS`, such as ``"length"``.
     where
-        The place to name in an error; default: the kind.
+        Place to name in an error; default: the kind.
 
     Returns
     -------
     float
-        The value in SI units.
+        Value in SI units.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def parse(text: str, kind: str, *, where: str = "") -> float:
         return _without_unit(number, text, where, due)
     quantity = _quantity(number, unit, text, where)
     if quantity.dimension != due.dimension:
-        # Its number in another unit would be another quantity.
+        # Without its number: in another unit it would be another quantity.
         hint = weight(quantity.value, quantity.dimension, due.dimension) or _units_of(due)
         is_of = describe_dimension(quantity.dimension)
         raise UnitError(where, f'"{text}" is {is_of}; {_expected(due)}', hint)
@@ -114,7 +114,7 @@ def parse_any(text: str, *, where: str = "quantity") -> Quantity:
 
 
 def format_percent(share: float) -> str:
-    """Write a share in percent with two digits, as people read it: never with an exponent.
+    """Write a share in percent with two digits, in common notation: never with an exponent.
 
     Examples
     --------
@@ -158,9 +158,9 @@ def format_quantity(value: float, kind: str) -> str:
 
 
 def write_exactly(value: float, kind: str) -> str:
-    """Write an SI value with a unit, with as many digits as it takes to read the same value back.
+    """Write an SI value with a unit, with enough digits to read the same value back.
 
-    Twelve digits do for whatever a person typed; :func:`format_quantity` always stops there.
+    Twelve digits are enough for any typed value; :func:`format_quantity` always stops there.
 
     Examples
     --------
@@ -203,7 +203,7 @@ def _plain(number: Decimal) -> str:
 
 
 def _split(text: str, where: str, due: Kind | None) -> tuple[str, str]:
-    """Cut `text` into its number and its unit, both still text."""
+    """Split `text` into its number and its unit, both still text."""
     stripped = text.strip()
     example = due.example if due else "5 mm"
     match = _NUMBER.match(stripped) if len(stripped) <= _LONGEST_TEXT else None
@@ -254,7 +254,7 @@ def _suggest(number: str, kind: Kind) -> str:
 
 
 def _unit(unit: str, text: str, where: str) -> tuple[Decimal, Dimension]:
-    """Factor to SI and dimension of a compound unit such as ``kg/m^3`` or ``N*m``."""
+    """Return factor to SI and dimension of a compound unit such as ``kg/m^3`` or ``N*m``."""
     normalized = unit.translate(_SUPERSCRIPTS).replace("·", "*").replace("**", "^")
     normalized = normalized.replace("H2O", "HHO")  # its digit is no power
     if normalized.startswith("/"):
@@ -273,7 +273,7 @@ def _unit(unit: str, text: str, where: str) -> tuple[Decimal, Dimension]:
 
 
 def is_pint(value: object) -> bool:
-    """Whether a value is a quantity of pint, from whatever registry; pint is not loaded for it."""
+    """Return True for a quantity of pint, from any registry, without loading pint."""
     return hasattr(value, "magnitude") and hasattr(value, "to_base_units")
 
 
@@ -285,7 +285,7 @@ def quantity_of(value: Any, where: str) -> Quantity:  # noqa: ANN401 - pint is l
     value
         The quantity; one number, not an array.
     where
-        The place to name in an error.
+        Place to name in an error.
 
     Raises
     ------
@@ -328,7 +328,7 @@ def _named_unit(name: str, text: str, where: str) -> tuple[Decimal, Dimension]:
 
 @cache
 def _look_up(name: str) -> tuple[Decimal, Dimension] | str:
-    """Factor and dimension of one unit name, or the reason why there are none."""
+    """Return factor and dimension of one unit name, or the reason why there are none."""
     if name in COMMON_UNITS:
         return Decimal(repr(getattr(factors, name))), COMMON_UNITS[name]
     if name in READ:

@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
     from pydantic.json_schema import JsonSchemaValue
 
-#: Validation context under which a bare number needs a unit: what a file reader passes.
+#: Validation context of file readers, under which a bare number needs a unit.
 FILE_CONTEXT: Final[Mapping[str, str]] = {"source": "file"}
 
 
 def read_from_file(info: core_schema.ValidationInfo) -> bool:
-    """Whether a validation reads a file, where a number needs its unit."""
+    """Return True if a validation reads a file, where a number needs its unit."""
     return (info.context or {}).get("source") == "file"
 
 
@@ -32,7 +32,7 @@ EXACT: Final[Mapping[str, bool]] = {"exact": True}
 
 
 def writes_exactly(info: core_schema.SerializationInfo) -> bool:
-    """Whether what is written must read back to the same bits."""
+    """Return True if written numbers must read back to the same bits."""
     return bool((info.context or {}).get("exact"))
 
 
@@ -41,25 +41,25 @@ _INFINITIES: Final = ("inf", "+inf", "-inf")
 
 @dataclass(frozen=True, slots=True)
 class UnitOf:
-    """Marks a float as a quantity of one kind; use it inside ``Annotated[float, ...]``.
+    """Annotation of a float as a quantity of one kind, for ``Annotated[float, ...]``.
 
     Parameters
     ----------
     kind
         A key of :data:`voxsoft.units.KINDS`.
     positive
-        Whether zero and negative values are refused.
+        True to refuse zero and negative values.
     non_negative
-        Whether negative values are refused.
+        True to refuse negative values.
     infinite
-        Whether ``inf`` and ``-inf`` are taken (an open range). NaN never is.
+        True to accept ``inf`` and ``-inf`` (an open range). NaN is always refused.
 
     Notes
     -----
     Accepts text with a unit, a :class:`Quantity` or one of pint, and a plain number,
     which is SI; but under the context ``{"source": "file"}`` only zero may be plain.
     In JSON mode a value is written as text with a unit, to 12 significant digits, or under the
-    context :data:`EXACT` to as many as it has.
+    context :data:`EXACT` to all its digits.
 
     Examples
     --------
@@ -143,7 +143,7 @@ class UnitOf:
 
     def _written(self, value: float, info: core_schema.SerializationInfo) -> str | float:
         if math.isinf(value):
-            return str(value)  # no number of JSON, and what a file says anyway
+            return str(value)  # not a number of JSON, and the usual text in files
         if not KINDS[self.kind].units:
             return value
         write = write_exactly if writes_exactly(info) else format_quantity
@@ -183,18 +183,18 @@ def si_value(
     Parameters
     ----------
     value
-        What came.
+        Argument to read.
     kind
         A key of :data:`voxsoft.units.KINDS`.
     where
-        The argument's name, for the message.
+        Name of the argument, for the message.
     positive, non_negative
-        As for :class:`UnitOf`.
+        See :class:`UnitOf`.
 
     Raises
     ------
     UnitError
-        It is none of these, of another kind, or out of bounds.
+        It is no such value, of another kind, or out of bounds.
 
     Examples
     --------
@@ -212,7 +212,7 @@ def si_value(
 
 
 def to_si(value: object, kind: str, where: str) -> float:
-    """Bring text with a unit, or a quantity of pint, to SI; a number is SI already.
+    """Convert text with a unit, or a quantity of pint, to SI; a number is SI already.
 
     For arguments whose bounds the caller checks; :func:`si_value` checks them itself.
 

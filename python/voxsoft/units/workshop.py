@@ -1,4 +1,4 @@
-"""Units of workshops with a trap: read to their right value, or refused with it."""
+"""Ambiguous units of workshops: read to their right value, or refused with it."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ READ: Final[dict[str, tuple[Decimal, Dimension]]] = {
     "inHHO": (Decimal("25.4") * GRAVITY, _PRESSURE),
 }
 
-#: Absolute pressures and their factors to Pa.
+#: Absolute pressures, with their factors to Pa.
 _ABSOLUTE: Final = {
     "Paa": Decimal(1),
     "kPaa": Decimal(1000),
@@ -48,19 +48,19 @@ _ABSOLUTE: Final = {
     "mbara": Decimal(100),
     "psia": _PSI,
 }
-#: Gas flows at standard conditions, by their factors to L/min.
+#: Gas flows at standard conditions, with their factors to L/min.
 _STANDARD: Final = {"slpm": Decimal(1), "slm": Decimal(1), "sccm": Decimal("1e-3")}
 
 
 class Refusal(NamedTuple):
-    """What is wrong with a unit, and what to write for it."""
+    """Reason why a unit is refused, and the text to write instead."""
 
     what: str
     hint: str
 
 
 def refusal(number: str, unit: str) -> Refusal | None:
-    """Return why a unit is not read, with the value that is meant; None where it has no trap.
+    """Return why a unit is not read, with the likely value; None for other units.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def refusal(number: str, unit: str) -> Refusal | None:
 
 
 def weight(value: float, dimension: Dimension, due: Dimension) -> str:
-    """Return what to write for a mass where a force is expected; empty for all else.
+    """Return the text to write for a mass where a force is expected; empty for all else.
 
     Examples
     --------

@@ -1,8 +1,8 @@
 """Grids of cubic cells, and the regions found in them.
 
-Enter here with a CT scan or any array of cells; a shape gives a grid by sampling. A grid says
-what a designer asks before simulating: is it one component, which chambers does it enclose, where
-do they leak, how thin are the walls. :meth:`Voxels.mesh` goes on to the solvers.
+Start here with a CT scan or any array of cells; a shape gives a grid by sampling. A grid has the
+checks before a simulation: number of components, enclosed chambers, leaks, and thickness of the
+walls. :meth:`Voxels.mesh` makes the mesh for the solvers.
 
 Examples
 --------

@@ -1,4 +1,4 @@
-"""Checks of what is given to the methods of a grid."""
+"""Checks of the arguments of a grid's methods."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def margins(place: str, cells: int | Sequence[int]) -> tuple[int, int, int]:
 
 
 def length(place: str, value: float | str) -> float:
-    """Return a length [m]: a number is one, text and quantities of pint are converted."""
+    """Return a length [m]: a number is taken as m, text and quantities of pint are converted."""
     try:
         return to_si(value, "length", place)
     except UnitError as error:

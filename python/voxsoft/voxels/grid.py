@@ -1,7 +1,7 @@
-"""The grid of cells, each empty or of one part.
+"""Grid of cells, each empty or of one part.
 
-Long because every method documents its arguments, errors and an example; none has more than a
-few lines of its own, the work is done in Rust.
+The file is long because every method documents its arguments, errors and an example; none has
+more than a few lines of its own, the work is done in Rust.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from voxsoft.voxels.regions import (
 
 Contact = Literal["face", "edge", "corner"]
 
-#: Openings up to this many cells are leaks; wider ones are meant to be open.
+#: Width of an opening in cells up to which it is a leak; wider ones are meant to be open.
 _WIDEST_LEAK = 2
 _CONTACTS: dict[str, int] = {"face": 1, "edge": 2, "corner": 3}
 
@@ -56,7 +56,7 @@ class Voxels:
     immutable: every change gives a new one. Make them with :meth:`empty` or :meth:`from_array`,
     or by sampling a shape.
 
-    A grid remembers where on the endless lattice of its voxel size it lies, so padding, cropping
+    A grid knows its position on the infinite integer grid of its voxel size, so padding, cropping
     and shifting change neither positions nor the mesh. One byte per cell: 512³ cells take 128 MiB.
     """
 
@@ -84,7 +84,7 @@ class Voxels:
         ------
         VoxelError
             If a size is not positive, or the cells do not fit in the memory that is available
-            (said before anything is allocated).
+            (raised before anything is allocated).
 
         Examples
         --------
@@ -109,7 +109,7 @@ class Voxels:
         Parameters
         ----------
         array : array_like, shape (nx, ny, nz)
-            The part of each cell: bool (True is part 1) or whole numbers 0 (empty) to 255.
+            Part of each cell: bool (True is part 1) or whole numbers 0 (empty) to 255.
         voxel_size : float
             Side of a cell [m].
         origin : three floats, default (0, 0, 0)
@@ -162,7 +162,7 @@ class Voxels:
 
     @cached_property
     def array(self) -> NDArray[np.uint8]:
-        """The part of each cell, shape (nx, ny, nz), read-only."""
+        """Part of each cell, shape (nx, ny, nz), read-only."""
         array = self._grid.array()
         array.setflags(write=False)
         return array
@@ -184,7 +184,7 @@ class Voxels:
 
     @property
     def phase(self) -> Triple:
-        """Where the grid lies along each axis [m]: the place of a corner within one voxel.
+        """Phase of the grid along each axis [m]: the position of a corner within one voxel.
 
         Examples
         --------
@@ -257,8 +257,8 @@ class Voxels:
     ) -> Voxels:
         """Return a grid with the cells of a box given to a part, or emptied with ``part=0``.
 
-        As for all fills, a cell is in when its center lies strictly inside; what lies outside the
-        grid is left out.
+        A cell belongs to a fill if its center lies strictly inside; cells outside the grid are left
+        out.
 
         Parameters
         ----------
@@ -308,9 +308,9 @@ class Voxels:
         base : three floats
             Center of the end it starts from [m].
         radius, height : float
-            Its dimensions [m].
+            Dimensions of the cylinder [m].
         axis : {"x", "y", "z"} or three floats, default "z"
-            The direction it reaches to from its base; any length.
+            Direction from the base to the other end; any length.
         part : int, default 1
             The part, 0 to 255.
 
@@ -333,7 +333,8 @@ class Voxels:
     ) -> Voxels:
         """Return a grid with the cells between two coaxial cylinders given to a part.
 
-        Parameters are those of :meth:`fill_cylinder`; ``inner_radius`` is that of the bore [m].
+        Parameters are those of :meth:`fill_cylinder`; ``inner_radius`` is the radius of the bore
+        [m].
 
         Examples
         --------
@@ -367,9 +368,9 @@ class Voxels:
         Parameters
         ----------
         density : float
-            The probability, 0 to 1. Other cells keep their part.
+            Probability, 0 to 1. Other cells keep their part.
         seed : int
-            The same seed gives the same cells, 0 to 2**64 - 1.
+            Seed, 0 to 2**64 - 1; the same seed gives the same cells.
         part : int, default 1
             The part, 0 to 255.
 
@@ -488,8 +489,8 @@ class Voxels:
         Parameters
         ----------
         contact : {"face", "edge", "corner"}, default "face"
-            How cells must touch to belong together. Cells that touch only at an edge or a corner
-            make a hinge, not a solid joint.
+            Contact that connects cells. Cells that touch only at an edge or a corner make a hinge,
+            not a solid joint.
 
         Examples
         --------
@@ -504,7 +505,7 @@ class Voxels:
 
     @cached_property
     def cavities(self) -> tuple[Cavity, ...]:
-        """The enclosed empty regions, largest first.
+        """Enclosed empty regions, largest first.
 
         A region is enclosed if no path of empty cells through faces leads out of the grid.
 
@@ -521,12 +522,12 @@ class Voxels:
 
     @cached_property
     def leaks(self) -> tuple[Leak, ...]:
-        """The chambers that are open to the outside by openings of one or two cells, largest first.
+        """Chambers that are open to the outside by openings of one or two cells, largest first.
 
         A chamber is found if a cube of two cells a side (three for openings of two cells) fits
         into it but cannot get out by steps of one cell. So a chamber must be wider than its
-        openings, and what is open by three cells or more counts as outside. Cells that touch at an
-        edge or a corner let no air through.
+        openings, and a chamber with an opening of three cells or more counts as outside. Cells that
+        touch at an edge or a corner let no air through.
 
         Examples
         --------
@@ -545,7 +546,7 @@ class Voxels:
 
     @cached_property
     def hinges(self) -> tuple[Hinge, ...]:
-        """The places where cells touch only along an edge or at a corner.
+        """Places where cells touch only along an edge or at a corner.
 
         Examples
         --------
@@ -560,7 +561,7 @@ class Voxels:
 
     @cached_property
     def wall_thickness(self) -> WallThickness:
-        """How thin the material is, cell by cell, in voxels.
+        """Thickness of the material at each cell, in voxels.
 
         Examples
         --------
@@ -575,7 +576,7 @@ class Voxels:
 
     @cached_property
     def cavity_walls(self) -> tuple[Wall, ...]:
-        """The thinnest wall around each cavity, in the order of :attr:`cavities`.
+        """Thinnest wall around each cavity, in the order of :attr:`cavities`.
 
         A wall is a row of filled cells along an axis that has this cavity at one end, and the
         outside or another cavity at the other.
@@ -602,7 +603,7 @@ class Voxels:
         Raises
         ------
         MeshError
-            If no cell is filled, or the mesh does not fit in the memory that is available (said
+            If no cell is filled, or the mesh does not fit in the available memory (raised
             before it is allocated).
 
         Examples

@@ -1,4 +1,4 @@
-"""What is found in a grid: components, cavities, leaks, hinges and walls."""
+"""Regions found in a grid: components, cavities, leaks, hinges and walls."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ Cell = tuple[int, int, int]
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """A connected set of cells.
+    """Connected set of cells.
 
     Attributes
     ----------
     runs : ndarray of int, shape (r, 4)
-        The cells as runs along z: ``(i, j, first k, last k)``, in C order. A compact form for
+        Cells as runs along z: ``(i, j, first k, last k)``, in C order. A compact form for
         regions of millions of cells.
     count : int
         Number of cells.
@@ -54,7 +54,7 @@ class Component:
 
 @dataclass(frozen=True, eq=False)
 class Cavity(Component):
-    """An empty region that no path through faces connects with the outside.
+    """Empty region that no path through faces connects with the outside.
 
     Attributes
     ----------
@@ -67,16 +67,16 @@ class Cavity(Component):
 
 @dataclass(frozen=True, eq=False)
 class Leak(Component):
-    """A chamber that is open to the outside by narrow openings.
+    """Chamber that is open to the outside by narrow openings.
 
-    Its cells go up to the openings.
+    Its cells extend up to the openings.
 
     Attributes
     ----------
     width : int
-        The openings are at most this many cells wide in one direction.
+        Largest width of the openings in cells, in one direction.
     openings : tuple of (i, j, k)
-        One cell of each opening, where it meets the chamber. Filling the openings there closes
+        One cell of each opening, at its end toward the chamber. Filling the openings there closes
         the chamber.
     """
 
@@ -88,15 +88,15 @@ class Leak(Component):
 class Hinge:
     """Two filled cells whose only contact, here, is an edge or a corner.
 
-    The mesh is stitched there, so that the cells hang together, but nothing resists their turning
-    about the edge or the corner, and it cannot be made.
+    The mesh is stitched there, so that the cells stay connected, but nothing resists their rotation
+    about the edge or the corner, and it cannot be manufactured.
 
     Attributes
     ----------
     cells : pair of (i, j, k)
-        The two cells.
+        Indices of the two cells.
     contact : {"edge", "corner"}
-        What they share.
+        Shared edge or corner.
     """
 
     cells: tuple[Cell, Cell]
@@ -105,14 +105,14 @@ class Hinge:
 
 @dataclass(frozen=True)
 class Wall:
-    """A place where the material is thin.
+    """Place where the material is thin.
 
     Attributes
     ----------
     thickness : int
-        In voxels, along an axis.
+        Thickness in voxels, along an axis.
     cell : (i, j, k)
-        A filled cell of it.
+        Filled cell of the wall.
     """
 
     thickness: int
@@ -121,18 +121,18 @@ class Wall:
 
 @dataclass(frozen=True, eq=False)
 class WallThickness:
-    """How thin the material is, cell by cell, in voxels.
+    """Thickness of the material at each cell, in voxels.
 
     Attributes
     ----------
     cells : ndarray of uint16, shape (nx, ny, nz)
-        For each cell the length of the shortest of the three rows of filled cells along the axes
-        that it lies in; 0 where empty. A wall that is inclined to the axes can be thinner than
-        that, by a factor of √3 at most.
+        Length, at each cell, of the shortest of the three rows of filled cells along the axes
+        through it; 0 where empty. A wall that is inclined to the axes can be thinner than that, by
+        a factor of √3 at most.
     histogram : tuple of int
         Number of cells of each thickness; entry 0 is 0.
     thinnest : Wall or None
-        The first of the thinnest cells; None if no cell is filled. At the outer edge of a rounded
+        First of the thinnest cells; None if no cell is filled. At the outer edge of a rounded
         body a row can be short without there being a wall; the walls of cavities are free of that.
     """
 

@@ -1,4 +1,4 @@
-"""A stress-strain curve of a coupon, and the correction of its toe."""
+"""Stress-strain curve of a coupon, and the correction of its toe."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from voxsoft.materials.hyperelastic import Floats
 from voxsoft.materials.mooney_rivlin import MooneyRivlin
 from voxsoft.records import closest
 
-#: What to do about stress that is not zero at zero strain: move the strain, the stress, or nothing.
+#: Correction of stress that is not zero at zero strain: shift the strain, the stress, or nothing.
 ToeCorrection = Literal["strain", "stress", "off"]
 
 #: Names of the corrections.
 TOE_CORRECTIONS: Final[tuple[ToeCorrection, ...]] = get_args(ToeCorrection)
 
-# Strain up to which the start of a curve is fitted for its toe, and the points that this takes.
+# Strain up to which the start of a curve is fitted for its toe, and least number of its points.
 _START: Final = 0.3
 _FEWEST_AT_START: Final = 4
 _FEWEST: Final = 5
@@ -28,20 +28,20 @@ _WITHOUT_SHAPE: Final = MooneyRivlin(c10=0.5, c01=0.0)
 
 
 class Toe(NamedTuple):
-    """What the start of a curve says: the neo-Hookean line through strains up to 30 %.
+    """Toe of a curve, from the neo-Hookean line through strains up to 30 %.
 
     Attributes
     ----------
     offset
         Stress of the line at zero strain in Pa: the zero error of the load cell, or slack.
     young
-        Its initial slope as a Young's modulus in Pa.
+        Initial slope of the line as a Young's modulus in Pa.
     strain
-        Where the line's initial tangent meets zero stress, ``-offset/slope``: the slack.
+        Strain at which the line's initial tangent meets zero stress, ``-offset/slope``: the slack.
     uncertainty
         Standard uncertainty of that strain, from the scatter about the line.
     points
-        How many points it was drawn through.
+        Number of points in the fit of the line.
     """
 
     offset: float
@@ -64,7 +64,7 @@ class Curve:
     mode
         ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
     name
-        What reports call it.
+        Name in reports.
     elongation_at_break
         Strain at break, if it broke; points after it are not part of the curve.
 
@@ -114,7 +114,7 @@ class Curve:
                 f"strain {strain.min():g} is a length of zero or less",
                 "compression is negative and above -1; is the column in percent?",
             )
-        # Crossheads and cameras jitter; 2 % of the range is more than that.
+        # Crossheads and cameras jitter by less than 2 % of the range.
         fall = np.maximum.accumulate(strain) - strain
         if fall.max() > 0.02 * np.ptp(strain):
             at = int(np.argmax(fall > 0.02 * np.ptp(strain)))
@@ -126,7 +126,7 @@ class Curve:
         self._check_sign()
 
     def _check_sign(self) -> None:
-        """Refuse a stress that falls as a whole: no rubber does, wherever its zero lies."""
+        """Refuse a stress that falls as a whole: no rubber does, at any position of its zero."""
         size = float(np.abs(self.stress).max()) or 1.0
         slope = float((self.strain - self.strain.mean()) @ (self.stress / size))
         if slope >= 0.0:
@@ -147,16 +147,16 @@ class Curve:
 
     @property
     def stretch(self) -> Floats:
-        """1 plus the strain, (n,)."""
+        """Stretch, 1 plus the strain, (n,)."""
         stretches: Floats = 1.0 + self.strain
         return stretches
 
     def toe(self) -> Toe | None:
-        """Fit the start of the curve; nothing where fewer than four points are below 30 % strain.
+        """Fit the start of the curve; return None if fewer than four points are below 30 % strain.
 
         The line is ``stress = offset + young/3 · m(λ)`` by least squares, with the stress ``m`` of
-        a neo-Hookean material of unit shear modulus, so that a curve that softens as rubber does is
-        not taken for slack.
+        a neo-Hookean material of unit shear modulus, so that the softening of rubber is not taken
+        for slack.
         """
         start = np.abs(self.strain) <= _START
         if np.count_nonzero(start) < _FEWEST_AT_START:
@@ -203,7 +203,7 @@ class Curve:
         )
 
     def up_to(self, max_strain: float) -> Curve:
-        """Return the points whose strain is at most so large, in tension and compression.
+        """Return the points up to a largest strain, in tension and compression.
 
         Raises
         ------
@@ -222,7 +222,7 @@ class Curve:
 
 
 def neo_hookean_measure(stretch: ArrayLike, mode: Mode) -> Floats:
-    """Nominal stress of a neo-Hookean material of unit shear modulus, (n,).
+    """Compute the nominal stress of a neo-Hookean material of unit shear modulus, (n,).
 
     Examples
     --------
@@ -233,6 +233,6 @@ def neo_hookean_measure(stretch: ArrayLike, mode: Mode) -> Floats:
 
 
 def _initial_slope(mode: Mode) -> float:
-    """Initial slope of the nominal stress over the initial shear modulus: 3, 6 or 4."""
+    """Return the initial slope of nominal stress over initial shear modulus: 3, 6 or 4."""
     powers = np.array(EXPONENTS[mode])
     return float(2.0 * (powers @ powers) / (2.0 if mode == "equibiaxial" else 1.0))

@@ -1,4 +1,4 @@
-"""A coupon that is pulled, let go and pulled again, and the softening that it shows."""
+"""Cyclic coupon test, loaded, unloaded and loaded again, and the softening that it shows."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from voxsoft.materials.mullins import Mullins
 from voxsoft.materials.softening import cycled_stress
 
 _FEWEST: Final = 10
-# Strain that falls by less than this part of its range is jitter of the machine.
+# Fall of the strain, as a part of its range, below which it is jitter of the machine.
 _TURNS: Final = 0.02
-# Peaks of the energy that differ by less than this part tell m and beta not apart.
+# Relative difference of energy peaks that is needed to distinguish m from beta.
 _APART: Final = 0.2
 _CONFIDENCE: Final = 0.95
 #: Bounds of `r` less one, `m` over the largest energy, and `beta`: beyond them η is 1, or a step.
@@ -36,13 +36,13 @@ class Cycles:
     Parameters
     ----------
     strain
-        Engineering strain, (n,), from rest up, down, up again.
+        Engineering strain, (n,), loaded from rest, unloaded, loaded again.
     stress
         Engineering stress in Pa, (n,).
     mode
         ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
     name
-        What reports call it.
+        Name in reports.
 
     Raises
     ------
@@ -81,12 +81,12 @@ class Cycles:
             )
 
     def first_loading(self) -> Curve:
-        """The points at strains that were not reached before."""
+        """Select the points at strains that were not reached before."""
         first = self.strain > np.concatenate([[-np.inf], np.maximum.accumulate(self.strain)[:-1]])
         return Curve(self.strain[first], self.stress[first], self.mode, self.name)
 
     def corrected(self, toe: Toe | None, correction: ToeCorrection, max_strain: float) -> Cycles:
-        """The same through the origin, by the toe of its first loading, up to a strain."""
+        """Correct the cycles by the toe of their first loading, up to a strain."""
         strain, stress = self.strain, self.stress
         if toe is not None and correction == "strain":
             strain = strain - toe.strain
@@ -98,18 +98,18 @@ class Cycles:
 
 
 class SofteningFit(NamedTuple):
-    """The softening that cycles show, with a model of the first loading.
+    """Softening of cyclic tests, with a model of the first loading.
 
     Attributes
     ----------
     mullins
-        Its constants.
+        Constants of the Mullins effect.
     constants
-        Each that was fitted with its interval, by name; `m` in Pa.
+        Fitted constants with their intervals, by name; `m` in Pa.
     rmse
         Root mean square error of the stress over all points of the cycles, in Pa.
     warnings
-        What to be careful about, in sentences.
+        Warnings, in sentences.
     """
 
     mullins: Mullins
@@ -124,10 +124,10 @@ def fit_softening(material: Hyperelastic, cycles: Sequence[Cycles]) -> Softening
     Parameters
     ----------
     material
-        The model of the first loading; its constants are held.
+        Model of the first loading; its constants are held.
     cycles
-        At least one test. Cycles to one peak tell ``m + β P`` alone: `m` is 0 then, and a warning
-        says so.
+        At least one test. Cycles to one peak determine ``m + β P`` alone: `m` is 0 then, with a
+        warning.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def fit_softening(material: Hyperelastic, cycles: Sequence[Cycles]) -> Softening
 
     Notes
     -----
-    The 95 % intervals come from the linearized problem, as those of
+    The 95 % intervals come from the linearized problem, see
     :func:`~voxsoft.materials.coupon.fit_coupons`: residuals that follow one another count for
     fewer points. They hold for this model and its constants.
 
@@ -188,7 +188,7 @@ def fit_softening(material: Hyperelastic, cycles: Sequence[Cycles]) -> Softening
         ),
         key=lambda answer: float(answer.cost),
     )
-    # Six digits, as a measurement can have.
+    # Rounded to six digits, as a measurement can have.
     exact = softened(found.x)
     digits = {name: float(f"{getattr(exact, name):.6g}") for name in ("r", "m", "beta")}
     mullins = Mullins(**digits)
@@ -245,7 +245,7 @@ def _warnings(constants: Mapping[str, Interval], *, both: bool) -> list[str]:
 
 
 def _peaks(cycles: Cycles, energy: Floats) -> Floats:
-    """Energies at which the strain turned back from more than it had had, (k,)."""
+    """Find the energies at which the strain reversed from a new maximum, (k,)."""
     fall = np.maximum.accumulate(cycles.strain) - cycles.strain
     back = fall > _TURNS * np.ptp(cycles.strain)
     peaks: Floats = np.unique(np.maximum.accumulate(energy)[back])

@@ -1,4 +1,4 @@
-"""The models that a coupon is fitted with: how stress depends on constants, and how to solve.
+"""Model families that are fitted to coupons: stress as a function of constants, and the solution.
 
 Each family is linear in its moduli. Exponents (Ogden) and the limit (Gent) are searched outside,
 with the best moduli found inside for each (variable projection), so that a search has one to three
@@ -25,20 +25,20 @@ from voxsoft.materials.neo_hookean import NeoHookean
 from voxsoft.materials.ogden import Ogden
 from voxsoft.materials.yeoh import Yeoh
 
-#: Exponents of an Ogden model are searched up to this size; larger ones only fit noise.
+#: Largest exponent of an Ogden model in the search; larger ones only fit noise.
 LARGEST_EXPONENT: Final = 15.0
 
 _SMALLEST_EXPONENT: Final = 0.1
-# Farther than this many times the largest I₁ - 3 of the data a Gent limit cannot be seen.
+# Largest Gent limit that shows in the data, in multiples of their largest I₁ - 3.
 _FARTHEST_LIMIT: Final = 1e3
-# A term with less than this share of the initial shear modulus, and of the stress, is none.
+# Share of the initial shear modulus, and of the stress, below which a term is negligible.
 _NEGLIGIBLE: Final = 1e-9
 _TWO_I1: Final = MooneyRivlin(c10=1.0, c01=0.0)
 _TWO_I2: Final = MooneyRivlin(c10=0.0, c01=1.0)
 
 
 class Block(NamedTuple):
-    """Points of one mode with the weight of each: what a family is solved for.
+    """Points of one mode with the weight of each.
 
     Stretches (n,), nominal stresses in Pa (n,), weights (n,) that make residuals comparable.
     """
@@ -57,7 +57,7 @@ class Anchor(NamedTuple):
 
 
 class Data(NamedTuple):
-    """Everything that one fit sees."""
+    """Data of one fit."""
 
     blocks: tuple[Block, ...]
     anchors: tuple[Anchor, ...] = ()
@@ -79,25 +79,25 @@ class Data(NamedTuple):
 
 
 class NoFit(MaterialError):
-    """A family that the data do not suit; the message says why."""
+    """Error for a family that the data do not suit, with the reason."""
 
 
 @dataclass(frozen=True)
 class Family:
-    """A model with a number of terms.
+    """Model with a number of terms.
 
     Attributes
     ----------
     name
-        What tables call it: ``"yeoh-3"``.
+        Name in tables: ``"yeoh-3"``.
     model
-        The model behind it: ``"yeoh"``.
+        Name of its model: ``"yeoh"``.
     linear
-        How many moduli it has.
+        Number of moduli.
     shapes
-        How many exponents or limits it has.
+        Number of exponents or limits.
     lowest
-        The smallest exponent that is searched.
+        Smallest exponent of the search.
     """
 
     name: str
@@ -125,7 +125,7 @@ class Family:
         }[self.model]
 
     def columns(self, mode: Mode, stretch: Floats, shapes: Floats) -> Floats:
-        """Nominal stress for each modulus of 1 Pa, (n, linear)."""
+        """Return the nominal stress for each modulus of 1 Pa, (n, linear)."""
         if self.model == "ogden":
             return np.stack([_power_stress(mode, stretch, a) for a in shapes], axis=1)
         first = nominal_stress(_TWO_I1, stretch, mode)
@@ -148,20 +148,20 @@ class Family:
         return np.array([2.0, 0.0, 0.0][: self.linear])
 
     def matrix(self, data: Data, shapes: Floats) -> Floats:
-        """Weighted columns of all data, (n, linear)."""
+        """Return the weighted columns of all data, (n, linear)."""
         parts = [b.weight[:, None] * self.columns(b.mode, b.stretch, shapes) for b in data.blocks]
         parts += [anchor.weight * self.shears[None, :] for anchor in data.anchors]
         return np.concatenate(parts)
 
     def stress(self, constants: Floats, mode: Mode, stretch: Floats) -> Floats:
-        """Nominal stress in Pa at any constants, also impossible ones, (n,)."""
+        """Return the nominal stress in Pa at any constants, also impossible ones, (n,)."""
         stresses: Floats = (
             self.columns(mode, stretch, constants[self.linear :]) @ constants[: self.linear]
         )
         return stresses
 
     def shear(self, constants: Floats) -> float:
-        """Initial shear modulus in Pa."""
+        """Return the initial shear modulus in Pa."""
         return float(self.shears @ constants[: self.linear])
 
     def material(self, constants: Floats, poisson: float, density: float) -> Material:
@@ -180,16 +180,16 @@ class Family:
         return Ogden(mu=moduli, alpha=shapes, **rest)
 
     def solve(self, data: Data, near: Floats | None = None, *, redundant: bool = False) -> Floats:
-        """Find the constants of least squares.
+        """Find the constants by least squares.
 
         Parameters
         ----------
         data
-            What to fit.
+            Data to fit.
         near
             Constants to start from; default: many starts.
         redundant
-            Whether terms that add nothing are let pass. Default false.
+            True to allow terms that add nothing. Default false.
 
         Returns
         -------
@@ -216,7 +216,7 @@ class Family:
         return constants
 
     def _moduli(self, data: Data, shapes: Floats) -> Floats:
-        """Moduli of least squares; those of Ogden and Gent are not negative, and so stable."""
+        """Find the moduli by least squares; those of Ogden and Gent are not negative, so stable."""
         matrix, target = self.matrix(data, shapes), data.target
         scale = np.linalg.norm(matrix, axis=0)
         scale[scale == 0.0] = 1.0
@@ -263,7 +263,7 @@ class Family:
         return np.sort(_off_zero(best.x))
 
     def _starts(self, data: Data) -> list[Floats]:
-        """Exponents to start from: the best of a grid of combinations, and their neighbors."""
+        """Choose initial exponents: the best of a grid of combinations, and their neighbors."""
         grid = np.array([-10.0, -6.0, -3.5, -1.5, 1.0, 2.0, 3.0, 5.0, 9.0])
         grid = grid[grid > self.lowest]
         ranked = sorted(
@@ -311,7 +311,7 @@ class Family:
 
 
 def _off_zero(exponents: Floats) -> Floats:
-    """Keep exponents away from zero, where the energy has no meaning."""
+    """Keep exponents away from zero, where the energy is undefined."""
     return np.where(
         np.abs(exponents) < _SMALLEST_EXPONENT,
         np.where(exponents < 0.0, -_SMALLEST_EXPONENT, _SMALLEST_EXPONENT),
@@ -320,7 +320,7 @@ def _off_zero(exponents: Floats) -> Floats:
 
 
 def _power_stress(mode: Mode, stretch: Floats, alpha: float) -> Floats:
-    """Nominal stress of one Ogden term of 1 Pa, (n,)."""
+    """Return the nominal stress of one Ogden term of 1 Pa, (n,)."""
     powers = np.array(EXPONENTS[mode])
     pulled = 2.0 if mode == "equibiaxial" else 1.0
     total: Floats = np.sum(powers[:, None] * stretch[None, :] ** (powers[:, None] * alpha), axis=0)

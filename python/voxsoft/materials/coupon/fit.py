@@ -1,4 +1,4 @@
-"""All models fitted to the curves of a material and ranked."""
+"""Fits of all models to the curves of a material, and their ranking."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from voxsoft.units import si_value
 
 Flags = NDArray[np.bool_]
 
-#: Strain up to which curves are fitted if nothing is said: soft robots seldom stretch more.
+#: Default of the largest strain of the fit: soft robots seldom stretch more.
 DEFAULT_MAX_STRAIN: Final = 3.0
 
 _FOLDS: Final = 5
@@ -48,26 +48,27 @@ def fit_coupons(
     Parameters
     ----------
     curves
-        At least one, or one of `cycles`; tests of several kinds may be mixed, and several specimens
-        of one kind.
+        Stress-strain curves, at least one, or one of `cycles`; tests of several kinds may be mixed,
+        and several specimens of one kind.
     observed
         Young's moduli from other tests.
     cycles
         Tests with load and unload. Their first loadings join the curves, and
-        :meth:`CouponFit.softening` fits what they lose.
+        :meth:`CouponFit.softening` fits their softening.
     toe
-        What to do about stress that is not zero at zero strain, see :meth:`Curve.corrected`.
+        Correction of stress that is not zero at zero strain, see :meth:`Curve.corrected`.
     max_strain
         Points beyond it do not count, after the toe correction. Default 3 (300 %).
     poisson, density
-        What the materials get; the fit itself is incompressible. Default 0.499, 1070 kg/m³.
+        Poisson's ratio and density of the materials; the fit itself is incompressible. Default
+        0.499, 1070 kg/m³.
     models
         Names of the models to fit, such as ``"yeoh-3"``. Default: all.
 
     Returns
     -------
     CouponFit
-        The models ranked by how well they predict what they have not seen.
+        Models ranked by their error in cross-validation.
 
     Raises
     ------
@@ -147,7 +148,7 @@ def _untested(
     whole: Data,
     ranked: Sequence[ModelFit],
 ) -> tuple[UntestedMode, ...]:
-    """Compare the models that are not unstable over the curves in the modes that no curve has."""
+    """Compare the models that are stable over the curves in the modes that no curve has."""
     unstable = {fit.name for fit in ranked if not fit.stable_in_fit}
     kept = [family for family in families if family.name not in unstable]
     best = min(
@@ -164,7 +165,7 @@ def _data(
     anchors: tuple[Anchor, ...] = (),
     kept: Sequence[Flags] | None = None,
 ) -> Data:
-    """Weight every point by the root of the share that counts over the scale of its residual."""
+    """Weight every point by the root of the independent share over the scale of its residual."""
     blocks = []
     for index, curve in enumerate(curves):
         chosen = np.full(len(curve.strain), True) if kept is None else kept[index]
@@ -203,7 +204,7 @@ def _residuals(family: Family, constants: Floats, curves: Sequence[Curve]) -> li
 
 
 def _noise(family: Family, constants: Floats, curves: Sequence[Curve]) -> tuple[float, float]:
-    """Scale of the residuals in Pa, and the share of the points that count as independent."""
+    """Return the scale of the residuals in Pa, and the share of independent points."""
     residuals = _residuals(family, constants, curves)
     # Rounding of the numbers in the file: no measured stress is known to more than six digits.
     floor = 1e-6 * max(float(np.abs(curve.stress).max()) for curve in curves)
@@ -249,7 +250,7 @@ def _stable_over(material: Hyperelastic, curve: Curve) -> bool:
 def _intervals(
     family: Family, constants: Floats, curves: Sequence[Curve], whole: Data, poisson: float
 ) -> tuple[list[Interval], Interval]:
-    """Confidence intervals of the constants and of Young's modulus, from the linearized model."""
+    """Compute confidence intervals of the constants and of Young's modulus, linearized."""
     scale, share = _noise(family, constants, curves)
     weighted = Data(_data(curves, scale, share).blocks, whole.anchors)
     jacobian = np.stack(
@@ -276,7 +277,7 @@ def _intervals(
 
 
 def _slope(family: Family, constants: Floats, data: Data, index: int) -> Floats:
-    """Derivative of the weighted predictions with respect to one constant, (n,)."""
+    """Differentiate the weighted predictions by one constant, (n,)."""
     if index < family.linear:
         return family.matrix(data, constants[family.linear :])[:, index]
     # Exponents and limits are of order 1 to 100: this step leaves an error of some 1e-9.
@@ -291,7 +292,7 @@ def _slope(family: Family, constants: Floats, data: Data, index: int) -> Floats:
 
 
 def _outside(fold: int, points: int) -> Flags:
-    """Points that are not in a fifth of a curve; its two ends are in none, (points,)."""
+    """Select the points that are not in a fifth of a curve; its two ends are in none, (points,)."""
     outside: Flags = np.arange(points) * _FOLDS // points != fold
     outside[[0, -1]] = True
     return outside
@@ -300,11 +301,11 @@ def _outside(fold: int, points: int) -> Flags:
 def _cross_validated(
     family: Family, constants: Floats, curves: Sequence[Curve], whole: Data
 ) -> float:
-    """Root mean square of the errors where each fifth of every curve is predicted from the rest.
+    """Compute the RMS error of cross-validation: each fifth of a curve is predicted from the rest.
 
-    The fifths are runs of neighboring points: leaving out single ones would ask nothing, because
-    their neighbors know them. The first and the last point always stay, so that a gap is to be
-    bridged and nothing lies beyond the data.
+    The fifths are runs of neighboring points: leaving out single ones would test nothing, because
+    their neighbors determine them. The first and the last point always stay, so that gaps are
+    bridged and nothing is extrapolated.
     """
     weights = float(whole.blocks[0].weight[0])
     errors = []

@@ -1,4 +1,4 @@
-"""A constant with how sure it is, and how noisy the residuals are that say so."""
+"""Confidence interval of a constant, and the noise of residuals that it follows from."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from voxsoft.materials.hyperelastic import Floats
 
 @dataclass(frozen=True)
 class Interval:
-    """A constant with its 95 % confidence interval, all in SI units."""
+    """Constant with its 95 % confidence interval, all in SI units."""
 
     value: float
     low: float
@@ -25,16 +25,16 @@ class Interval:
 
 
 def noise_of(residuals: Sequence[Floats], size: int, floor: float) -> tuple[float, float]:
-    """Scale of residuals in Pa, and the share of the points that count as independent.
+    """Estimate the scale of residuals in Pa, and the share of independent points.
 
     Parameters
     ----------
     residuals
-        Of each curve, in Pa.
+        Residuals of each curve, in Pa.
     size
-        How many constants were fitted.
+        Number of fitted constants.
     floor
-        The least scale there can be, in Pa.
+        Least possible scale, in Pa.
     """
     total = sum(float(r @ r) for r in residuals)
     points = sum(len(r) for r in residuals)

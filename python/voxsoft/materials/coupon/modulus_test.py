@@ -1,4 +1,4 @@
-"""Young's modulus from other tests: beams that bend or swing, or a number with an uncertainty.
+"""Young's modulus from other tests: beams that bend or vibrate, or a number with an uncertainty.
 
 Each kind gives one modulus at small strain with a standard uncertainty, which joins the
 curves in a fit. The beam formulas are those of a slender Timoshenko beam of incompressible material
@@ -23,7 +23,7 @@ STANDARD_GRAVITY: Final = 9.80665
 _SHEAR_COEFFICIENT: Final = 5.0 / 6.0
 # First root of cos β cosh β = -1: the first mode of a clamped-free beam.
 _FIRST_MODE: Final = 1.875104068711961
-# Beyond these the formulas of small deflection and slender beams are off by more than some 2 %.
+# Limits beyond which the formulas of small deflection and slender beams are off by more than 2 %.
 _LARGEST_DEFLECTION: Final = 0.1
 _STOUTEST: Final = 4.0
 
@@ -33,7 +33,7 @@ _PositiveRate = Annotated[float, UnitOf("rate", positive=True)]
 
 
 class MeasuredModulus(NamedTuple):
-    """Young's modulus at small strain as another test saw it, both in Pa."""
+    """Young's modulus at small strain from another test, with its uncertainty, both in Pa."""
 
     name: str
     young: float
@@ -67,7 +67,7 @@ class KnownModulus(_ModulusTest):
     uncertainty: Modulus
 
     def modulus(self) -> MeasuredModulus:
-        """The modulus and its uncertainty."""
+        """Return the modulus and its uncertainty."""
         return MeasuredModulus(self.name or self.kind, self.young, self.uncertainty)
 
 
@@ -139,7 +139,7 @@ class BendingTest(_Beam):
         return self
 
     def modulus(self) -> MeasuredModulus:
-        """The modulus and its uncertainty."""
+        """Return the modulus and its uncertainty."""
         area, inertia = self.width * self.height, self.width * self.height**3 / 12.0
         weight = self.density * STANDARD_GRAVITY * area
         force, length = self.force, self.length
@@ -180,7 +180,7 @@ class FrequencyTest(_Beam):
     frequency: _PositiveRate
 
     def modulus(self) -> MeasuredModulus:
-        """The modulus and its uncertainty."""
+        """Return the modulus and its uncertainty."""
         rate = 2.0 * math.pi * self.frequency
         bent = 12.0 * self.length**4 / (_FIRST_MODE**4 * self.height**2)
         sheared = 12.0 * self.length**2 / (math.pi**2 * _SHEAR_COEFFICIENT)
@@ -188,7 +188,7 @@ class FrequencyTest(_Beam):
         return MeasuredModulus(self.name or self.kind, young, self.uncertainty * young)
 
 
-#: Any of them, distinguished by ``kind``.
+#: Any of the tests, discriminated by ``kind``.
 ModulusTest = Annotated[KnownModulus | BendingTest | FrequencyTest, Field(discriminator="kind")]
 
 

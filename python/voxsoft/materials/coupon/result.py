@@ -1,4 +1,4 @@
-"""What the coupons of a material say: the models, how good they are, and what to beware of."""
+"""Result of a coupon fit: the models, their errors, and warnings."""
 
 from __future__ import annotations
 
@@ -23,28 +23,28 @@ from voxsoft.materials.tested import StretchRange
 from voxsoft.records import closest
 from voxsoft.units import format_quantity
 
-# Models whose predictions err by at most this factor more than the best are taken for as good;
-# among them the one with the fewest constants is recommended.
+# Factor over the smallest prediction error up to which models count as equally good; among them the
+# one with the fewest constants is recommended.
 _AS_GOOD: Final = 1.1
 _FIRST_INVARIANT: Final = ("neo-hookean", "gent", "yeoh")
-# A strain of slack that changes moduli by more than a tenth, for a curve whose first 30 % count.
+# Strain of slack that changes moduli by more than a tenth, for a curve whose first 30 % count.
 _LARGE_TOE: Final = 0.03
-# A toe that no measurement of strain resolves.
+# Toe below the resolution of any strain measurement.
 _SMALL_TOE: Final = 1e-3
-# No rubber is softer or stiffer than this, in Pa.
+# Range of the moduli of rubber, in Pa.
 _RUBBER: Final = (1e2, 1e8)
 
 
 @dataclass(frozen=True)
 class ModelFit:
-    """One model fitted to all data.
+    """Fit of one model to all data.
 
     Attributes
     ----------
     name
-        The family: ``"yeoh-3"``.
+        Name of the family: ``"yeoh-3"``.
     material
-        The model with the constants found.
+        Model with the fitted constants.
     constants
         Every constant with its interval, by name; moduli in Pa.
     young
@@ -52,13 +52,14 @@ class ModelFit:
     rmse, max_error
         Root mean square and largest error of the stress over the fitted points, in Pa.
     cv_rmse
-        The same root mean square where each fifth of every curve is predicted from the other four.
+        Root mean square error in cross-validation: each fifth of every curve is predicted from the
+        other four.
     r2
         Share of the variance of the stress that is explained.
     stability
-        Where it is stable, in the three modes.
+        Stable ranges in the three modes.
     stable_in_fit
-        Whether it is stable over all strains that were fitted, in their modes.
+        True if it is stable over all strains that were fitted, in their modes.
     """
 
     name: str
@@ -79,37 +80,37 @@ class ModelFit:
 
     @property
     def warnings(self) -> list[str]:
-        """What to be careful about, in sentences."""
+        """Warnings on the model, in sentences."""
         found = [] if self.stable_in_fit else [f"{self.name} is unstable inside the fitted range"]
         return found + [f"{self.name}, {r.sentence}" for r in self.stability if r.sentence]
 
 
 @dataclass(frozen=True)
 class CouponFit:
-    """What the coupons of a material say.
+    """Result of the fit of coupons of one material.
 
     Attributes
     ----------
     measured
-        The curves as they came.
+        Curves as they were measured.
     curves
-        The curves that were fitted: toe corrected, up to the largest strain.
+        Curves that were fitted: toe corrected, up to the largest strain.
     toes
-        The toe of each curve, where it could be told.
+        Toe of each curve, or None where it could not be determined.
     correction
-        What was done about it.
+        Correction of the toe.
     observed
         Moduli from other tests.
     max_strain
-        The largest strain that was asked for.
+        Largest strain of the fit.
     models
-        The fits, best prediction first.
+        Fits, best prediction first.
     rejected
-        Models that could not be fitted, and why.
+        Models that could not be fitted, with the reason.
     cycles
         Cyclic tests, toe corrected; their first loadings are among the curves.
     untested
-        The stress in each mode that no curve has, by all models that fit alike.
+        Stress in each mode that no curve has, by all models that fit alike.
     """
 
     measured: tuple[Curve, ...]
@@ -125,12 +126,12 @@ class CouponFit:
 
     @property
     def recommended(self) -> ModelFit:
-        """The model with the fewest constants among the sound ones that predict about best.
+        """Model with the fewest constants among the sound ones that predict about best.
 
         Sound are those that are stable over the fitted range and, where all curves are uniaxial,
-        are written in ``I₁`` alone (neo-Hookean, Gent, Yeoh): what Ogden and Mooney–Rivlin models
-        then say of the other modes is a guess, and an inflated robot lives there. "About best" is
-        within 10 % of the smallest ``cv_rmse``. Where no model is sound, all of them count.
+        are written in ``I₁`` alone (neo-Hookean, Gent, Yeoh): the stress of Ogden and Mooney–Rivlin
+        models in the other modes is then a guess, and inflated robots work in those. "About best"
+        is within 10 % of the smallest ``cv_rmse``. Where no model is sound, all of them count.
         """
         stable = [fit for fit in self.models if fit.stable_in_fit] or list(self.models)
         if {curve.mode for curve in self.curves} == {"uniaxial"}:
@@ -176,12 +177,12 @@ class CouponFit:
 
     @cached_property
     def _softenings(self) -> dict[str, SofteningFit]:
-        """Those that were asked for, by the name of the model."""
+        """Softening fits that were requested, by the name of the model."""
         return {}
 
     @property
     def warnings(self) -> list[str]:
-        """What to be careful about in the data, in sentences."""
+        """Warnings on the data, in sentences."""
         found: list[str] = []
         for curve, toe in zip(self.measured, self.toes, strict=True):
             found += _about_the_start(curve, toe, self.correction)
@@ -217,9 +218,9 @@ class CouponFit:
         Parameters
         ----------
         name
-            What designs call it.
+            Name in designs.
         model
-            One of the models; default: the recommended one.
+            Name of a model; default: the recommended one.
         title, source
             See :class:`~voxsoft.materials.Card`; the source has a default that names the curves.
 
@@ -311,7 +312,7 @@ class CouponFit:
         return float(choose(choose(curve.strain) for curve in self.curves))
 
     def _tested(self) -> StretchRange:
-        """How far the specimens went in the parts of the curves that were fitted."""
+        """Return the range of stretches of the specimens in the fitted parts of the curves."""
         low, high = self._span(0), self._span(1)
         pressed = round(1.0 + low, 4) if low < -_LARGE_TOE else None
         return StretchRange(largest=max(round(1.0 + high, 4), 1.0), smallest=pressed)

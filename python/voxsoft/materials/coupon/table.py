@@ -1,4 +1,4 @@
-"""Curves from the tables that testing machines write."""
+"""Reading of curves from the tables of testing machines."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from voxsoft.materials.homogeneous import Mode
 from voxsoft.materials.hyperelastic import Floats
 from voxsoft.units import format_quantity, parse, to_si
 
-# English and German, as the machines of Instron, MTS, Shimadzu and ZwickRoell name them.
-# "Travel" is the crosshead's; compression, whose sign differs between machines, is not guessed.
+# English and German column names of machines of Instron, MTS, Shimadzu and ZwickRoell. "Travel" is
+# that of the crosshead; compression, whose sign differs between machines, is not guessed.
 _NAMES: Final = {
     "strain": (
         *("strain", "eng strain", "engineering strain", "nominal strain", "tensile strain"),
@@ -50,7 +50,7 @@ _CASELESS: Final = {u.lower(): u for u in ("Pa", "kPa", "MPa", "GPa", "N", "kN",
 _ALLOWED: Final = (
     "strain (or strain_percent, stretch, displacement_mm) and stress_kPa (or _Pa, _MPa, force_N)"
 )
-# The most that any rubber stretches is some 20 times its length.
+# Upper limit of the strain of any rubber: some stretch to 20 times their length.
 _LARGEST_STRAIN: Final = 25.0
 _LARGEST_TEXT: Final = 50_000_000
 
@@ -80,9 +80,9 @@ def read_curve(
         ``displacement_mm``; and ``stress_kPa`` (``stress [MPa]``, ``eng_stress_Pa``, ...) or
         ``force_N``. Strain and stress are engineering quantities. Other columns are left alone.
     name
-        What errors and reports call it.
+        Name in errors and reports.
     mode
-        The test: ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
+        Mode of the test: ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
     area
         Original cross section in m² or with its unit, for a column of forces.
     length
@@ -91,7 +91,7 @@ def read_curve(
     Returns
     -------
     Curve
-        Cut at the largest stress if the stress falls to less than half of it after that: the
+        Curve, cut at the largest stress if the stress falls to less than half of it after that: the
         specimen broke.
 
     Raises
@@ -130,12 +130,12 @@ def read_cycles(
     area: float | str | None = None,
     length: float | str | None = None,
 ) -> Cycles:
-    r"""Read a test with load and unload from a table, as :func:`read_curve` reads one without.
+    r"""Read a test with load and unload from a table; see :func:`read_curve` for its form.
 
     Raises
     ------
     MeasurementError
-        As there; or a strain that never falls.
+        The errors of :func:`read_curve`; or a strain that never falls.
 
     Examples
     --------
@@ -150,7 +150,7 @@ def read_cycles(
 def _columns(
     text: str, name: str, area: float | str | None, length: float | str | None
 ) -> tuple[Floats, Floats]:
-    """Strain and stress in Pa, as they stand in a table."""
+    """Return strain and stress in Pa, uncorrected, from a table."""
     length = None if length is None else to_si(length, "length", "length")
     area = None if area is None else to_si(area, "area", "area")
     separator, rows = _rows(text, name)
@@ -170,7 +170,7 @@ def _rows(text: str, name: str) -> tuple[str, list[list[str]]]:
     if len(text) > _LARGEST_TEXT or "\0" in text:
         raise MeasurementError(name, "is not a table of text", "save the table as CSV")
     lines = text.lstrip("\ufeff").splitlines()
-    # Lines above the header may have none; where commas are in numbers, the other is in all lines.
+    # Lines above the header may have none; with decimal commas, the separator is in all lines.
     separator = max(";\t,", key=lambda each: sum(each in line for line in lines[:100]))
     try:
         rows = list(csv.reader(io.StringIO("\n".join(lines)), delimiter=separator))
@@ -206,7 +206,7 @@ def _header(rows: Sequence[Sequence[str]], name: str) -> tuple[int, _Column, _Co
 
 
 def _above_numbers(rows: Sequence[Sequence[str]], first: int) -> int:
-    """Find the line that is most likely meant as the header: above numbers and their units."""
+    """Find the most likely header line: the one above the numbers and their units."""
     filled = [at for at in range(first, len(rows)) if any(cell.strip() for cell in rows[at])]
     numbers = next((n for n, at in enumerate(filled) if all(map(_is_number, rows[at]))), 0)
     above = [at for at in filled[:numbers] if not all(map(_is_unit, rows[at]))]
@@ -247,7 +247,7 @@ def _column(index: int, cell: str) -> _Column | None:
 
 
 def _split(cell: str) -> tuple[str, str]:
-    """Part a head such as ``eng_stress_Pa`` or ``Load [N]`` into its label and its unit."""
+    """Split a head such as ``eng_stress_Pa`` or ``Load [N]`` into its label and its unit."""
     head = cell.strip()
     bracketed = re.fullmatch(r"(.*?)[\s_]*[(\[](.*)[)\]]", head)
     if bracketed:
@@ -366,7 +366,7 @@ def _break(
     strain: Floats,
     stress: Floats,
 ) -> int | None:
-    """Index of the last point before the break, if the specimen broke in tension."""
+    """Return the index of the last point before the break, if the specimen broke in tension."""
     if len(stress) < 2 or not (np.isfinite(stress).all() and np.isfinite(strain).all()):
         return None
     top = int(np.argmax(stress))

@@ -1,9 +1,9 @@
-"""What coupons leave open: the stress in modes that nobody tested, by models that fit alike.
+"""Untested modes of a coupon fit: the stress in them by all models that fit the coupons alike.
 
-Constants of one model are as sure as their intervals; that the model is the right one is not in
-them. So every model that fits the curves as well as the best is asked for the stress in the modes
-that were not tested, and for how far this stress can be pushed before its fit is worse than the
-noise allows: a profile likelihood over all models together.
+Intervals of constants hold for one model; they do not cover that the model is wrong. So every
+model that fits the curves as well as the best predicts the stress in the modes that were not
+tested, with the range of this stress over which its fit is not worse than the noise allows: a
+profile likelihood over all models together.
 """
 
 from __future__ import annotations
@@ -23,47 +23,47 @@ from voxsoft.materials.lattice import SILICONE_DENSITY
 from voxsoft.materials.stability import stable_range
 from voxsoft.units import format_quantity
 
-#: The stretch at which the modes are compared, if the coupons went so far: walls of chambers are
-#: seldom stretched more.
+#: Stretch at which the modes are compared, if the coupons were stretched so far: walls of chambers
+#: are seldom stretched more.
 COMPARED_AT: Final = 1.5
 
-#: A spread of the stress, of its middle, from which on it is worth another test: castings of one
-#: silicone repeat to about a tenth.
+#: Relative spread of the stress from which on another test is worthwhile: castings of one silicone
+#: repeat to about a tenth.
 WORTH_A_TEST: Final = 0.1
 
 _CONFIDENCE: Final = 0.95
-#: The lowest Ogden exponent of the models that are compared: that of Mooney–Rivlin's second
-#: invariant, and of Treloar's rubber, which was stretched in all three modes (R. W. Ogden,
-#: doi 10.1098/rspa.1972.0026). Lower ones fit any pull and make a membrane as stiff as one likes.
+#: Lowest Ogden exponent of the compared models: that of Mooney–Rivlin's second invariant, and of
+#: Treloar's rubber, which was stretched in all three modes (R. W. Ogden,
+#: doi 10.1098/rspa.1972.0026). Lower ones fit any tension and make a membrane arbitrarily stiff.
 LOWEST_EXPONENT: Final = -2.0
 
-# How much more than all points together the stress counts at which a model is held.
+# Weight of the stress at which a model is held, over that of all points together.
 _HELD: Final = 1e4
-# The root of the misfit is nearly linear in the stress that is asked for: some secant steps.
+# Number of secant steps: the root of the misfit is nearly linear in the held stress.
 _STEPS: Final = 8
-# The end of an interval is known to this part of its distance from the best fit.
+# Tolerance of the end of an interval, as a part of its distance from the best fit.
 _PRECISE: Final = 0.02
-# A model whose stress can be pushed to this multiple is not held by the coupons at all.
+# Multiple of the stress up to which a model may be pushed; beyond, coupons do not determine it.
 _FARTHEST: Final = 10.0
-# Less stretch than this says nothing about the shape of a curve.
+# Least stretch of coupons that shows the shape of a curve.
 _LEAST: Final = 1.05
 
 
 class UntestedMode(NamedTuple):
-    """The stress in a mode that was not tested, by all models that fit what was tested alike.
+    """Stress in an untested mode, by all models that fit the tested ones alike.
 
     Attributes
     ----------
     mode
         ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
     stretch
-        The stretch at which they are compared.
+        Stretch at which they are compared.
     low, high
-        Engineering stress in Pa between which they lie, with 95 % of the noise of the coupons.
+        Range of their engineering stress in Pa, with 95 % of the noise of the coupons.
     low_model, high_model
-        The models that say so.
+        Names of the models at the ends of the range.
     models
-        All models that fit alike.
+        Names of all models that fit alike.
     """
 
     mode: Mode
@@ -76,12 +76,12 @@ class UntestedMode(NamedTuple):
 
     @property
     def spread(self) -> float:
-        """Half the distance of the two over their middle."""
+        """Half of the range over its middle."""
         return (self.high - self.low) / (self.high + self.low)
 
     @property
     def sentence(self) -> str:
-        """What a user should know, in one line; empty where the coupons tell the stress.
+        """Warning in one line; empty where the coupons determine the stress.
 
         Examples
         --------
@@ -102,7 +102,7 @@ fit alike: walls of chambers are stretched both ways; test a membrane (--equibia
         )
 
     def beside(self, name: str, stress: float) -> str:
-        """The sentence with what a model of the fit says [Pa], and whether it fits alike.
+        """Return the sentence with the stress of a model of the fit [Pa], and if it fits alike.
 
         Examples
         --------
@@ -139,14 +139,14 @@ def untested_modes(
     Parameters
     ----------
     curves
-        What was fitted.
+        Fitted curves.
     families
-        The models that are stable over the curves. One that is unstable up to the compared stretch
-        in the mode in question is no rubber, and is left out there.
+        Models that are stable over the curves. One that is unstable up to the compared stretch in
+        the mode in question is no rubber, and is left out there.
     data
-        What was solved, all points with one weight.
+        Fitted data, all points with one weight.
     share
-        The share of the points that counts as independent.
+        Share of the points that counts as independent.
 
     Returns
     -------
@@ -158,7 +158,7 @@ def untested_modes(
     The misfit of a model with ``k`` constants, held at a stress, may exceed the smallest misfit
     ``R`` of all models (``K`` constants, ``n`` independent points) by ``m R F/(n - K)``,
     ``m = max(K - k, 0) + 1``, with the 95 % quantile ``F`` of Fisher's distribution for ``m`` and
-    ``n - K`` degrees of freedom: what truth with that stress would leave in 19 of 20 tests.
+    ``n - K`` degrees of freedom: the bound of a true stress in 19 of 20 tests.
     """
     reach = max(float(principal_stretches(c.mode, c.stretch).max()) for c in curves)
     modes = [mode for mode in MODES if mode not in {curve.mode for curve in curves}]
@@ -181,7 +181,7 @@ def untested_modes(
     misfits = {family: _misfit(family, data, constants) for family, constants in solved.items()}
     best = min(misfits, key=lambda family: misfits[family])
     freedom = max(points - best.size, 1.0)
-    # Rounding of the numbers in a file leaves a misfit where nothing else does.
+    # Rounding of the numbers in a file leaves a misfit even of a perfect fit.
     floor = 1e-12 * float(data.target @ data.target)
 
     def allowed(family: Family) -> float:
@@ -223,7 +223,7 @@ def _misfit(family: Family, data: Data, constants: Floats) -> float:
 def _reach(
     family: Family, constants: Floats, data: Data, mode: Mode, stretch: float, allowed: float
 ) -> tuple[float, float]:
-    """The smallest and largest stress in a mode with which a model still fits."""
+    """Find the smallest and largest stress in a mode with which a model still fits."""
     at = np.array([stretch])
     best = float(family.stress(constants, mode, at)[0])
     least = _misfit(family, data, constants)
@@ -232,13 +232,13 @@ def _reach(
 
     starts = [constants]
     if family.model == "ogden" and family.linear > 1:
-        # The lowest exponent is what lifts the membrane, wherever the best fit has left it.
+        # The lowest exponent stiffens the membrane, at any value that the best fit has left it.
         lifted = constants.copy()
         lifted[family.linear + int(np.argmin(constants[family.linear :]))] = LOWEST_EXPONENT
         starts.append(lifted)
 
     def excess(stress: float) -> float:
-        """Root of the misfit that holding the model at a stress adds."""
+        """Return the root of the misfit that is added by holding the model at a stress."""
         held = Data((*data.blocks, Block(mode, at, np.array([stress]), weight)), data.anchors)
         added = np.inf
         for start in starts:
@@ -254,11 +254,11 @@ def _reach(
 
 
 def _end(best: float, side: float, room: float, excess: Callable[[float], float]) -> float:
-    """Where the excess has used up its room on one side of the best stress.
+    """Find the stress on one side of the best at which the excess reaches its limit.
 
     Near the best fit the excess is proportional to the distance from it; bounds of constants (an
     Ogden modulus is not negative) bend it. Regula falsi between the last two on either side, with
-    bisection where the outer one cannot be reached.
+    bisection while the outer one is infinite.
     """
     inside, below = 0.0, -room
     outside, above = np.inf, np.inf
