@@ -94,7 +94,7 @@ class SetupAlong(Setup):
     along: FluidPath = field(kw_only=True)
 
     def __post_init__(self) -> None:
-        """Nothing: design and mesh are those of a setup."""
+        """Skip the preparation: design and mesh are those of a setup."""
 
     @cached_property
     def fluids(self) -> Fluids | None:

@@ -403,7 +403,7 @@ def _with_histories(
 
 
 def _joined(designs: list[Design], over: Over, given: Design) -> tuple[Design, list[float]]:
-    """Join designs to one with the values as histories of its loads and motions, and its instants."""
+    """Join designs to one with their loads and motions as histories, and return its instants."""
     if over.key == TIME:
         return given, list(over.values)
     instants = [float(number) for number in range(len(designs))]

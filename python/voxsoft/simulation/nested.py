@@ -21,9 +21,9 @@ _OFF = 1e-6
 def nested(coarse: Result, setup: Setup) -> Start | None:
     """Interpolate an equilibrium to voxels half as large.
 
-    Displacements are trilinear in the large voxels. Small voxels bulge by that as in no equilibrium,
-    and their bulk modulus makes pressures of it that are far too large; the first Newton step begins
-    with the pressure of the large voxel around them instead.
+    Displacements are trilinear in the large voxels. Small voxels bulge by that as in no
+    equilibrium, and their bulk modulus makes pressures of it that are far too large; the first
+    Newton step begins with the pressure of the large voxel around them instead.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def nested(coarse: Result, setup: Setup) -> Start | None:
     Returns
     -------
     Start or None
-        None where the small voxels do not fill the large ones, with contact, or with several bodies.
+        None where the small voxels do not fill the large ones, with contact, or for several bodies.
     """
     whole = setup.whole if isinstance(setup, SectorSetup) else setup
     large, small = coarse.mesh, whole.mesh

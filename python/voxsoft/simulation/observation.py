@@ -103,7 +103,7 @@ class Observation:
 
     @property
     def metrics(self) -> Mapping[str, float]:
-        """Objectives, constraints and all metrics that need no choice; see :attr:`Result.metrics`."""
+        """Objectives, constraints and metrics that need no choice; see :attr:`Result.metrics`."""
         return self.result.metrics
 
     @property

@@ -177,7 +177,7 @@ def _weights(
         bounds = getattr(probe, name)
         if bounds is not None and bounds[0] == bounds[1]:
             reach[axis] = size
-            # Motion is interpolated between layers, so that here vertices are at their true positions.
+            # Motion is interpolated between layers: vertices are at their true positions here.
             points = vertices
             weights *= 1.0 - np.abs(vertices[:, axis] - bounds[0]) / size
     weights = np.where(inside_region(probe, points, shapes, reach), weights, 0.0)

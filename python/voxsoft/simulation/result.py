@@ -446,7 +446,7 @@ class Result(Shown):
         return page_of(self)
 
     def summary(self) -> dict[str, Any]:
-        """Return everything a record needs, as plain data in SI units (the ``--json`` of ``run``)."""
+        """Return all that a record needs, as plain data in SI units (the ``--json`` of ``run``)."""
         return {
             "status": self.status,
             "message": self.message,

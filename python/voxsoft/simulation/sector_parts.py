@@ -139,7 +139,7 @@ class SectorParts:
                 self._refuse(f"is not symmetric: {lone.what} has no image across {found}{also}")
 
     def _check_clamps(self) -> None:
-        """Raise unless images of held vertices are held, and move to the images of their targets."""
+        """Raise unless clamps hold the images of their vertices, with mirrored motions."""
         whole, decides = self._sector.whole, self._decides
         for plane, image in zip(self._sector.planes, self._sector.images, strict=True):
             self._check_held((decides >= 0) != (decides[image] >= 0), "what it holds", plane, image)

@@ -39,7 +39,7 @@ class SectorSetup(Setup):
     sector: Sector = field(kw_only=True)
 
     def __post_init__(self) -> None:
-        """Nothing: the layers and chambers are those of the whole body."""
+        """Skip the preparation: layers and chambers are those of the whole body."""
 
     @classmethod
     def part_of(cls, whole: Setup) -> Self | None:
