@@ -71,7 +71,7 @@ def overlap_of(first: Surface, second: Surface, voxel_size: float) -> Overlap:
     ----------
     first, second
         Either may be so small or so thin that no vertex of the other is in it: the centers of
-        triangles are looked at too.
+        triangles are tested too.
     voxel_size
         Voxel size of the body [m].
     """

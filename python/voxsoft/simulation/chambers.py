@@ -1,4 +1,4 @@
-"""From the named chambers of a design to the cavities of its mesh."""
+"""Named chambers of a design as cavities of its mesh."""
 
 from __future__ import annotations
 

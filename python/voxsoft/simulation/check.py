@@ -301,7 +301,7 @@ def _volumes(body: Design | Voxels, mesh: Mesh) -> Volumes:
     try:
         return volumes_of(body, mesh) if isinstance(body, Design) else Volumes()
     except VoxSoftError:
-        return Volumes()  # a shape without a value somewhere is a finding by itself
+        return Volumes()  # a shape without a value somewhere is a finding of its own
 
 
 def _discretized(body: Design | Voxels) -> tuple[Mapping[str, Voxels], Mesh, float]:

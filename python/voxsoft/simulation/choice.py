@@ -188,7 +188,7 @@ def unused_settings(
     for name in [*given, *(key for key, value in (extra or {}).items() if value)]:
         users = USERS[name]
         if name == "damping" and solver.damping != "auto":
-            users &= DYNAMICS  # relaxation knows "auto" alone
+            users &= DYNAMICS  # relaxation has "auto" alone
         if kind in users:
             continue
         where = name if extra and name in extra else f"solver.{name}"

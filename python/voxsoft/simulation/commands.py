@@ -82,8 +82,8 @@ class LoadCommands:
         Parameters
         ----------
         given
-            By name or index: a number in SI units, text with a unit, or a pint quantity; three of
-            them for a force, and for a traction that has three in the design.
+            Values by name or index: a number in SI units, text with a unit, or a pint quantity;
+            three of them for a force, and for a traction that has three in the design.
 
         Raises
         ------

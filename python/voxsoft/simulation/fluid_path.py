@@ -18,7 +18,7 @@ _AMOUNTS: Final = ("mass", "temperature", "outside")
 
 @dataclass(frozen=True)
 class FluidPath(Fluids):
-    """Supplies of designs that differ in how much these give.
+    """Supplies of designs that differ in the amounts that these give.
 
     Attributes
     ----------

@@ -74,7 +74,7 @@ def gradient(
     Returns
     -------
     dict of dict
-        By target, then by parameter, in SI units.
+        Derivatives by target, then by parameter, in SI units.
 
     Raises
     ------

@@ -181,7 +181,7 @@ def parts_of(design: Design, activation: AnyActivation, where: str) -> list[int]
     Raises
     ------
     DesignError
-        As :func:`growths_of`.
+        Errors as for :func:`growths_of`.
     """
     named = [i for i, part in enumerate(design.parts) if activation.part == part.label]
     if not named:

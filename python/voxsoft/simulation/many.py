@@ -94,7 +94,7 @@ class Settled(Shown):
 
 @dataclass(frozen=True)
 class Ensemble:
-    """A setup made ready for many candidates, one in each lane of the processor.
+    """A setup prepared for many candidates, one in each lane of the processor.
 
     Attributes
     ----------
@@ -200,12 +200,12 @@ def simulate_many(
     Returns
     -------
     tuple of Settled
-        In the order of the candidates.
+        Final states in the order of the candidates.
 
     Raises
     ------
     DesignError
-        The design cannot be solved, or other materials are asked of one with several.
+        The design cannot be solved, or has several materials and `materials` would replace them.
     SimulationError
         No candidates, or lists of different lengths.
 

@@ -14,7 +14,7 @@ from voxsoft.errors import SimulationError, VoxSoftError
 from voxsoft.records import steps_of
 from voxsoft.units import KINDS, format_quantity, parse_any, si_value, write_exactly
 
-#: The key that stands for the instants of all histories.
+#: Key of the instants of all histories.
 TIME: Final = "time"
 #: Largest number of values of a path.
 _MOST: Final = 10_000

@@ -71,8 +71,8 @@ class Penetration:
     pairs
         Numbers of the triangles of the surface that pass through each other, (p, 2).
     covered
-        For each vertex of the surface in other material its number, that of the tetrahedron that
-        it is in, and that of the overlap, (c, 3).
+        Numbers of each vertex of the surface in other material, of the tetrahedron that it is in,
+        and of the overlap, (c, 3).
     """
 
     overlaps: tuple[Overlap, ...] = ()

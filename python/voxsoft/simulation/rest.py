@@ -62,7 +62,7 @@ class QuickestRest(Method):
 
     The choice depends on the body and the load alone, never on the clock: the same design gives the
     same bits. Prescribed motions, which relaxation brings up slowly, are left to it. Where statics
-    finds no stable equilibrium relaxation goes on from where it was.
+    finds no stable equilibrium relaxation resumes from its last state.
     """
 
     title: ClassVar[str] = "the quickest way to rest"

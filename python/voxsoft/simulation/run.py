@@ -79,7 +79,7 @@ def simulate(
     Returns
     -------
     Result
-        With ``status`` ``ok``, ``not-at-rest`` or ``diverged``.
+        Result with the ``status`` ``ok``, ``not-at-rest`` or ``diverged``.
 
     Raises
     ------

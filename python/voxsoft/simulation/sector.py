@@ -44,15 +44,15 @@ class Sector:
     whole
         The mesh of the whole body, made of voxels.
     images
-        For each plane the image of each vertex of the whole, (n,).
+        Image of each vertex of the whole for each plane, (n,).
     vertices
         The vertices of the whole that are in the sector, (m,).
     source
-        For each vertex of the whole, the vertex of the sector whose image it is, (n,).
+        Vertex of the sector whose image each vertex of the whole is, (n,).
     signs
-        For each vertex of the whole, the factors on a vector from its source, (n, 3).
+        Factors on the components of a vector from its source to each vertex of the whole, (n, 3).
     body_images
-        For each plane the number of the image of each body.
+        Number of the image of each body for each plane.
     """
 
     planes: tuple[Symmetry, ...]
@@ -74,7 +74,7 @@ class Sector:
         mesh
             The whole body, or several bodies that are images of themselves or of each other.
         kinds
-            For each part from 1 on, a number that parts of one material share; default: every part
+            A number for each part from 1 on, which parts of one material share; default: every part
             is mirrored to itself.
 
         Raises

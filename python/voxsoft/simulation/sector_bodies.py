@@ -40,7 +40,7 @@ class BodyImages:
     planes
         The planes of symmetry.
     kinds
-        For each part from 1 on, a number that parts of one material share.
+        A number for each part from 1 on, which parts of one material share.
     """
 
     mesh: Mesh

@@ -165,7 +165,7 @@ class SectorSetup(Setup):
         for sign, _ in self.sector.patterns():
             image = sign * force
             total += image
-            # A mirror image turns the other way round.
+            # A moment is a pseudovector: mirroring changes its sign besides.
             moment += np.prod(sign) * sign * own + np.cross(self.sector.origin, image)
         return _triple(total), _triple(moment)
 

@@ -51,7 +51,7 @@ class Simulator:
     Parameters
     ----------
     design
-        A design whose loads have no histories. Motions of clamps go on with the time.
+        A design whose loads have no histories. Motions of clamps follow their histories.
     time_step
         Seconds of each :meth:`step`, which takes as many smaller ones inside as the body needs;
         default 0.02.

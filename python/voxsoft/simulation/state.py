@@ -42,7 +42,7 @@ def result_at(
     Returns
     -------
     Result
-        With the forces, the residual, the metrics and the warnings of these positions.
+        Forces, residual, metrics and warnings of these positions.
 
     Raises
     ------

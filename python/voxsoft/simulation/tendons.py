@@ -214,7 +214,7 @@ def resolve_tendons(setup: Setup) -> tuple[ResolvedTendon, ...]:
 
 @dataclass(frozen=True, eq=False)
 class _Stop:
-    """A point on the path, with its carrier, and its position in space and in the carrier's frame."""
+    """A point on the path: its carrier, and its position in space and in the carrier's frame."""
 
     where: str
     position: Floats

@@ -60,7 +60,7 @@ def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
     Returns
     -------
     Modes
-        In order of their frequency.
+        Eigenmodes in the order of their frequencies.
 
     Raises
     ------
