@@ -1,4 +1,4 @@
-"""From a design to its state at rest or its motion over time."""
+"""Simulation of a design: its state at rest or its motion over time."""
 
 from voxsoft.metrics import Place
 from voxsoft.simulation.check import CheckReport, check

@@ -1,4 +1,4 @@
-"""The adjoint states of numbers at an equilibrium."""
+"""Adjoint states of metrics at an equilibrium."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def adjoint_states(problem: _core.Problem, positions: Floats, slopes: Floats) ->
     Parameters
     ----------
     problem
-        The problem with its tangent ``K``.
+        The mechanical problem with its tangent ``K``.
     positions
         Its equilibrium, (n, 3), m.
     slopes
@@ -39,7 +39,7 @@ def adjoint_states(problem: _core.Problem, positions: Floats, slopes: Floats) ->
 
 @contextmanager
 def readable_errors(vertices: int) -> Iterator[None]:
-    """Say what the core's errors mean for a body of so many vertices."""
+    """Translate the core's errors into messages for a body of so many vertices."""
     try:
         yield
     except MemoryError as error:

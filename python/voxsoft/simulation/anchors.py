@@ -12,8 +12,8 @@ from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.setup import Setup
 from voxsoft.units import format_quantity
 
-#: Of Young's modulus times the face of a voxel. At a point of a finger of 8 mm with voxels of 1 and
-#: 2 mm the rubber gives way at 0.8 and 0.7 of it: the pull is that on one voxel, however small.
+#: Largest pull at a point, in Young's moduli times the face of a voxel. The rubber of a finger of
+#: 8 mm with voxels of 1 and 2 mm gives way at 0.8 and 0.7: one voxel bears the pull, however small.
 _MOST: Final = 0.5
 
 
@@ -23,7 +23,7 @@ def weak_anchors(setup: Setup) -> Iterator[Diagnostic]:
     Parameters
     ----------
     setup
-        A design made ready, whose tendons are on its mesh.
+        A prepared design, whose tendons are on its mesh.
     """
     mesh = setup.mesh
     for index, tendon in enumerate(setup.tendons):

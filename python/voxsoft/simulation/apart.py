@@ -1,4 +1,4 @@
-"""Surfaces of the unloaded design: how deep they are in each other, how near, and the way out."""
+"""Penetration depth, distance and separation of surfaces in the unloaded design."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-#: How deep surfaces may be in each other, in voxels: rounding of surfaces that touch.
+#: Penetration depth up to which surfaces only touch, in voxels: rounding.
 TOUCH: Final = 1e-6
-#: How far behind a surface it is looked for what covers it exactly, in voxels.
+#: Depth of test points behind a surface, in voxels: they detect a surface that coincides with it.
 _INSIDE: Final = 1e-3
-#: Moves after which what still overlaps is not separated.
+#: Largest number of moves that separate a surface from others.
 _MOVES: Final = 50
 
 
@@ -24,9 +24,9 @@ class Surface:
     triangles: NDArray[np.uint32]
 
     def just_inside(self, depth: float) -> NDArray[np.float64]:
-        """Its vertices, and the centers of its triangles so deep [m] behind them, (n + t, 3).
+        """Return its vertices, and the centers of its triangles moved inward [m], (n + t, 3).
 
-        Behind its own surface nothing is in what only touches it, but all of what covers it is.
+        Centers moved inward are outside a surface that only touches, and inside one that coincides.
         """
         a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
         normals = np.cross(b - a, c - a)
@@ -36,27 +36,27 @@ class Surface:
 
     @property
     def middle(self) -> NDArray[np.float64]:
-        """Of its box [m], (3,)."""
+        """Middle of its bounding box [m], (3,)."""
         middle: NDArray[np.float64] = (self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2.0
         return middle
 
     def moved(self, way: NDArray[np.float64]) -> Surface:
-        """The same somewhere else."""
+        """Return the surface translated by a vector [m], (3,)."""
         return Surface(self.vertices + way, self.triangles)
 
 
 @dataclass(frozen=True)
 class Overlap:
-    """Two surfaces that are in each other, or how far they are apart.
+    """Deepest penetration of two surfaces, or the smallest distance between them.
 
     Attributes
     ----------
     depth
-        Of the place that is deepest [m]; negative for the smallest distance.
+        Penetration depth at the deepest place [m]; negative for the smallest distance.
     place
-        Where that is [m], (3,).
+        Position of this place [m], (3,).
     way
-        From the first surface the shortest way out there [m], (3,).
+        Shortest translation of the first surface out of the second there [m], (3,).
     """
 
     depth: float
@@ -65,15 +65,15 @@ class Overlap:
 
 
 def overlap_of(first: Surface, second: Surface, voxel_size: float) -> Overlap:
-    """How deep two surfaces are in each other, or how near.
+    """Measure the penetration depth of two surfaces, or their distance.
 
     Parameters
     ----------
     first, second
         Either may be so small or so thin that no vertex of the other is in it: the centers of
-        triangles are looked at too.
+        triangles are tested too.
     voxel_size
-        Of the body [m].
+        Voxel size of the body [m].
     """
     places, distances, ways = [], [], []
     for of, to, sign in ((first, second, 1.0), (second, first, -1.0)):
@@ -89,12 +89,12 @@ def overlap_of(first: Surface, second: Surface, voxel_size: float) -> Overlap:
 
 
 def way_out(surface: Surface, others: list[Surface], voxel_size: float) -> NDArray[np.float64]:
-    """The way that takes a surface out of others [m], (3,): from the deepest place on, again.
+    """Find the translation that takes a surface out of others [m], (3,), deepest place first.
 
     Returns
     -------
     array
-        After fifty moves as far as these went, which may be in something still.
+        The translation; after fifty moves the surface may still penetrate another one.
     """
     way = np.zeros(3)
     for _ in range(_MOVES):
@@ -102,20 +102,20 @@ def way_out(surface: Surface, others: list[Surface], voxel_size: float) -> NDArr
         worst = max(found, key=lambda each: each.depth, default=None)
         if worst is None or worst.depth <= TOUCH * voxel_size:
             return way
-        # A little more than to the surface, from which rounding might lead back.
+        # Move a little beyond the surface, from which rounding might lead back.
         way = way + worst.way * (1.0 + TOUCH * voxel_size / worst.depth)
     return way
 
 
 def distances_to(surface: Surface, places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distances of places to a surface [m], negative inside."""
+    """Measure distances of places to a surface [m], negative inside."""
     return _nearest(surface, places)[0]
 
 
 def _nearest(
     surface: Surface, places: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Distances of places to a surface [m], negative inside, and the nearest points of it [m]."""
+    """Measure distances of places to a surface [m], negative inside, and find nearest points."""
     import igl
 
     triangles = surface.triangles.astype(np.int64)

@@ -1,4 +1,4 @@
-"""What carries a point of a body: vertices and weights, by which it goes with the material."""
+"""Interpolation of points of a body: vertices and weights that move a point with the material."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from voxsoft.mesh import Mesh
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-#: How far outside of its voxels a point may be, in voxels: a true surface lies up to half a voxel
-#: beyond the voxels that stand for it. It is carried by the nearest spot then.
+#: Largest distance of a point outside of the voxels, in voxels: a true surface lies up to half a
+#: voxel beyond the voxels that stand for it. The nearest point of a voxel carries it then.
 _REACH: Final = 0.5 * (1 + 1e-6)
-#: Points along the radius of a ball: 4,000 in all.
+#: Largest number of points along the radius of a ball: about 4,000 in all.
 _MOST_ACROSS: Final = 10
 
 
@@ -32,23 +32,23 @@ class Carrier(ABC):
     @property
     @abstractmethod
     def size(self) -> float:
-        """Of its elements [m]."""
+        """Size of its elements [m]."""
 
     @abstractmethod
     def nearest(self, point: Floats) -> tuple[Integers, Floats, float]:
-        """The vertices and weights of the nearest spot near a point (3,), and the distance [m].
+        """Find vertices and weights of the nearest material point, and its distance [m].
 
-        The distance is infinite where there is none near.
+        The distance from the point (3,) is infinite where no element is near.
         """
 
     def distance(self, point: Floats) -> float:
-        """How far a point is from the body [m], infinite where it is far."""
+        """Measure the distance of a point from the body [m], infinite where it is far."""
         return self.nearest(point)[2]
 
     def place(self, point: Floats, radius: float | None = None) -> tuple[Integers, Floats] | None:
-        """What carries a point [m], (3,); None for one that is outside.
+        """Find vertices and weights that carry a point [m], (3,); None for one outside.
 
-        With a radius [m] it is the mean of what is in a ball around the point, and in the body.
+        With a radius [m] they average over the part of a ball around the point in the body.
         """
         found = [self.nearest(point)]
         if found[0][2] > _REACH * self.size:
@@ -64,7 +64,7 @@ class Carrier(ABC):
         return vertices[kept], weights[kept] / len(found)
 
     def _ball(self, point: Floats, radius: float) -> Floats:
-        """Points evenly in a ball, by half an element or a quarter of the radius, (n, 3)."""
+        """Return evenly spaced points in a ball, by half an element or a quarter radius, (n, 3)."""
         step = min(0.5 * self.size, 0.25 * radius)
         count = int(radius / step)
         if count > _MOST_ACROSS:
@@ -90,7 +90,7 @@ class _Voxels(Carrier):
 
     @cached_property
     def _cells(self) -> dict[tuple[int, ...], Integers]:
-        """The corners of each voxel, z fastest, by its place on the grid."""
+        """Corners of each voxel, z fastest, by its cell of the grid."""
         mesh = self.mesh
         assert mesh.tet_voxel is not None
         # The corners of five tets, each several times: sorted by voxel, then taken once.
@@ -154,7 +154,7 @@ class _Tets(Carrier):
 
 
 def carrier_of(mesh: Mesh) -> Carrier:
-    """Return what finds the vertices that carry a point of a mesh.
+    """Return the carrier of points of a mesh: by voxels, or else by tetrahedra.
 
     Examples
     --------

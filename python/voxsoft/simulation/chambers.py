@@ -1,4 +1,4 @@
-"""From the named chambers of a design to the cavities of its mesh."""
+"""Named chambers of a design as cavities of its mesh."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from voxsoft.units import format_quantity
 
 Floats = NDArray[np.float64]
 
-#: Cavities whose volumes differ by less than this part may change places when a parameter does.
+#: Relative difference of volumes up to which cavities may swap indices when a parameter changes.
 ALIKE: Final = 0.1
 
 
@@ -33,7 +33,7 @@ def with_chamber_names(design: Design, mesh: Mesh) -> Mesh:
     Parameters
     ----------
     design
-        Its chambers; :func:`check_chambers` says what is wrong with those that are left out.
+        The design with its chambers; :func:`check_chambers` reports those that are left out.
     mesh
         Its mesh, with the chambers that layers close.
     """
@@ -50,7 +50,7 @@ def check_chambers(design: Design, mesh: Mesh) -> None:
     Raises
     ------
     NoCavityError
-        A chamber that is none, with the nearest that is one.
+        A chamber that is no cavity, with the nearest cavity.
     DesignError
         Two names for one cavity, or a region that holds several.
     """
@@ -68,7 +68,7 @@ def check_chambers(design: Design, mesh: Mesh) -> None:
 
 
 def _named_cavities(design: Design, mesh: Mesh) -> tuple[dict[int, str], list[DesignError]]:
-    """The names of cavities by their index, and what is wrong with the others."""
+    """Return names of cavities by index, and the errors of the other chambers."""
     names: dict[int, str] = {}
     errors: list[DesignError] = []
     for name, chamber in design.chambers.items():
@@ -97,7 +97,7 @@ def center_of(cavity: MeshCavity, mesh: Mesh) -> Floats:
 
 
 def ambiguous_indices(design: Design, mesh: Mesh) -> Iterator[Diagnostic]:
-    """Warn of cavities that are meant by an index that their volumes hardly decide.
+    """Warn of cavities chosen by an index where others have almost the same volume.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def ambiguous_indices(design: Design, mesh: Mesh) -> Iterator[Diagnostic]:
 
 
 def indices_used(design: Design) -> list[tuple[str, int]]:
-    """The places in a design that mean a cavity by its index, and the index."""
+    """List the places in a design that choose a cavity by its index, and the index."""
     targets: dict[str, Mapping[str, Target]] = {
         "objectives": design.objectives,
         "constraints": design.constraints,
@@ -174,7 +174,7 @@ def _cavity_of(chamber: Chamber, mesh: Mesh, shapes: Mapping[str, Shape], where:
 
 
 def _around(point: Floats, mesh: Mesh, where: str) -> int:
-    """The cavity that holds a point, or else the only one within half a voxel of it."""
+    """Return the cavity that contains a point, or else the only one within half a voxel."""
     gaps = [_distance(point, mesh.vertices[cavity.triangles]) for cavity in mesh.cavities]
     nearest, *others = sorted(range(len(gaps)), key=gaps.__getitem__)
     reach = 0.5 * voxel_size(mesh)
@@ -193,7 +193,7 @@ def _around(point: Floats, mesh: Mesh, where: str) -> int:
 
 
 def _distance(point: Floats, corners: Floats) -> float:
-    """Distance in m of a point from a closed surface, negative inside."""
+    """Measure the distance of a point from a closed surface [m], negative inside."""
     import igl
 
     points, faces = corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)

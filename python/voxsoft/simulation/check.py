@@ -1,6 +1,6 @@
-"""Checks: what would go wrong with a design or a body of voxels, found before it is solved.
+"""Checks of a design or a body of voxels before it is solved.
 
-Long because the report and its words stand beside the checks that fill it.
+Long because the report and its text stand beside the checks that fill it.
 """
 
 from __future__ import annotations
@@ -42,24 +42,24 @@ from voxsoft.units import format_quantity
 from voxsoft.voxels import Cavity, Leak, Voxels, Wall
 from voxsoft.voxels.regions import Cell
 
-#: Walls bend as they should from two voxels of thickness on.
+#: Smallest thickness of a wall that bends correctly, in voxels.
 GOOD_WALL = 2
 
 Point = tuple[float, float, float]
 
 # Bytes of the core's tables for one constraint, as measured.
 _BYTES_PER_CONSTRAINT = 120
-# Less material than this part may vanish without a word.
+# Share of the material that may be lost without a warning.
 _LOST = 1e-3
 # A place of a design that is a region: "probes.top", "clamps[0].region".
 _OF_A_REGION: Final = re.compile(r"(?P<section>probes|clamps|loads|layers)[.\[](?P<name>[^.\[\]]+)")
-# Voxels and their hinges are listed by name up to this number.
+# Largest number of components and leaks that are listed.
 _LISTED = 5
 
 
 @dataclass(frozen=True, repr=False)
 class CheckReport(Shown):
-    """What :func:`check` found.
+    """Findings of :func:`check`, with sizes and expected costs.
 
     Attributes
     ----------
@@ -70,26 +70,28 @@ class CheckReport(Shown):
     cavities, leaks
         Enclosed chambers, and chambers that are open somewhere.
     chambers
-        What the design calls each cavity; an empty text where it has no name.
+        Name of each cavity in the design; an empty text where it has none.
     mass
-        In kg; None for a design that cannot be made ready.
+        Mass [kg]; None for a design that cannot be prepared.
     thinnest_wall
-        In voxels; None for an empty body.
+        Thickness of the thinnest wall, in voxels; None for an empty body.
     cost
-        Seconds that one run is likely to take, as the design's solver has it; None without loads.
+        Predicted seconds of one run by the design's solver; None for voxels, and for a design
+        without a :class:`Setup`.
     memory
-        In bytes: an order of magnitude.
+        Memory of the solver, an order of magnitude [bytes].
     leak_points
-        Where each leak is open [m].
+        Position of the first opening of each leak [m].
     volumes
-        Of parts and cavities, as simulated and as described; empty for voxels without a design.
+        Volumes of parts and cavities, as simulated and as described; empty for voxels without a
+        design.
     phases
-        Where the grid of each body lies [m], by the body's name.
+        Phase of the grid of each body [m], by the body's name.
     bodies
-        Voxels of each body by its name, where there are several; places are then said in the own
-        frame of a body.
+        Number of voxels of each body by its name, where there are several; messages then give
+        places in the frame of the body.
     file
-        All that the file of the body holds beside all that was taken; None for shapes.
+        Report of reading the body's file, its contents beside the parts used; None for shapes.
     """
 
     findings: tuple[Diagnostic, ...]
@@ -111,7 +113,7 @@ class CheckReport(Shown):
 
     @property
     def valid(self) -> bool:
-        """Whether there is no error; warnings are allowed."""
+        """True if there is no error; warnings are allowed."""
         return not any(finding.severity == "error" for finding in self.findings)
 
     def _named_cavities(self) -> Iterator[tuple[str, Cavity]]:
@@ -186,7 +188,7 @@ def check(body: Design | Voxels) -> CheckReport:
     Returns
     -------
     CheckReport
-        Never raises for a bad design: what is wrong is in the findings.
+        Never raises for a bad design: its errors are in the findings.
 
     Examples
     --------
@@ -211,19 +213,19 @@ def examine(
     lost: float = 0.0,
     setup: Setup | None = None,
 ) -> CheckReport:
-    """Do what :func:`check` does for a body that is meshed already.
+    """Examine a body that is meshed already, as :func:`check` does.
 
     Parameters
     ----------
     body
-        What was meshed.
+        The design or the voxels that were meshed.
     voxels, mesh
         The voxels of each of its bodies by name, none of a body that is the mesh of a file, and
         their mesh.
     lost
-        Volume of the material that found no voxel [m³].
+        Volume of the material that fills no voxel [m³].
     setup
-        The design made ready, where it is known.
+        The prepared design, where it is known.
     """
     findings = _findings_of_loss(lost, mesh)
     mass = mesh.volume * SILICONE_DENSITY
@@ -299,11 +301,11 @@ def _volumes(body: Design | Voxels, mesh: Mesh) -> Volumes:
     try:
         return volumes_of(body, mesh) if isinstance(body, Design) else Volumes()
     except VoxSoftError:
-        return Volumes()  # a shape without a value somewhere is a finding by itself
+        return Volumes()  # a shape without a value somewhere is a finding of its own
 
 
 def _discretized(body: Design | Voxels) -> tuple[Mapping[str, Voxels], Mesh, float]:
-    """Voxels by body, their mesh, and the volume [m³] of material that found no voxel."""
+    """Return voxels by body, their mesh, and the volume [m³] of material that fills no voxel."""
     if not isinstance(body, Design):
         return {"": body}, body.mesh(), 0.0
     cells = filled(body)
@@ -322,7 +324,7 @@ def _alone(body: Design | Voxels, of: BodyMesh) -> Design | Voxels:
 
 @dataclass(frozen=True)
 class _ExaminedBody:
-    """One body: its voxels, what filled them, its own mesh with the cavities that layers close."""
+    """One body: its voxels, its design, its own mesh with the cavities that layers close."""
 
     of: BodyMesh
     voxels: Voxels
@@ -331,7 +333,7 @@ class _ExaminedBody:
     layers: tuple[LayerTriangles, ...]
 
     def closed(self, layers: tuple[LayerTriangles, ...]) -> _ExaminedBody:
-        """The same with the layers of the whole."""
+        """Close the body by those layers of the whole that are on it."""
         own = layers_on(self.of, layers)
         return replace(self, mesh=sealed(self.of.mesh, own), layers=own)
 
@@ -348,7 +350,7 @@ class _ExaminedBody:
         return _closed_by_layers(self.mesh, self.layers, self.voxels)
 
     def findings(self, is_held: bool) -> Iterator[Diagnostic]:
-        """What is doubtful about its voxels; with its name where it has one."""
+        """Find faults of its voxels; the findings name the body where it has a name."""
         for found in _findings_of_voxels(self.design, self.voxels, self.leaks, is_held):
             if not self.of.name:
                 yield found
@@ -357,13 +359,13 @@ class _ExaminedBody:
             yield replace(found, where=f'body "{self.of.name}", {found.where}', at=at)
 
     def placed(self, point: Point) -> Point:
-        """A point of its frame [m] in that of the design."""
+        """Transform a point [m] from its frame to that of the design."""
         x, y, z = self.of.placed(np.array([point]))[0].tolist()
         return x, y, z
 
 
 def _placed(found: Diagnostic, design: Design, mesh: Mesh) -> Diagnostic:
-    """The same with the place of the region that it is about, if it is about one."""
+    """Return a finding with the position of the region that it is about, if any."""
     match = _OF_A_REGION.match(found.where)
     if match is None or mesh.bodies:
         return found
@@ -375,7 +377,7 @@ def _placed(found: Diagnostic, design: Design, mesh: Mesh) -> Diagnostic:
 
 
 def _middle_of(region: Region, mesh: Mesh) -> tuple[float, float, float]:
-    """Where a region is, as near to the body as it comes [m]."""
+    """Return the point of a region, or its middle within the body's bounding box [m]."""
     point = getattr(region, "point", None) or region.center
     if point is not None:
         x, y, z = point
@@ -389,7 +391,7 @@ def _middle_of(region: Region, mesh: Mesh) -> tuple[float, float, float]:
 
 
 def _cavities(voxels: Voxels, mesh: Mesh) -> tuple[Cavity, ...]:
-    """The cavities of the voxels with the volumes of the mesh, which knows of voids."""
+    """Return the cavities of the voxels with the volumes of the mesh, which counts voids."""
     pairs = zip(voxels.cavities, mesh.cavities, strict=True)
     return tuple(replace(cavity, volume=float(surface.volume)) for cavity, surface in pairs)
 
@@ -405,7 +407,7 @@ def _findings_of_loss(lost: float, mesh: Mesh) -> list[Diagnostic]:
 def _closed_by_layers(
     mesh: Mesh, layers: tuple[LayerTriangles, ...], voxels: Voxels
 ) -> tuple[tuple[Cavity, ...], tuple[Leak, ...]]:
-    """Cavities and leaks of a body once its layers close what they span."""
+    """Find cavities and leaks of a body whose layers close the openings that they span."""
     if not any(len(layer.openings) for layer in layers):
         return _cavities(voxels, mesh), voxels.leaks
     size, origin = voxels.voxel_size, np.asarray(voxels.origin)
@@ -467,7 +469,7 @@ def _findings_of_voxels(
 
 
 def _finding_of_hinges(voxels: Voxels) -> Diagnostic:
-    """All hinges in one: a line of them is one fault."""
+    """Report all hinges in one finding: a line of them is one fault."""
     first, *others = voxels.hinges
     at = _middle(voxels, *first.cells)
     contact = "an edge" if first.contact == "edge" else "a corner"
@@ -486,7 +488,7 @@ def _middle(voxels: Voxels, *cells: Cell) -> tuple[float, float, float]:
 
 
 def _locks(body: Design | Voxels, voxels: Voxels, wall: Wall) -> bool:
-    """Whether a wall of one voxel bends too stiffly: five tetrahedra of a lattice do.
+    """Return True if a wall of one voxel locks, as five tetrahedra of a lattice do.
 
     A voxel of rubber bends as it should (docs/method/elements.md). The walls of the pneunet family,
     one voxel thick, leave its tip 6 % short of where walls of two voxels bring it, no more than the

@@ -1,4 +1,4 @@
-"""Which method a design's settings mean, and which of them that method uses.
+"""Choice of the method that a design's settings mean, and of the settings that it uses.
 
 The flat keys of :class:`~voxsoft.design.Solver` are read here and nowhere else: a setting that only
 some methods have a field for chooses one of them, and one that the chosen method has none for is
@@ -41,7 +41,7 @@ METHODS: Final[tuple[type[Method], ...]] = (
 )
 Kinds = frozenset[type[Method]]
 
-#: Of the mesh, or of the choice itself.
+#: Settings of the mesh, of the discretization error, or of the choice itself.
 _OF_ALL: Final = frozenset({"method", "refine"}) | OF_THE_ERROR
 _CONTROLS: Final[Mapping[str, type[Statics]]] = {
     "load": LoadControl,
@@ -68,7 +68,7 @@ USERS: Final[Mapping[str, Kinds]] = MappingProxyType(
     {name: _users(name) for name in (*Solver.model_fields, *sorted(Dynamics.extra))}
 )
 
-#: What to write to be solved by a method that uses a setting.
+#: Advice for each setting: the entry that chooses a method that uses it.
 _ASKING: Final[Mapping[str, str]] = {
     "tolerance": "leave end_time out",
     "control": 'write method = "statics"',
@@ -126,7 +126,7 @@ def kind_of(design: Design, solver: Solver) -> type[Method]:
     materials = [design.material_of(part) for part in design.parts]
     if design.layers or any(isinstance(material, Rigid) for material in materials):
         return LoadControl
-    # What only lies on a floor may slide: its place is not unique, which Newton's method needs.
+    # A body that only lies on a floor may slide: Newton's method needs a unique equilibrium.
     is_held = bool(design.clamps) or len(design.symmetry) == 3
     if solver.damping is not None or not is_held:
         return Relaxation
@@ -134,7 +134,7 @@ def kind_of(design: Design, solver: Solver) -> type[Method]:
 
 
 def method_of(design: Design, solver: Solver) -> Method:
-    """Return the method that settings mean for a design, with those that it uses.
+    """Return the method that settings mean for a design, with the settings that it uses.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def unused_settings(
     Parameters
     ----------
     design, solver
-        What is solved, and how.
+        The design to be solved, and the settings.
     extra
         Other keys of :data:`USERS`, where they are given.
     """
@@ -188,7 +188,7 @@ def unused_settings(
     for name in [*given, *(key for key, value in (extra or {}).items() if value)]:
         users = USERS[name]
         if name == "damping" and solver.damping != "auto":
-            users &= DYNAMICS  # relaxation knows "auto" alone
+            users &= DYNAMICS  # relaxation has "auto" alone
         if kind in users:
             continue
         where = name if extra and name in extra else f"solver.{name}"
@@ -198,7 +198,7 @@ def unused_settings(
 
 
 def _without_supplies(design: Design, solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
-    """Find what a design with supplies cannot be solved by."""
+    """Find settings and materials that are not supported with supplies."""
     known = kind is LoadControl or (kind in DYNAMICS and solver.method != "xpbd")
     if not known:
         title = f"{kind.title} by xpbd" if kind in DYNAMICS else kind.title
@@ -216,7 +216,7 @@ def _without_supplies(design: Design, solver: Solver, kind: type[Method]) -> Ite
 
 
 def _without_contact(design: Design, solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
-    """Find what a design with contact cannot be solved by."""
+    """Find settings, free objects and materials that are not supported with contact."""
     if kind not in {*STATICS, *DYNAMICS} or solver.method == "xpbd":
         what = f"means {_explicit(kind)}, and contact is found by statics and by implicit dynamics"
         hint = 'write method = "statics", or method = "dynamics"'
@@ -236,7 +236,7 @@ def _without_contact(design: Design, solver: Solver, kind: type[Method]) -> Iter
 
 
 def _without_tendons(solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
-    """Find what a design with tendons cannot be solved by: each substep would be too short."""
+    """Find settings that are not supported with tendons: substeps would be too short."""
     if kind not in {*STATICS, *DYNAMICS} or solver.method == "xpbd":
         what = f"means {_explicit(kind)}, and tendons are pulled by statics and implicit dynamics"
         hint = 'write method = "statics", or method = "dynamics"'
@@ -268,7 +268,7 @@ def check_solver(
     Raises
     ------
     SimulationError
-        Naming each setting, the methods that use it, and what to write.
+        Settings that are not used, each with the methods that use it and a remedy.
 
     Examples
     --------
@@ -285,7 +285,7 @@ def check_solver(
 
 
 def given_settings(solver: Solver) -> dict[str, object]:
-    """Return the settings of the solution that are not as they are by default."""
+    """Return the settings of the solution that differ from their defaults."""
     names = type(solver).model_fields.keys() - OF_THE_ERROR
     values = {name: getattr(solver, name) for name in type(solver).model_fields if name in names}
     plain = Solver()
@@ -293,12 +293,12 @@ def given_settings(solver: Solver) -> dict[str, object]:
 
 
 def _deciding(kinds: Kinds) -> set[str]:
-    """The settings of a solver that mean one of some kinds."""
+    """Return the settings of a solver that only methods of some kinds use."""
     return {name for name, users in USERS.items() if users <= kinds} & set(Solver.model_fields)
 
 
 def _together(kinds: Kinds) -> str:
-    """Some kinds in words.
+    """Describe some kinds in words.
 
     Examples
     --------
@@ -315,7 +315,7 @@ def _together(kinds: Kinds) -> str:
 
 
 def _because(name: str, kind: type[Method], solver: Solver) -> str:
-    """Why settings mean a kind that does not use one of them."""
+    """Explain why settings mean a kind that does not use one of them."""
     if not kind.to_rest and USERS[name] & _TO_REST and not USERS[name] <= STATICS:
         return "an end_time asks for motion up to it"
     if kind in STATICS and USERS[name] & STATICS:
@@ -329,26 +329,26 @@ def _because(name: str, kind: type[Method], solver: Solver) -> str:
 
 
 def settings_at_rest() -> dict[str, Any]:
-    """Return what takes all of runs over time out of settings: the search for rest needs none."""
+    """Return None for each setting of runs over time: the search for rest uses none of them."""
     return dict.fromkeys((*sorted(_deciding(DYNAMICS)), "damping"))
 
 
 def check_settings_of(design: Design, used: frozenset[str], by: str) -> None:
-    """Refuse the settings of a design that something with settings of its own would not use.
+    """Refuse settings of a design that a procedure with settings of its own would not use.
 
     Parameters
     ----------
     design
-        Whose solver is looked at.
+        The design with the solver settings.
     used
         The settings that are used.
     by
-        What it is and does, after "is not used by".
+        The procedure and its purpose, to follow "is not used by".
 
     Raises
     ------
     SimulationError
-        Naming each setting that is not used.
+        Settings that are not used, each by its name.
     """
     problems = [
         ErrorDetail(f"solver.{name}", f"is not used by {by}", "leave it out of the design")

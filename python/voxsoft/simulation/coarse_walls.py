@@ -23,19 +23,20 @@ from voxsoft.units import format_quantity
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-#: From this difference on a thickness is doubtful: bending goes with its third power.
+#: Relative difference from which a thickness is doubtful: bending stiffness goes with its cube.
 LARGE: Final = 0.15
-#: A wall of more voxels than this is off by less than that, as each end is by half a voxel at most.
+#: Thickest wall that is examined, in voxels: a thicker one is off by less than that, as each end is
+#: by half a voxel at most.
 _MOST_VOXELS: Final = 6
 #: Rows that are measured along each axis, fewer for surfaces from files, and points in a voxel.
 _ROWS, _ROWS_OF_A_FILE, _POINTS = 200, 40, 16
-#: As many points give the thickness that is printed.
+#: Factor on the points in a voxel for the thickness that is printed.
 _FINER: Final = 32
-#: A wall is flat where it is as thick at four lines this far aside, in voxels, to one point.
+#: Offsets of parallel lines, in voxels: a wall is flat where it is as thick on all, to one point.
 _ASIDE: Final = ((0.0, 0.0), (0.45, 0.45), (0.45, -0.45), (-0.45, 0.45), (-0.45, -0.45))
-#: Walls of one thickness that are this part of all along an axis are no accident.
+#: Smallest share of rows along an axis for a thickness to be judged.
 _SHARE: Final = 0.1
-#: What thicknesses may be off whole voxels where a voxel size fits them; the smallest such size.
+#: Deviation from whole voxels up to which a voxel size fits; smallest such size over the present.
 _FITS, _SMALLEST = 0.05, 0.2
 
 
@@ -61,7 +62,7 @@ class _Measured(NamedTuple):
 
     @property
     def difference(self) -> float:
-        """By how much it is off, as a part of what is described."""
+        """Relative difference of the simulated thickness from the described one."""
         return abs(self.simulated / self.described - 1.0)
 
 
@@ -72,7 +73,7 @@ def coarse_walls(design: Design, mesh: Mesh) -> Iterator[Diagnostic]:
     Rows of voxels along the axes that begin or end at a chamber are measured in the shapes along
     the same line. Flat walls along the grid are judged: voxels of inclined and curved ones are too
     thick here and too thin there, and :mod:`voxsoft.simulation.volumes` compares their sum. Cut
-    voxels carry what is inside, and need no such look.
+    voxels carry their share of material, and are not examined.
 
     Examples
     --------
@@ -112,7 +113,7 @@ def _of_body(design: Design, mesh: Mesh, size: float) -> list[_Measured]:
 
 
 def _rows(rooms: NDArray[np.int16], axis: int) -> Iterator[_Rows]:
-    """The rows along an axis of walls with a chamber at an end, and of chambers."""
+    """Yield the rows of cells along an axis in walls beside a chamber, and in chambers."""
     lines = np.moveaxis(rooms, axis, -1)
     shape = lines.shape
     flat = np.ascontiguousarray(lines).reshape(-1, shape[-1])
@@ -138,9 +139,9 @@ def _some(rows: _Rows, most: int) -> _Rows:
 def _described(
     rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions, finer: int = 1
 ) -> Floats:
-    """How much of each row is material, or void, in the shapes; 0 where that varies, (n,).
+    """Measure the material, or void, of the shapes along each row [m]; 0 where it varies, (n,).
 
-    Half a voxel at both ends belongs to a row: no flat face is farther from where voxels end.
+    Half a voxel at both ends belongs to a row: no flat face is farther from the ends of its voxels.
     """
     points = finer * _POINTS
     steps = (np.arange((_MOST_VOXELS + 1) * points) + 0.5) / points - 0.5
@@ -159,7 +160,7 @@ def _described(
 
 
 def _flat(rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions) -> Iterator[_Measured]:
-    """The thicknesses that many rows share."""
+    """Yield the thicknesses that many rows share."""
     measured = np.rint(_described(rows, shapes, cells) * (_POINTS / cells.size))
     pairs = np.stack([measured, rows.number], axis=1)
     kinds, first, count = np.unique(pairs, axis=0, return_index=True, return_counts=True)
@@ -215,5 +216,5 @@ def _length(value: float, digits: int = 3) -> str:
 
 
 def _may_cut(design: Design) -> bool:
-    """Whether cut voxels are a remedy."""
+    """Return True if cut voxels are a remedy: all materials are hyperelastic."""
     return all(isinstance(design.material_of(part), Hyperelastic) for part in design.parts)

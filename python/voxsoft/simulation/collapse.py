@@ -1,4 +1,4 @@
-"""Voxels that are pressed flat or turned inside out."""
+"""Voxels that are collapsed or inverted."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from voxsoft.simulation.setup import Setup
 
 #: A load's value in SI units: one number, or three components.
 Value = float | tuple[float, float, float]
-#: What a load is called: a name of :attr:`LoadCommands.names`, or its place in the design.
+#: Name of a load: one of :attr:`LoadCommands.names`, its place in the design, or its index.
 LoadName = str | int
 
 
@@ -28,14 +28,14 @@ class LoadCommands:
     Parameters
     ----------
     design
-        Its loads have no histories: the commands are their history.
+        A design whose loads have no histories: the commands take their place.
 
     Attributes
     ----------
     names
-        What each load is called: the chamber of a pressure, else its kind, ``"pressure"``; where
-        several have one name, their places, ``"loads[0]"``. Places, and the index alone, mean each
-        load besides.
+        Name of each load: the chamber of a pressure, else its kind, ``"pressure"``; where several
+        share one name, their places, ``"loads[0]"``. Places and indices are accepted for every
+        load.
 
     Raises
     ------
@@ -70,7 +70,7 @@ class LoadCommands:
 
     @property
     def at_first(self) -> dict[int, Value]:
-        """What acts before any command: gravity as the design says, and nothing else."""
+        """Values before any command: gravity as the design says, zero for all other loads."""
         return {
             index: reading.size if reading.quantity == "acceleration" else _zero(reading)
             for index, reading in enumerate(self._readings)
@@ -82,14 +82,13 @@ class LoadCommands:
         Parameters
         ----------
         given
-            By name or index: a number in SI units, text with a unit, or a pint quantity; three of
-            them for a force, and for a traction that has three in the design.
+            Values by name or index: a number in SI units, text with a unit, or a pint quantity;
+            three of them for a force, and for a traction that has three in the design.
 
         Raises
         ------
         DesignError
-            A load that there is not, or one named twice; a value of another unit or shape, or not
-            finite.
+            An unknown load, or one named twice; a value of another unit or shape, or not finite.
         """
         if not isinstance(given, Mapping):
             what = f"{given!r} is no mapping"
@@ -108,24 +107,24 @@ class LoadCommands:
         return MappingProxyType({self.names[index]: value for index, value in values.items()})
 
     def under(self, design: Design, values: Mapping[int, Value]) -> Design:
-        """The design with loads of these values."""
+        """Return the design with loads of these values."""
         loads = [load.replace(value=values[index]) for index, load in enumerate(self._loads)]
         return design.replace(loads=loads)
 
     def of_size_one(self, design: Design) -> Design:
-        """The design with each load of the size one, and one for each axis of a vector."""
+        """Return the design with each load of unit size, and one for each axis of a vector."""
         pairs = zip(self._loads, self._readings, strict=True)
         loads = [one for load, reading in pairs for one in _ones(load, reading)]
         return design.replace(loads=loads)
 
     def core_loads(self, of_size_one: Setup) -> list[list[range]]:
-        """The core's loads of :meth:`of_size_one`: for each load, and each component, a range."""
+        """Return the index range of the core's loads for each load and component of size one."""
         ends = [0, *accumulate(len(load.actions) for load in of_size_one.loads)]
         ranges = iter([range(first, end) for first, end in pairwise(ends)])
         return [[next(ranges) for _ in reading.components] for reading in self._readings]
 
     def pressures(self, setup: Setup) -> list[tuple[int, list[int]]]:
-        """The index of each pressure in cavities, and the cavities."""
+        """Return the index of each pressure in cavities, and the cavities."""
         return [
             (index, [*chosen_cavities(reading.cavity, setup.mesh, f"loads[{index}].cavity")])
             for index, reading in enumerate(self._readings)

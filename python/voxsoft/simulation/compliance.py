@@ -1,4 +1,4 @@
-"""How soft a loaded body is at a place."""
+"""Compliance of a loaded body at a place."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ Floats = NDArray[np.float64]
 def compliance(
     design: Design, mesh: Mesh, positions: Floats, place: Place, peaks: Floats | None = None
 ) -> Floats:
-    """How a force along x, y or z, shared by a place as its weights say, moves it.
+    """Compute the compliance at a place: its displacement under a force along x, y or z.
 
-    With the weights ``w`` of the place on the vertices it is ``wᵀ K⁻¹ w``, of the tangent ``K`` at
-    an equilibrium: loads, and what touches, stay as they are there.
+    With the weights ``w`` of the place on the vertices, which share the force, it is ``wᵀ K⁻¹ w``
+    of the tangent ``K`` at an equilibrium: loads and contacts stay as they are there.
 
     Parameters
     ----------
@@ -30,14 +30,14 @@ def compliance(
     positions
         Its equilibrium, (n, 3), m.
     place
-        Where.
+        The place, as vertices and weights.
     peaks
-        What voxels that soften remember.
+        Largest energy density that each softening voxel has had [J/m³].
 
     Returns
     -------
     ndarray of shape (3, 3)
-        In m/N: column by the axis of the force, row by that of the displacement.
+        Compliance [m/N]: column by the axis of the force, row by that of the displacement.
 
     Raises
     ------
@@ -50,10 +50,10 @@ def compliance(
 
 
 def compliance_of(setup: Setup, positions: Floats, place: Place) -> Floats:
-    """The same of a setup."""
+    """Compute the compliance of a prepared setup."""
     forces = np.zeros((3, *positions.shape))
     for axis in range(3):
         forces[axis, place.vertices, axis] = place.weights
-    # Of a tangent that is not symmetric the adjoint is the transpose of what a force does.
+    # With an unsymmetric tangent the adjoint is the transpose of the response to a force.
     moved = adjoint_states(setup.problem, positions, forces)
     return np.asarray(np.einsum("kvx,v->kx", moved[:, place.vertices], place.weights))

@@ -16,20 +16,20 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ContactField:
-    """What touches each vertex of a body; inner vertices and those that nothing touches have 0.
+    """Contact at each vertex of a body; 0 at inner vertices and at those without contact.
 
     Attributes
     ----------
     pressure
-        In Pa, (n,): the contact force that a vertex carries over the area that it stands for now.
+        Contact force on a vertex over its present tributary area, Pa, (n,).
     friction
-        On the body, in Pa, (n, 3).
+        Friction on the body, Pa, (n, 3).
     gap
-        To what a vertex faces, in m, (n,); infinite where nothing is near.
+        Distance of a vertex from the surface that it faces, m, (n,); infinite where none is near.
     area
-        Of the surface now that each vertex stands for, in m², (n,); where it is pressed, of the
-        side toward that. The sum of pressure times area is the sum of the contact forces; of a body
-        that touches itself both sides count.
+        Tributary area of each vertex on the deformed surface, m², (n,); where it is pressed, of the
+        side toward the contact. The sum of pressure times area is the sum of the contact forces; in
+        self-contact both sides count.
     """
 
     pressure: Floats
@@ -39,7 +39,7 @@ class ContactField:
 
     @classmethod
     def of(cls, found: CoreContactField | None) -> Self | None:
-        """As the core found it; None for a problem without contact."""
+        """Wrap the core's contact field; None for a problem without contact."""
         if found is None:
             return None
         return cls(found.pressure, found.friction, found.gap, found.area)

@@ -1,6 +1,6 @@
-"""What one run is likely to take, before it is made.
+"""Prediction of the time of one run, before it is made.
 
-The time of an iteration is known well, how many there are is not: it depends on how far the body
+The time of an iteration is known well, their number is not: it depends on how far the body
 moves. So the answer is a range. All constants were measured on one core of a 2.4 GHz server with
 the examples and with beams, blocks, plates, tubes and balls of 80 to 6,000 voxels, of lattice and
 of rubber; `tests/unit/test_cost.py` holds the iterations against runs.
@@ -37,13 +37,13 @@ _OF_A_LATTICE: Final = 0.2
 _FEWEST: Final = 4.0
 _MORE: Final = 40.0
 _OF_A_STEP: Final = 6.0
-#: The same of a step over time with contact: a capsule that is held takes 3, fingers that close 15.
+#: Iterations of a time step with contact: a capsule that is held takes 3, fingers that close 15.
 _OF_A_STEP_IN_CONTACT: Final = 7.0
-#: Steps of an arc that is not longer than it must be.
+#: Steps of an arc-length path that is not longer than it must be.
 _STEPS_OF_AN_ARC: Final = 8
 #: Substeps in the time that a wave of compression takes through a voxel.
 _SUBSTEPS: Final = 2.5
-#: Runs take from a third of what is expected to three times that.
+#: Factor of the range: runs take from a third of the predicted time to three times it.
 _SPREAD: Final = 3.0
 #: Measures of motion beyond which a path may have limits and folds, where steps are cut.
 _FAR: Final = 0.3
@@ -55,10 +55,10 @@ class Cost(NamedTuple):
     Attributes
     ----------
     seconds
-        What is expected.
+        Expected run time.
     low, high
-        The range; `high` is None where the way of the loads is not known beforehand: the run takes
-        at least `low`.
+        Range of the run time; `high` is None where the load path is not known beforehand: the run
+        takes at least `low`.
 
     Examples
     --------
@@ -73,7 +73,7 @@ class Cost(NamedTuple):
     high: float | None
 
     def times(self, factor: float) -> Cost:
-        """Return the same in units of a factor."""
+        """Return the cost multiplied by a factor."""
         high = None if self.high is None else factor * self.high
         return Cost(factor * self.seconds, factor * self.low, high)
 
@@ -88,7 +88,7 @@ class Cost(NamedTuple):
 
 
 def _rounded(seconds: float) -> str:
-    """To two digits, and never with an exponent that nobody reads."""
+    """Format seconds to two digits, without an exponent."""
     return f"{float(f'{seconds:.2g}'):.12g}"
 
 
@@ -100,15 +100,15 @@ def cost_of(
     Parameters
     ----------
     design
-        Its solver decides the way, its loads how far the body moves.
+        A design whose solver decides the method, and whose loads decide how far the body moves.
     mesh
         Its mesh, of the design's own voxels.
     wall
         Thickness of the thinnest wall in m, if it has one.
     mass
-        Of the body, in kg.
+        Mass of the body, in kg.
     share
-        The voxels that it is solved on as a part of those of the mesh, with local refinement.
+        Number of voxels that are solved over that of the mesh, with local refinement.
     """
     refine, method = design.solver.refine, method_of(design, design.solver)
     materials = [design.material_of(part) for part in design.parts]
@@ -147,7 +147,7 @@ def _young(material: Material, size: float) -> float:
 
 
 def _speed(material: Material, size: float) -> float:
-    """Speed of compression waves in m/s, which decides the substep."""
+    """Compute the speed of compression waves in m/s, which decides the substep."""
     young = _young(material, size)
     poisson = material.poisson if isinstance(material, Hyperelastic) else 0.25
     stiffness = young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
@@ -161,18 +161,18 @@ def _substep(method: Dynamics, size: float, speed: float) -> float:
 
 
 def _steps_to_rest(voxels: NDArray[np.float64], stiffer: float) -> float:
-    """Steps of relaxation: proportional to the highest over the lowest frequency.
+    """Estimate the steps of relaxation: proportional to the highest over the lowest frequency.
 
     A slender body of length ``L`` and thickness ``t`` in voxels bends with a frequency of order
-    ``t/L²`` of that of a voxel; 10 was measured on the paper's beam (L = 18, t = 2). What hardly
-    changes its volume is `stiffer` in compression than in bending.
+    ``t/L²`` of that of a voxel; 10 was measured on the paper's beam (L = 18, t = 2). A nearly
+    incompressible body is `stiffer` in compression than in bending.
     """
     thickness, length = max(float(voxels[0]), 1.0), float(voxels[-1])
     return max(200.0, 10.0 * length**2 / thickness) * max(1.0, stiffer)
 
 
 def newton_iterations(design: Design, mesh: Mesh, wall: float | None, mass: float) -> Cost:
-    """Predict the iterations of statics: those expected, and their range.
+    """Predict the Newton iterations of statics, and their range.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def newton_iterations(design: Design, mesh: Mesh, wall: float | None, mass: floa
 
 
 def _motion(design: Design, mesh: Mesh, wall: float | None, mass: float) -> float:
-    """How far the body moves, without units: the angle by which it bends, or its strain.
+    """Estimate the motion of the body, without units: the angle by which it bends, or its strain.
 
     Dead loads pull along the longest edge of the body's box and bend it across that, as a
     cantilever; pressure bends the walls of its chambers, and the body by their strain times its

@@ -15,14 +15,14 @@ from voxsoft.simulation.diagnostic import Diagnostic, near
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.touching import Touching, has_contact
 
-#: Faces of one body nearer than this along its unloaded surface, in voxels, are a crease, which
-#: follows voxels that are crushed: contact does not look at neighbors. Its warning says so.
+#: Distance along the unloaded surface, in voxels, below which crossing faces of one body are a
+#: crease of crushed voxels: contact does not look at neighbors. The warning says so.
 CREASE: Final = 1.5
-#: How far two faces may be in each other without a warning, in voxels: fifty times the gap that
+#: Penetration of two faces up to which there is no warning, in voxels: fifty times the gap that
 #: contact keeps, and far less than voxels resolve.
 GRAZING: Final = 0.01
 
-#: Pairs whose ways along the surface are looked for at once: each takes memory for every point.
+#: Pairs whose paths along the surface are searched at once: each takes memory for every point.
 _AT_ONCE: Final = 64
 
 Floats = NDArray[np.float64]
@@ -31,8 +31,8 @@ Floats = NDArray[np.float64]
 def crossed_surfaces(design: Design, mesh: Mesh, positions: Floats) -> Iterator[Diagnostic]:
     """Find where bodies pass through themselves or each other in spite of contact.
 
-    Surfaces are judged as they touch, face by face with exact predicates: an edge may pierce a
-    face without any vertex that is deep inside.
+    Surfaces are tested face by face with exact predicates: an edge may pierce a face without any
+    vertex that is deep inside.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def crossed_surfaces(design: Design, mesh: Mesh, positions: Floats) -> Iterator[
 def are_apart(
     points: Floats, triangles: NDArray[np.int32], pairs: NDArray[np.uint32], distance: float
 ) -> NDArray[np.bool_]:
-    """Tell which pairs of faces are farther apart than a distance, along the surface.
+    """Find the pairs of faces that are farther apart than a distance along the surface.
 
     Parameters
     ----------
@@ -90,18 +90,18 @@ def are_apart(
     pairs
         Numbers of triangles, (n, 2).
     distance
-        In m, along edges from a corner of the one to the nearest corner of the other.
+        Distance in m along edges from a corner of the one to the nearest corner of the other.
 
     Returns
     -------
     apart
-        (n,); true where no way along the surface joins the two.
+        (n,); true where no path of this length along the surface joins the two.
     """
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
 
     first, second = np.moveaxis(triangles[pairs.astype(np.int64)], 1, 0)
-    # No way along the surface is shorter than the straight one.
+    # No path along the surface is shorter than the straight line.
     between = points[second][:, None, :] - points[first][:, :, None]
     apart: NDArray[np.bool_] = (np.linalg.norm(between, axis=3) > distance).all(axis=(1, 2))
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
@@ -120,7 +120,7 @@ def are_apart(
 
 
 def _depths(faces: Floats, others: Floats) -> Floats:
-    """How far each face has to move along the normal of the other to be on one side of it."""
+    """Measure how far each face has to move along the normal of the other to be on one side."""
     normals = np.cross(others[:, 1] - others[:, 0], others[:, 2] - others[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     heights = np.einsum("pcx,px->pc", faces - others[:, :1], normals)
@@ -131,7 +131,7 @@ def _depths(faces: Floats, others: Floats) -> Floats:
 def _faces(
     touching: Touching, positions: Floats
 ) -> tuple[Floats, NDArray[np.int32], NDArray[np.int64]]:
-    """The points of all surfaces of bodies in m, their triangles, and the body of each point."""
+    """Return points of all surfaces of bodies in m, triangles, and the body of each point."""
     points, triangles, body_of, first = list[Floats](), [], [], 0
     for index, (body, skin) in enumerate(zip(touching.mesh.each_body, touching.skins, strict=True)):
         own = positions[body.vertices]
@@ -143,12 +143,12 @@ def _faces(
     return np.concatenate(points), np.concatenate(triangles), np.concatenate(body_of)
 
 
-#: Frames of one run are judged one after the other.
+#: Cache of the last surfaces: the frames of one run are checked one after the other.
 _latest: list[Touching] = []
 
 
 def _touching(design: Design, mesh: Mesh) -> Touching:
-    """Who touches in a design, with the skins that were made for it before."""
+    """Return the surfaces in contact of a design, with their skins, from the cache if possible."""
     for found in _latest:
         if found.design is design and found.mesh is mesh:
             return found

@@ -1,4 +1,4 @@
-"""One thing that is wrong or doubtful about a design or a result."""
+"""Diagnostic: an error or a warning about a design or a result."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Severity = Literal["error", "warning"]
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """Something wrong (``error``) or doubtful (``warning``), where it is, and what to try.
+    """An error or a warning about a design or a result, with its subject and a remedy.
 
     Attributes
     ----------
@@ -19,9 +19,9 @@ class Diagnostic:
     where
         The subject: ``"parts[0]"``, ``"chambers"``.
     what, hint
-        What was found, and what to try.
+        The finding, and a remedy.
     at
-        A point of the unloaded body in m where it is seen best; None where it has no place.
+        A point of the unloaded body in m that shows it best; None where it has no place.
 
     Examples
     --------
@@ -40,14 +40,14 @@ class Diagnostic:
         return f"{message}. Try: {self.hint}" if self.hint else message
 
     def summary(self) -> dict[str, Any]:
-        """The same as plain data (an entry of ``"problems"`` or ``"warnings"`` in ``--json``)."""
+        """Return plain data (an entry of ``"problems"`` or ``"warnings"`` in ``--json``)."""
         plain = {"severity": self.severity, "where": self.where, "what": self.what}
         place = {} if self.at is None else {"at": list(self.at)}
         return {**plain, "try": self.hint, **place}
 
 
 def near(at: tuple[float, float, float]) -> str:
-    """Say a place in the coordinates of the design.
+    """Format a position in the coordinates of the design.
 
     Examples
     --------

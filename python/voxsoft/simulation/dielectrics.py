@@ -1,4 +1,4 @@
-"""Dielectric sheets as the core takes them, and the field that they stand."""
+"""Dielectric sheets for the core, and their electric breakdown."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ class ResolvedDielectric:
     Attributes
     ----------
     activation
-        What it is in the design.
+        The activation in the design.
     corners
-        Of its voxels, (k, 8).
+        Vertices of its voxels, (k, 8).
     gradients
-        How the mean deformation of each along two directions in the sheet and across it depends on
-        its corners, 1/m, (k, 8, 3).
+        Gradients that give the mean deformation of each voxel along two directions in the sheet and
+        across it from its corners, 1/m, (k, 8, 3).
     volumes
-        Of the material of each, m³, (k,).
+        Volume of the material of each voxel, m³, (k,).
     """
 
     activation: Dielectric
@@ -44,7 +44,7 @@ class ResolvedDielectric:
     volumes: Floats
 
     def give_to(self, parts: _core.ProblemParts) -> None:
-        """Hand it to the problem of the core."""
+        """Add the sheet to the core's problem."""
         parts.dielectric(
             self.corners,
             self.gradients.reshape(-1, 3),
@@ -54,7 +54,7 @@ class ResolvedDielectric:
         )
 
     def true_field(self, positions: Floats) -> float:
-        """The largest field in it as it is at positions [m], (n, 3), in the end, V/m.
+        """Compute the largest true field in it at positions [m], (n, 3), with its final value, V/m.
 
         The sheet has become thinner by ``J/|F t₁ × F t₂|``.
         """
@@ -70,9 +70,9 @@ def dielectrics_of(design: Design, mesh: Mesh) -> tuple[ResolvedDielectric, ...]
     Parameters
     ----------
     design
-        Whose activations they are.
+        The design with the activations.
     mesh
-        Made of voxels.
+        A mesh of voxels.
 
     Raises
     ------
@@ -109,13 +109,13 @@ def _sheet(design: Design, mesh: Mesh, number: int, activation: Dielectric) -> R
     axes = activation.axes
     for index in parts_of(design, activation, f"{where}.part"):
         for body in mesh.each_body:
-            # A body by itself counts its own parts; the joined mesh has those of the design.
+            # Parts of a body alone are numbered within it; those of the joined mesh, in the design.
             tets = slice(body.first_tet, body.first_tet + len(body.mesh.tets))
             numbers = np.flatnonzero(mesh.tet_part[tets][::5] == index + 1)
             if not len(numbers):
                 continue
             own = body.mesh
-            assert own.voxel_size is not None  # what activations are of is made of voxels
+            assert own.voxel_size is not None  # activations act on parts made of voxels
             filled = np.ones(len(numbers)) if own.fractions is None else own.fractions[numbers]
             volume = filled * own.voxel_size**3
             vertices, slopes = own.voxel_gradients(numbers)
@@ -134,13 +134,13 @@ def _sheet(design: Design, mesh: Mesh, number: int, activation: Dielectric) -> R
 
 
 def broken_down(design: Design, mesh: Mesh, positions: Floats) -> Iterator[Diagnostic]:
-    """Say which dielectric sheets have a stronger field in them than they stand."""
+    """Warn of dielectric sheets whose true field exceeds their breakdown strength."""
     if not any(isinstance(activation, Dielectric) for activation in design.activations):
         return
     numbers = [i for i, each in enumerate(design.activations) if isinstance(each, Dielectric)]
     for number, sheet in zip(numbers, dielectrics_of(design, mesh), strict=True):
         strength, field = sheet.activation.breakdown, sheet.true_field(positions)
-        # Also where it is not a number: what is pressed flat has broken down.
+        # NaN counts too: a sheet that is pressed flat has broken down.
         if strength is not None and not field <= strength:
             found = format_quantity(float(f"{field:.4g}"), "electric field")
             allowed = format_quantity(strength, "electric field")

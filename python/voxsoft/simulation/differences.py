@@ -1,4 +1,4 @@
-"""Central differences of what takes no solution: forces and metrics at given positions."""
+"""Central differences of forces and metrics at given positions, which need no solution."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 T = TypeVar("T", float, NDArray[np.float64])
 
-#: Part of a number by which it is varied, once and twice to either side. What is differenced are
-#: forces, at positions that do not change. Rounding leaves 1e-16/5e-6 of the largest force, and
-#: the curvature of the steepest law, the bulk modulus at ν = 0.4999, 4 (ν/(0.5 - ν) 5e-6)⁴ = 2e-6.
+#: Relative step of a number, taken once and twice to either side. Forces are differenced at
+#: positions that do not change. Rounding leaves 1e-16/5e-6 of the largest force, and the
+#: curvature of the steepest law, the bulk modulus at ν = 0.4999, 4 (ν/(0.5 - ν) 5e-6)⁴ = 2e-6.
 STEP: Final = 5e-6
 
 #: Central differences of fourth order: multiples of the step, and their weights over it.
@@ -25,9 +25,9 @@ def derivative(function: Callable[[float], T], value: float) -> T:
     Parameters
     ----------
     function
-        From a number to a number or an array.
+        A function of a number; its values are numbers or arrays.
     value
-        Where; steps are :data:`STEP` of it.
+        The argument; steps are :data:`STEP` of it.
 
     Examples
     --------

@@ -19,7 +19,7 @@ from voxsoft.simulation.method import Answer, Method, Report, Watch
 from voxsoft.simulation.setup import Setup
 from voxsoft.units import NonNegativeTime, PositiveTime, format_quantity
 
-#: Of runs over time, the residual at rest.
+#: Residual at rest of runs over time.
 DEFAULT_DYNAMIC_TOLERANCE: Final = 1e-4
 DEFAULT_MAX_TIME: Final = 60.0
 DEFAULT_TIME_STEP: Final = 0.01
@@ -27,7 +27,7 @@ DEFAULT_RECORD_INTERVAL: Final = 0.02
 
 
 class Dynamics(Method):
-    """Real time, until the body is at rest or to an end time."""
+    """Motion over time, until the body is at rest or to an end time."""
 
     family: ClassVar[str] = "dynamics"
     extra: ClassVar[frozenset[str]] = frozenset({"record_interval", "frames"})
@@ -45,7 +45,7 @@ class Dynamics(Method):
 
     @abstractmethod
     def ends(self) -> dict[str, float]:
-        """What ends a run, by the key of its setting."""
+        """Return the criteria that end a run, by the key of their setting."""
 
     def solve(self, setup: Setup, watch: Watch) -> Answer:
         """Move the body from its unloaded state."""
@@ -75,7 +75,7 @@ class Dynamics(Method):
         return used | {"damping": "critical" if rate is None else rate}, Report.of(answer)
 
     def _by_implicit_steps(self, setup: Setup, watch: Watch, interval: float) -> Answer:
-        """The same by implicit steps, which end with contacts, tendons and pressures settled."""
+        """Move the body by implicit steps, which converge contacts, tendons and pressures."""
         problem, rate, ends = self._problem(setup), self.rate, self.ends()
         step = self._step(interval)
         answer = _core.transient(
@@ -102,7 +102,7 @@ class Dynamics(Method):
 
     @staticmethod
     def _problem(setup: Setup) -> _core.Problem:
-        """The problem that moves: one of its own where materials change, which it keeps changed."""
+        """Return the problem to be stepped: a copy where materials change, which stay changed."""
         if not grows_over_time(setup.design):
             return setup.problem
         own = core_materials(
@@ -111,7 +111,7 @@ class Dynamics(Method):
         return setup.problem.with_materials(own)
 
     def _step(self, interval: float) -> float:
-        """The length of a step in s: probes are recorded after whole steps."""
+        """Return the length of a step in s: probes are recorded after whole steps."""
         if self.time_step is None:
             return min(DEFAULT_TIME_STEP, interval)
         if interval < self.time_step:
@@ -124,7 +124,7 @@ class Dynamics(Method):
 
 
 class DynamicsToRest(Dynamics):
-    """Real time until the body is at rest, damped critically unless a rate is given."""
+    """Motion over time until the body is at rest, damped critically unless a rate is given."""
 
     title: ClassVar[str] = "dynamics run to rest"
 
@@ -142,7 +142,7 @@ class DynamicsToRest(Dynamics):
 
 
 class DynamicsToEnd(Dynamics):
-    """Real time to an end time, at rest or not, undamped unless a rate is given."""
+    """Motion over time to an end time, at rest or not, undamped unless a rate is given."""
 
     title: ClassVar[str] = "dynamics to an end time"
     to_rest: ClassVar[bool] = False

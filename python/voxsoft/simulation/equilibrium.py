@@ -1,4 +1,4 @@
-"""The statics solver: its controls with their settings, and what to say of its answer."""
+"""The statics solver: its controls with their settings, and messages about its answer."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ DEFAULT_ARC: Final = 0.2
 DEFAULT_VOLUME_RATIO: Final = 1.5
 
 
-#: The shortest step of what swells too much for one, as a part of the whole.
+#: Shortest step of swelling, as a part of the whole, where one step is too large.
 _SHORTEST_STEP: Final = 1.0 / 128.0
 #: After a step of so few iterations the next one is twice as long.
 _FEW: Final = 6
 
-#: What to try instead of a control that found no equilibrium, and of one that met a limit.
+#: Alternatives to a control that found no equilibrium, and to one that met a limit.
 _OTHER_WAYS: Final[Mapping[str, str]] = {
     "load": 'control = "arc-length"',
     "arc-length": 'control = "load" or more steps',
@@ -44,7 +44,7 @@ _PAST_A_LIMIT: Final[Mapping[str, str]] = {
 
 
 class Statics(Method):
-    """The equilibrium by Newton's method on the sparse tangent."""
+    """Equilibrium by Newton's method on the sparse tangent."""
 
     family: ClassVar[str] = "statics"
     extra: ClassVar[frozenset[str]] = frozenset({"frames"})
@@ -58,7 +58,7 @@ class Statics(Method):
 
 
 class LoadControl(Statics):
-    """All loads grow together."""
+    """Load control: all loads grow together."""
 
     title: ClassVar[str] = "load control"
 
@@ -66,7 +66,7 @@ class LoadControl(Statics):
     first_step: Share = 1.0
 
     def solve(self, setup: Setup, watch: Watch) -> Answer:
-        """Find the equilibrium under the final loads; what swells does so in steps if need be."""
+        """Find the equilibrium under the final loads; swelling grows in steps if need be."""
         found = super().solve(setup, watch)
         grows = any(each.growth is not None for each in setup.design.activations)
         if found[1].status != Status.NOT_CONVERGED or not grows:
@@ -94,7 +94,7 @@ class LoadControl(Statics):
 
 
 class ArcLengthControl(Statics):
-    """All loads grow together, and the path is followed through snaps."""
+    """Arc-length control: all loads grow together, and the path is followed through snaps."""
 
     title: ClassVar[str] = "arc-length control"
 
@@ -104,7 +104,7 @@ class ArcLengthControl(Statics):
 
 
 class VolumeControl(Statics):
-    """The pressurized volume grows to `volume_ratio`, and the pressure is what it takes."""
+    """Volume control: the pressurized volume grows to `volume_ratio`, the pressure follows."""
 
     title: ClassVar[str] = "volume control"
 
@@ -124,17 +124,17 @@ class VolumeControl(Statics):
 
 
 class Stretch(NamedTuple):
-    """The way from one instant of all histories to another, as if nothing had mass.
+    """Quasi-static interval from one instant of all histories to another.
 
     Attributes
     ----------
     since
-        The instant in s of the equilibrium that it begins with, of which contact goes on too; None
-        at the beginning, where loads grow from nothing.
+        Instant in s of the equilibrium and the contact that it begins with; None at the beginning,
+        where loads grow from zero.
     until
-        The instant in s of the equilibrium that is looked for.
+        Instant in s of the equilibrium to be found.
     longest
-        The longest step where the answer depends on the way, as a part of this one.
+        Longest step where the answer depends on the load path, as a part of this interval.
     """
 
     since: float | None
@@ -143,7 +143,7 @@ class Stretch(NamedTuple):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """What the core calls them."""
+        """Settings by their names in the core."""
         return {
             "control": "time",
             "from_time": self.since,
@@ -164,7 +164,7 @@ def find_equilibrium(
 ) -> Answer:
     """Solve a setup by statics, or a variant of its problem; `frames` keeps all of the path.
 
-    Without a start it begins at rest. A stretch of time takes the place of the control.
+    Without a start it begins at the unloaded body. A stretch of time replaces the control.
 
     Returns
     -------
@@ -191,7 +191,7 @@ def find_equilibrium(
     )
     path, status = path_of(answer), answer.status
     if status == Status.NOT_CONVERGED and free_motion(setup):
-        # Singular up to rounding is all that the factor shows of it.
+        # The factorization shows a mechanism only as a tangent that is singular up to rounding.
         status = Status.MECHANISM
     if status == Status.OUT_OF_MEMORY:
         raise SimulationError(
@@ -204,13 +204,13 @@ def find_equilibrium(
 
 
 def path_of(answer: _core.Answer) -> _core.LoadPath:
-    """How the loads of an answer of statics were followed."""
+    """Return the load path of an answer of statics."""
     assert answer.path is not None  # the core gives one with every answer of statics
     return answer.path
 
 
 def too_large_a_tangent(vertices: int, needed: int) -> str:
-    """Say that a tangent of so many vertices takes `needed` bytes, or is too large if that is 0."""
+    """Explain that a tangent takes `needed` bytes, or is too large if that is 0."""
     size = f"takes about {needed / 1e9:.1f} GB, and" if needed else "does not fit:"
     free = f"{memory_limit() / 1e9:.1f} GB of memory are free"
     return f"the tangent of {vertices} vertices {size} {free}"
@@ -226,10 +226,10 @@ def sentence(
     touches: bool = False,
     is_cut: bool = False,
 ) -> str:
-    """Say how statics ended: its control, how it ended, its iterations, its residual, its path.
+    """Describe how statics ended: control, status, iterations, residual and path.
 
-    What `touches` has no other ways than statics and motion over time; where its voxels are cut
-    (`is_cut`) full ones may let contact settle.
+    With contact (`touches`) the only alternatives are statics and motion over time; where voxels
+    are cut (`is_cut`) contact may converge on full ones.
     """
     iterations = f"{steps} Newton iterations"
     residual = f"residual {format_percent(residual_left)} of the load"

@@ -1,4 +1,4 @@
-"""What nothing holds: free objects and loose bodies that fall, fly or slide away."""
+"""Free objects and loose bodies that fall, fly or slide away."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft.simulation.setup import Setup
 
-#: What went this many sizes of the body is gone.
+#: Distance, in sizes of the body, beyond which a loose body is gone.
 _FAR: Final = 5.0
 
 
 @dataclass(frozen=True)
 class Loose:
-    """Something that no clamp holds.
+    """A free object or a component of the body that no clamp holds.
 
     Attributes
     ----------
     name
-        In words.
+        Its name in words.
     position
-        Of its middle, now [m], (3,).
+        Present position of its middle [m], (3,).
     moved
-        How far that is from where it was [m].
+        Distance from the initial position [m].
     """
 
     name: str
@@ -35,20 +35,20 @@ class Loose:
 
     @property
     def place(self) -> str:
-        """Where it is, in words."""
+        """Position in words."""
         x, y, z = 1e3 * self.position
         return f"({x:.1f}, {y:.1f}, {z:.1f}) mm"
 
 
 def farthest_loose(setup: Setup, answer: _core.Answer) -> Loose | None:
-    """What has gone farthest of all that no clamp holds.
+    """Find the free object or loose component that has moved farthest; None without any.
 
     Parameters
     ----------
     setup
-        What was solved.
+        The prepared design that was solved.
     answer
-        What the core found.
+        The answer of the core.
     """
     assert setup.touching is not None
     found: list[Loose] = []
@@ -69,13 +69,13 @@ def farthest_loose(setup: Setup, answer: _core.Answer) -> Loose | None:
 
 
 def is_gone(setup: Setup, loose: Loose) -> bool:
-    """Whether something went so far that it does not come back."""
+    """Return True if a loose body went so far that it does not come back."""
     size = float(np.linalg.norm(np.ptp(setup.mesh.vertices, axis=0)))
     return loose.moved > _FAR * size
 
 
 def falls(setup: Setup, answer: _core.Answer) -> str:
-    """Say that statics found no place where something stays, and what to try."""
+    """Explain that statics found no equilibrium of a loose body, and suggest a remedy."""
     loose = farthest_loose(setup, answer)
     assert loose is not None  # statics ends so only where something is loose
     if is_gone(setup, loose):
@@ -93,7 +93,7 @@ def falls(setup: Setup, answer: _core.Answer) -> str:
 
 
 def flies(setup: Setup, answer: _core.Answer) -> str | None:
-    """Say which free object has left a run over time; None if none has."""
+    """Describe the loose body that has left a run over time; None if none has."""
     loose = farthest_loose(setup, answer)
     if loose is None or not is_gone(setup, loose):
         return None

@@ -1,4 +1,4 @@
-"""Whether fibers are their own mirror images in the planes of symmetry of a design."""
+"""Mirror symmetry of fibers in the planes of symmetry of a design."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from voxsoft.design.symmetry import Symmetry
 from voxsoft.errors import DesignError
 from voxsoft.materials import Fiber
 
-#: How far numbers of a family may be from those of its image, relative to one: rounding of units.
+#: Tolerance between numbers of a family and those of its image, relative to 1: rounding of units.
 _SAME: Final = 1e-9
 
 
@@ -22,7 +22,7 @@ def check_fiber_symmetry(design: Design) -> None:
     Parameters
     ----------
     design
-        With planes of symmetry, and voxels that are symmetric in them.
+        A design with planes of symmetry, and voxels that are symmetric in them.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def _image(fiber: Fiber, plane: Symmetry) -> Fiber:
 
 
 def _is_same(one: Fiber, other: Fiber) -> bool:
-    """Whether two families run along the same lines; a direction and its opposite are one."""
+    """Return True if two families run along the same lines, in either direction."""
     if (one.modulus, one.compression) != (other.modulus, other.compression):
         return False
     if one.is_wound != other.is_wound:

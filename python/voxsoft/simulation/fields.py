@@ -1,4 +1,4 @@
-"""From a design and positions to its stress and strain."""
+"""Stress and strain of a design at given positions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from voxsoft.simulation.setup import Setup
 
 
 def remember(problem: _core.Problem, peaks: NDArray[np.float64] | None) -> None:
-    """Let voxels that soften have had the energies that a result says."""
+    """Set the largest energies that softening voxels have had, as a result stores them."""
     if peaks is not None:
         problem.set_peaks(peaks)
 
@@ -35,9 +35,9 @@ def fields_of(
     positions
         Its vertices in m, (n, 3).
     problem
-        Its problem, where there is one already.
+        Its mechanical problem, if there is one already.
     peaks
-        Without a problem: what its voxels remember, where they soften.
+        Largest energy density that each softening voxel has had [J/m³], if no problem is given.
 
     Examples
     --------
@@ -49,7 +49,7 @@ def fields_of(
     True
     """
     if problem is None:
-        # Clamps, layers and bonds decide which faces warp freely, and so what their stress is.
+        # Clamps, layers and bonds decide which faces warp freely, and so their stress.
         setup = Setup(design, mesh)
         bonds = setup.touching is not None and setup.touching.bonds
         problem = setup.problem if bonds else setup.problem_alone

@@ -28,7 +28,7 @@ def _bounds(corners: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def findings_of_tets(body: Design | Voxels, mesh: Mesh) -> Iterator[Diagnostic]:
-    """Tetrahedra of a file have no error bar, and springs along their edges another stiffness."""
+    """Warn that tetrahedra of a file give no error bar, and lattices another stiffness."""
     if isinstance(body, Design):
         yield Diagnostic(
             "warning",

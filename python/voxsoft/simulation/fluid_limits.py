@@ -1,4 +1,4 @@
-"""Where what fills chambers leaves the laws that it is followed by."""
+"""Limits of the fluid laws in chambers and tubes: boiling liquids and turbulent flow."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fluids import ChamberHistory, ChamberState, Fluids
 from voxsoft.units import format_quantity
 
-#: Of water at 20 °C [Pa]; other liquids of soft robots, oils and silicones, boil below it.
+#: Vapor pressure of water at 20 °C [Pa]; other liquids of soft robots, oils and silicones, boil
+#: below it.
 VAPOR_PRESSURE: Final = 2339.0
-#: Flow in tubes is laminar up to this Reynolds number.
+#: Reynolds number up to which flow in tubes is laminar.
 LAMINAR: Final = 2300.0
 
 
@@ -29,7 +30,7 @@ def doubtful_fluids(
     fluids
         The supplies of a design on its mesh.
     states, histories
-        What they came to, in the end and on the way.
+        Final states of the volumes, and their histories by name.
     """
     for volume, state in zip(fluids.volumes, states, strict=True):
         history = histories.get(state.name)

@@ -1,4 +1,4 @@
-"""Supplies along a path of designs: what each gives at each of them, as one network."""
+"""Supplies along a path of designs, as one network with a history of each amount."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from voxsoft.errors import DesignError
 from voxsoft.simulation.fluids import Fluids
 from voxsoft.simulation.setup import Setup
 
-#: What may differ from design to design: how much is put in, how warm it is, what is outside.
+#: Numbers that may differ between designs: fluid mass, its temperature, the volume outside.
 _AMOUNTS: Final = ("mass", "temperature", "outside")
 
 
 @dataclass(frozen=True)
 class FluidPath(Fluids):
-    """The supplies of designs that differ in how much these give.
+    """Supplies of designs that differ in the amounts that these give.
 
     Attributes
     ----------
     design, mesh
-        The first one, and the mesh of all.
+        The first design, and the mesh of all.
     designs
-        All of them, in the order of the path.
+        All designs, in the order of the path.
     instants
-        The time in s that stands for each, rising.
+        The time in s that stands for each design, rising.
     key
-        What changes, for errors.
+        The key that changes, for errors.
 
     Raises
     ------
@@ -43,7 +43,7 @@ class FluidPath(Fluids):
 
     @cached_property
     def network(self) -> dict[str, Any]:
-        """The network whose histories are those of the path."""
+        """Network whose histories are those of the path."""
         networks = [Fluids(design, self.mesh).network for design in self.designs]
         fixed = [_without_amounts(network) for network in networks]
         if any(each != fixed[0] for each in fixed):
@@ -94,9 +94,9 @@ class SetupAlong(Setup):
     along: FluidPath = field(kw_only=True)
 
     def __post_init__(self) -> None:
-        """Nothing: design and mesh are those of a setup."""
+        """Skip the preparation: design and mesh are those of a setup."""
 
     @cached_property
     def fluids(self) -> Fluids | None:
-        """Those of the path."""
+        """Supplies of the path."""
         return self.along

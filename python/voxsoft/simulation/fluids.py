@@ -1,4 +1,4 @@
-"""From the supplies of a design to volumes of gas and liquid in the core's problem.
+"""Supplies of a design as volumes of gas and liquid in the core's problem.
 
 The result, the studio and metrics take the pressure of each chamber from here.
 """
@@ -36,24 +36,24 @@ from voxsoft.simulation.loads import LoadReading, readings
 from voxsoft.simulation.touching import times_and_factors
 from voxsoft.units import format_quantity
 
-#: What supplies do about flow, or fill, that has no limit of its own.
+#: Entry of a chamber whose pressure no source holds.
 _NO_SOURCE: Final[dict[str, Any]] = {"held": None}
-#: Numbers that the core tells of a chamber, in their order.
+#: Numbers that the core reports for a chamber, in their order.
 _READINGS: Final = ("pressure", "volume", "mass", "flow", "work", "energy")
 
 
 def has_supplies(design: Design) -> bool:
-    """Whether chambers of a design hold volumes of gas or liquid of their own."""
+    """Return True if chambers of a design hold volumes of gas or liquid of their own."""
     return bool(design.supplies or design.connections)
 
 
 def refuse_supplies(design: Design, who: str) -> None:
-    """Raise where a design has supplies and someone cannot deal with them.
+    """Raise an error where a design has supplies, which `who` does not support.
 
     Raises
     ------
     DesignError
-        Naming who.
+        The design has supplies or connections.
     """
     if has_supplies(design):
         where = "supplies" if design.supplies else "connections"
@@ -64,27 +64,27 @@ def refuse_supplies(design: Design, who: str) -> None:
 
 @dataclass(frozen=True)
 class ChamberState:
-    """A volume of gas or liquid as it is.
+    """State of a volume of gas or liquid.
 
     Attributes
     ----------
     name
-        Of the supply, or of its chambers.
+        Name of the supply, or of its chambers.
     cavities
         The indices of its cavities in the mesh.
     pressure
         Gauge pressure [Pa].
     volume
-        Of its cavities [m³], without lines.
+        Volume of its cavities [m³], without lines.
     mass
-        Of the fluid, with that in lines and syringes [kg].
+        Mass of the fluid, with that in lines and syringes [kg].
     flow
-        Of mass, into it [kg/s].
+        Mass flow into it [kg/s].
     work
-        Done on the walls since the unloaded body [J].
+        Work on the walls since the unloaded body [J].
     energy
-        That this took from what supplies it [J]: of gas that which an expansion to the atmosphere
-        at the same temperature would give back.
+        Energy taken from the supply for it [J]: of gas, that of an isothermal expansion to the
+        atmosphere.
     """
 
     name: str
@@ -98,12 +98,12 @@ class ChamberState:
 
     @property
     def efficiency(self) -> float | None:
-        """Work on the walls over the energy that it took; None where it took none."""
+        """Work on the walls over the energy taken for it; None where none was taken."""
         return self.work / self.energy if self.energy > 0.0 else None
 
     @property
     def words(self) -> str:
-        """Its pressure, volume and mass."""
+        """Pressure, volume and mass in words."""
         shown = [
             format_quantity(float(f"{number:.4g}"), kind)
             for number, kind in (
@@ -116,7 +116,7 @@ class ChamberState:
 
     @property
     def sentence(self) -> str:
-        """The same with its name."""
+        """Name with pressure, volume and mass in words."""
         return f"{self.name}: {self.words}"
 
     def summary(self) -> dict[str, Any]:
@@ -127,7 +127,7 @@ class ChamberState:
 
 @dataclass(frozen=True)
 class ChamberHistory:
-    """A volume of gas or liquid over time, or over the load factor; each an array, (f,).
+    """History of a volume of gas or liquid over time or load factor; each an array, (f,).
 
     The names and units are those of :class:`ChamberState`.
     """
@@ -147,7 +147,7 @@ class Volume:
     Attributes
     ----------
     supply
-        What drives it; None for one that only a connection reaches.
+        The supply that drives it; None for one that only a connection reaches.
     where
         Its place in the design.
     cavities
@@ -160,7 +160,7 @@ class Volume:
 
     @property
     def medium(self) -> Gas | Liquid:
-        """What fills it."""
+        """Fluid that fills it."""
         return Gas() if self.supply is None else self.supply.medium
 
 
@@ -171,7 +171,7 @@ class Fluids:
     Raises
     ------
     NoCavityError
-        A supply of a chamber that is not closed, or that there is not.
+        A supply of a chamber that is not closed, or does not exist.
     DesignError
         Two supplies of one chamber, or a supply and a pressure load; fluids that do not mix.
     """
@@ -238,7 +238,7 @@ class Fluids:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """What each volume is called."""
+        """Name of each volume."""
         return tuple(self._name(volume) for volume in self.volumes)
 
     def _name(self, volume: Volume) -> str:
@@ -283,7 +283,7 @@ class Fluids:
 
     @cached_property
     def network(self) -> dict[str, Any]:
-        """The network as the core reads it."""
+        """Network as the core reads it."""
         sources: list[dict[str, Any]] = []
         branches: list[dict[str, Any]] = []
         pumps: list[dict[str, Any]] = []
@@ -357,7 +357,7 @@ class Fluids:
         return _branch([{"chamber": number} for number in numbers], line, connection.valve)
 
     def _chamber(self, volume: Volume) -> dict[str, Any]:
-        """What is put in, how warm it is, the room outside: unloaded, and in the end."""
+        """Return fluid mass, temperature and outside volume: unloaded, and in the end."""
         supply = volume.supply
         inside = sum(float(self.mesh.cavities[index].volume) for index in volume.cavities)
         lines = 0.0 if supply is None else supply.line_volume
@@ -385,19 +385,19 @@ class Fluids:
         }
 
     def states(self, numbers: NDArray[np.float64]) -> tuple[ChamberState, ...]:
-        """What the core tells of each volume, (c, 6)."""
+        """Wrap the core's numbers of each volume, (c, 6)."""
         rows = zip(self.names, self.volumes, numbers.tolist(), strict=True)
         return tuple(ChamberState(name, volume.cavities, *row) for name, volume, row in rows)
 
     def histories(self, numbers: NDArray[np.float64]) -> dict[str, ChamberHistory]:
-        """What the core recorded of each volume, (f, c, 6)."""
+        """Wrap the core's records of each volume, (f, c, 6)."""
         if not len(numbers):
             return {}
         return {name: ChamberHistory(*numbers[:, index].T) for index, name in enumerate(self.names)}
 
 
 def _walls(cavity: MeshCavity) -> Iterator[tuple[Any, Any, float]]:
-    """The ways in which a surface is cut, with their weights; voids are there once."""
+    """Yield the splits of a surface into triangles with their weights; voids count once."""
     splits = cavity.splits
     for triangles, weight in splits:
         parts = (len(splits) * weight) * cavity.void_parts
@@ -412,7 +412,7 @@ def _filled_at(supply: AnySupply | None) -> float:
 
 
 def _density(medium: Gas | Liquid, temperature: float) -> float:
-    """Under the atmosphere, kg/m³."""
+    """Compute the density under the atmosphere, kg/m³."""
     if isinstance(medium, Liquid):
         return medium.density
     return ATMOSPHERE / (medium.gas_constant * temperature)

@@ -1,4 +1,4 @@
-"""Rigid motions that no clamp stops: why there may be no equilibrium."""
+"""Rigid-body motions that no clamp stops, so that there may be no equilibrium."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from numpy.typing import NDArray
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.touching import has_contact
 
-#: Singular values below this part of the largest count as none. Those of real supports are ratios
+#: Singular values below this part of the largest count as zero. Those of real supports are ratios
 #: of lengths, such as the width of a clamp over the length of the body.
 NONE = 1e-6
-#: How far a motion may be from one along or about an axis alone.
+#: Tolerance for a motion to be along or about an axis alone.
 _ALONE = 1e-4
 
 
 def free_motion(setup: Setup) -> str:
-    """The rigid motions of a component of the body that nothing stops, in words; empty if none.
+    """Describe rigid-body motions of a component that nothing stops; empty if there are none.
 
-    Components are what shares vertices; hinges between voxels on one edge are not looked at. Where
-    there is a floor, contact, a layer, a spring or a tendon, which may hold a component as well,
-    none is known.
+    Elements that share vertices are one component; hinges between voxels on one edge are not
+    considered. With a floor, contact, a layer, a spring or a tendon, which may hold a component as
+    well, the text is empty.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def free_motion(setup: Setup) -> str:
 
 
 def _joined(setup: Setup) -> list[NDArray[np.intp]]:
-    """Vertices of each component."""
+    """Find the vertices of each component."""
     from scipy.sparse import coo_array  # slow to load
     from scipy.sparse.csgraph import connected_components
 
@@ -64,14 +64,14 @@ def _joined(setup: Setup) -> list[NDArray[np.intp]]:
 
 
 def _free(points: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """The rigid motions of points, (n, 3) m, that spare their held axes, (n, 3).
+    """Find the rigid-body motions of points, (n, 3) m, that spare their held axes, (n, 3).
 
-    An orthonormal basis of them, (6, k): three shifts and three turns each.
+    Returns an orthonormal basis, (6, k): three translations and three rotations each.
     """
     arms = points - points.mean(axis=0)
     arms = arms / max(float(np.abs(arms).max()), 1e-300)
     shifts = np.broadcast_to(np.eye(3), (len(points), 3, 3))
-    # A turn about the axis k moves a point by eₖ × arm: one column for each axis.
+    # A rotation about the axis k moves a point by eₖ × arm: one column for each axis.
     turns = np.stack([np.cross(axis, arms) for axis in np.eye(3)], axis=2)
     stopped = np.concatenate([shifts, turns], axis=2)[held]
     # Six by six, however many vertices are held.
@@ -82,9 +82,9 @@ def _free(points: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[np.fl
 
 
 def _in_words(free: NDArray[np.float64]) -> str:
-    """Free rigid motions, (6, k), by the axes along and about which there are some.
+    """Describe free rigid-body motions, (6, k), by the axes along and about which there are some.
 
-    A turn is one about any line along its axis. What goes along or about no axis alone is a motion
+    A rotation may be about any line along its axis. Motions along or about no axis alone are
     askew.
     """
     if not free.shape[1]:

@@ -1,4 +1,4 @@
-"""Derivatives of metrics at an equilibrium, by the adjoint of the converged state."""
+"""Derivatives of metrics at an equilibrium, by the adjoint method at the converged state."""
 
 from __future__ import annotations
 
@@ -31,13 +31,14 @@ from voxsoft.simulation.touching import has_contact, refuse_bodies
 
 Floats = NDArray[np.float64]
 
-#: Clamped vertices may be this part of a voxel away from where the design wants them.
+#: Largest distance of clamped vertices from their prescribed positions, in voxels.
 _MISPLACED: Final = 1e-6
-#: A tendon that slides all along has the tensions of one pulled at once, but for rounding.
+#: Relative rounding of tensions: a tendon that slides all along has those of one pulled at once.
 _STUCK: Final = 1e-9
-#: Of changes to both sides this part is left where a slope is smooth: steps of 5e-6 leave less.
+#: Largest sum of the changes to both sides over their magnitudes where a slope is smooth: steps of
+#: 5e-6 leave less.
 _KINK: Final = 1e-3
-#: The rounding of a few stretches.
+#: Rounding of a few stretches.
 _ROUNDING: Final = 1e-14
 
 
@@ -46,7 +47,7 @@ def gradient(
     targets: str | Sequence[str] | Mapping[str, Target],
     parameters: str | Sequence[str],
 ) -> dict[str, dict[str, float]]:
-    r"""Derivatives of metrics with respect to numbers of the design.
+    r"""Compute derivatives of metrics with respect to numbers of the design.
 
     At an equilibrium :math:`r(x, p) = 0` a metric :math:`J(x, p)` changes with a number
     :math:`p` by
@@ -73,7 +74,7 @@ def gradient(
     Returns
     -------
     dict of dict
-        By target, then by parameter, in SI units.
+        Derivatives by target, then by parameter, in SI units.
 
     Raises
     ------
@@ -86,7 +87,7 @@ def gradient(
     Notes
     -----
     :math:`\partial r/\partial p` and :math:`\partial J/\partial p` are differences of forces and
-    metrics at the same positions, with clamped vertices where the varied design wants them. Kinks
+    metrics at the same positions, with clamped vertices where the varied design puts them. Kinks
     have one-sided slopes: the largest displacement, vertices that just touch the floor.
 
     Examples
@@ -140,10 +141,10 @@ def _slope(state: LoadedState, target: Target) -> Floats:
 
 @dataclass(frozen=True)
 class _State(LoadedState):
-    """A setup and positions at which its forces and metrics are looked at.
+    """A setup and positions at which its forces and metrics are evaluated.
 
-    A stiff tendon has stretched by so little that a difference would leave it slack: those that are
-    `taut` stay so.
+    A stiff tendon has stretched by so little that a difference would leave it slack: tendons that
+    are `taut` stay so.
     """
 
     taut: tuple[bool, ...] = ()
@@ -179,7 +180,7 @@ class _State(LoadedState):
 
 @dataclass(frozen=True)
 class _Variation:
-    """A number a little lower and a little higher, the free vertices where they are."""
+    """States with a number a little lower and higher, at the same positions of free vertices."""
 
     states: tuple[_State, ...]
     weights: tuple[float, ...]
@@ -187,7 +188,7 @@ class _Variation:
 
     @cached_property
     def forces(self) -> Floats:
-        """``∂r/∂p``, clamped vertices going along, (n, 3)."""
+        """``∂r/∂p`` with clamped vertices going along, (n, 3)."""
         change: Floats = np.sum(
             [
                 weight * state.net_forces
@@ -198,7 +199,7 @@ class _Variation:
         return change
 
     def explicit(self, target: Target) -> float:
-        """``∂J/∂p``, clamped vertices going along."""
+        """Compute ``∂J/∂p`` with clamped vertices going along."""
         return sum(
             weight * metric_named(target.metric).value(state, target)
             for state, weight in zip(self.states, self.weights, strict=True)
@@ -236,7 +237,7 @@ def _check_memory(design: Design, varied: Sequence[Design], name: str) -> None:
         if not isinstance(activation, ShapeMemory):
             continue
         changes = [each.activations[index].stretch - activation.stretch for each in varied]
-        # The stencil is symmetric: what is linear cancels but for rounding and what is quadratic.
+        # The stencil is symmetric: linear terms cancel, rounding and quadratic terms remain.
         if abs(sum(changes)) > _KINK * sum(map(abs, changes)) + _ROUNDING:
             raise DesignError(
                 name,
@@ -267,7 +268,7 @@ def _shapes(design: Design) -> tuple[object, ...]:
 
 
 def _scale(design: Design, name: str, value: float) -> float:
-    """How large a number is, for its step; one that is zero takes its range, or one unit."""
+    """Return the scale of a number, for its step; for zero its range, a voxel, or one unit."""
     if value != 0.0:
         return abs(value)
     parameter = design.parameters.get(name)
@@ -326,7 +327,7 @@ def _check_state(result: Result) -> None:
 
 
 def _check_way(setup: Setup, result: Result) -> None:
-    """Tendons must slide all along: where one sticks, its tension depends on the way there."""
+    """Raise where a tendon sticks: its tension then depends on the load path."""
     fresh = setup.problem.tendons(result.positions) if setup.tendons else ()
     for tendon, found in zip(setup.tendons, fresh, strict=True):
         came = result.tendons[tendon.name].tensions
@@ -340,7 +341,7 @@ def _check_way(setup: Setup, result: Result) -> None:
 
 
 def _check_positions(state: _State) -> None:
-    """The result must be of its own design: other materials would leave other forces."""
+    """Raise unless clamped vertices are at their prescribed positions."""
     setup = state.setup
     held = held_axes(setup)
     off = np.abs(np.where(held, state.positions - held_positions(setup), 0.0)).max()

@@ -1,4 +1,4 @@
-"""By how much parts and their fibers are longer by themselves, by all activations together."""
+"""Growth of parts and their fibers without load, by all activations together."""
 
 from __future__ import annotations
 
@@ -17,30 +17,30 @@ from voxsoft.errors import DesignError
 from voxsoft.materials import Hyperelastic
 from voxsoft.records import closest
 
-#: What the core takes of a factor: times in s, stretches, their power, the share of each voxel.
+#: Growth factor for the core: times in s, stretches, their power, the share of each voxel.
 _Factor = tuple[tuple[float, ...], tuple[float, ...], float, NDArray[np.float64] | None]
 
 
 @dataclass(frozen=True)
 class PartGrowth:
-    """How a part and its fibers grow, by the number of the activation; several of one multiply."""
+    """Growth of a part and its fibers, by the number of the activation; several multiply."""
 
     of_part: dict[int, Growth] = field(default_factory=dict)
     of_fibers: dict[int, Growth] = field(default_factory=dict)
 
     @property
     def part_stretch(self) -> float:
-        """How many times as long the part is in the end."""
+        """Final stretch of the part by growth alone."""
         return prod(each.last for each in self.of_part.values())
 
     @property
     def fiber_stretch(self) -> float:
-        """How many times as long its fibers are in the end."""
+        """Final stretch of its fibers by growth alone."""
         return prod(each.last for each in self.of_fibers.values())
 
     @property
     def is_uniform(self) -> bool:
-        """Whether all places of the part grow alike."""
+        """True if all places of the part grow alike."""
         both = (*self.of_part.values(), *self.of_fibers.values())
         return all(each.profile is None for each in both)
 
@@ -51,17 +51,18 @@ class PartGrowth:
         *,
         over_time: bool,
     ) -> _core.Material:
-        """The material of a part that grows over time, or differs from voxel to voxel.
+        """Return the material of a part that grows over time, or differently from voxel to voxel.
 
         Parameters
         ----------
         core
             The part's material.
         shares
-            How much of a growth each voxel of the mesh has, (n, 4), for the place of an activation
-            in the design; see :func:`voxsoft.simulation.profiles.shares_of`.
+            Function that gives the share of a growth in each voxel of the mesh, (n, 4), for the
+            place of an activation in the design; see
+            :func:`voxsoft.simulation.profiles.shares_of`.
         over_time
-            Whether it follows its history, or is as in the end.
+            True to follow the history, False for the final growth.
         """
 
         def factors(growths: dict[int, Growth]) -> list[_Factor]:
@@ -76,12 +77,12 @@ class PartGrowth:
 
 
 def growths_of(design: Design) -> dict[int, PartGrowth]:
-    """Return how the parts of a design grow, by the index of the part.
+    """Return the growth of the parts of a design, by the index of the part.
 
     Parameters
     ----------
     design
-        Whose activations it is about.
+        The design with the activations.
 
     Raises
     ------
@@ -106,24 +107,24 @@ def growths_of(design: Design) -> dict[int, PartGrowth]:
 
 
 def grows_over_time(design: Design) -> bool:
-    """Whether a part of a design is longer by itself, and that has a history."""
+    """Return True if an activation that makes a part grow has a history."""
     timed = [each for each in design.activations if each.history is not None]
     return any(activation.growth is not None for activation in timed)
 
 
 def has_profiles(design: Design) -> bool:
-    """Whether a part of a design grows differently from place to place."""
+    """Return True if a part of a design grows differently from place to place."""
     growths = [activation.growth for activation in design.activations]
     return any(growth is not None and growth.profile is not None for growth in growths)
 
 
 def refuse_profiles(design: Design, who: str) -> None:
-    """Raise where an activation has a profile and someone knows one growth for each part.
+    """Raise an error where an activation has a profile, which `who` does not support.
 
     Raises
     ------
     DesignError
-        Naming who.
+        An activation has a profile.
     """
     for index, activation in enumerate(design.activations):
         growth = activation.growth
@@ -136,12 +137,12 @@ def refuse_profiles(design: Design, who: str) -> None:
 
 
 def refuse_growth_over_time(design: Design, who: str) -> None:
-    """Raise where an activation has a history and someone keeps parts as they are.
+    """Raise an error where growth has a history, which `who` does not follow.
 
     Raises
     ------
     DesignError
-        Naming who.
+        An activation that makes a part grow has a history.
     """
     for index, activation in enumerate(design.activations):
         if activation.history is not None and activation.growth is not None:
@@ -153,7 +154,7 @@ def refuse_growth_over_time(design: Design, who: str) -> None:
 
 
 def at_time(design: Design, time: float) -> Design:
-    """Return the design whose activations stay as they are at a time in s."""
+    """Return the design with activations frozen at a time in s."""
 
     def then(activation: AnyActivation) -> AnyActivation:
         history = activation.history
@@ -171,16 +172,16 @@ def parts_of(design: Design, activation: AnyActivation, where: str) -> list[int]
     Parameters
     ----------
     design
-        Whose parts they are.
+        The design with the parts.
     activation
-        What names them.
+        The activation that names them.
     where
-        The place that an error names.
+        Place in the design, for errors.
 
     Raises
     ------
     DesignError
-        As :func:`growths_of`.
+        Errors as for :func:`growths_of`.
     """
     named = [i for i, part in enumerate(design.parts) if activation.part == part.label]
     if not named:

@@ -1,4 +1,4 @@
-"""Which voxels stay large where others are refined, and who knows of it."""
+"""Voxels that stay large beside local refinement, and features that do not support it."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 Ints = NDArray[np.int64]
 Marks = NDArray[np.bool_]
 
-#: How far the part of a voxel that is filled may be from all of it: one at the face of a box on the
-#: lattice loses 1/3072 where its fill is measured. The core asks for the same.
+#: Tolerance of the filled fraction of a full voxel: one at the face of a box on the grid loses
+#: 1/3072 where its fill is measured. The core asks for the same.
 _FULL: Final = 4e-4
 
 #: The vertices of a large voxel, by halves of its edge, and those among them that are its corners.
@@ -35,7 +35,7 @@ def large_voxels(setup: Setup) -> NDArray[np.uint32]:
     Parameters
     ----------
     setup
-        Of a design with local refinement; its mesh has small voxels everywhere.
+        A setup of a design with local refinement; its mesh has small voxels everywhere.
 
     Raises
     ------
@@ -58,14 +58,14 @@ def large_voxels(setup: Setup) -> NDArray[np.uint32]:
 def _may_be_large(
     design: Design, fractions: NDArray[np.float64] | None, parts: NDArray[np.uint8]
 ) -> Marks:
-    """Which voxels are full of rubber."""
+    """Mark the voxels that are full of rubber."""
     rubber = [isinstance(design.material_of(part), Hyperelastic) for part in design.parts]
     found = np.array([False, *rubber])[parts]
     return found if fractions is None else found & (np.abs(fractions - 1.0) < _FULL)
 
 
 def _asked_for(setup: Setup, corners: NDArray[np.int32], parts: NDArray[np.uint8]) -> Marks:
-    """Which voxels are to be small."""
+    """Mark the voxels that are to be small."""
     design, mesh = setup.design, setup.mesh
     labels = np.array(["", *(part.label for part in design.parts)])
     found = np.zeros(len(corners), dtype=bool)
@@ -86,7 +86,7 @@ def _asked_for(setup: Setup, corners: NDArray[np.int32], parts: NDArray[np.uint8
 
 
 def _met(setup: Setup) -> Marks:
-    """Which vertices layers and springs hang on, which know no vertices that follow others."""
+    """Mark the vertices of layers and springs, which must not be hanging nodes."""
     found = np.zeros(len(setup.mesh.vertices), dtype=bool)
     for layer in setup.layers:
         found[layer.all] = True
@@ -100,7 +100,7 @@ def _met(setup: Setup) -> Marks:
 def _cubes(
     keys: Ints, corners: NDArray[np.int32], parts: NDArray[np.uint8]
 ) -> tuple[Ints, NDArray[np.int32]]:
-    """Eight voxels of one part that make a cube of the large lattice, (g, 8), and its vertices.
+    """Find eight voxels of one part that fill a cube of the large grid, (g, 8), and its vertices.
 
     The vertices are (g, 27), in the order of :data:`_NODES`.
     """
@@ -115,7 +115,7 @@ def _cubes(
     groups = groups[alike]
     nodes = np.empty((len(groups), len(_NODES)), dtype=np.int32)
     for number, node in enumerate(_NODES):
-        # A vertex of the voxel at its side, of that above where it is in the middle.
+        # Along each axis the middle vertex is the lower corner of the upper voxel.
         voxel = (node > 0) @ np.array([4, 2, 1])
         corner = (node == 2) @ np.array([4, 2, 1])
         nodes[:, number] = corners[groups[:, voxel], corner]
@@ -123,7 +123,7 @@ def _cubes(
 
 
 def _held_in_part(held: NDArray[np.uint32], nodes: NDArray[np.int32], vertices: int) -> Marks:
-    """Which cubes have a held vertex between corners that are not all held, (g,)."""
+    """Mark the cubes with a held vertex between corners that are not all held, (g,)."""
     marks = np.zeros(vertices, dtype=bool)
     marks[held] = True
     caught = marks[nodes]
@@ -134,7 +134,7 @@ def _held_in_part(held: NDArray[np.uint32], nodes: NDArray[np.int32], vertices: 
     return found
 
 
-#: What local refinement is not known together with: the entry of the design, and in words.
+#: Entries of a design that local refinement does not support, and the reasons in words.
 _UNKNOWN: Final = (
     ("symmetry", "solves a part of the body"),
     ("floor", "is a kind of contact"),
@@ -146,7 +146,7 @@ _UNKNOWN: Final = (
 
 
 def unknown_with_refinement(design: Design) -> Iterator[ErrorDetail]:
-    """Find what a design cannot have beside local refinement."""
+    """Find entries of a design that local refinement does not support."""
     if not design.refine:
         return
     hint = "leave it out, or write refine = 2 under [solver] for smaller voxels everywhere"
@@ -177,24 +177,24 @@ def unknown_with_refinement(design: Design) -> Iterator[ErrorDetail]:
 
 
 def check_refinement(design: Design) -> None:
-    """Raise where a design has something that local refinement is not known with.
+    """Raise an error where a design has entries that local refinement does not support.
 
     Raises
     ------
     DesignError
-        Naming each.
+        Entries that are not supported, each by its name.
     """
     if found := list(unknown_with_refinement(design)):
         raise DesignError.listing(found)
 
 
 def refuse_refinement(design: Design, who: str) -> None:
-    """Raise where voxels are refined locally and someone does not know of it.
+    """Raise an error where voxels are refined locally, which `who` does not support.
 
     Raises
     ------
     DesignError
-        Naming who.
+        The design has local refinement.
     """
     if design.refine:
         what = f"local refinement is not known to {who} yet"

@@ -1,12 +1,12 @@
-"""From the layers of a design to triangles, and to the chambers that they close.
+"""Triangles of the layers of a design, and the chambers that they close.
 
 A layer is bonded to faces of voxels. A layer that seals also spans the openings that its bonded
 faces enclose in its plane. There it has no vertices of its own: an opening is triangulated between
 the vertices of its rim, which all belong to the body. So nothing in the problem hangs on a membrane
 alone, which has no stiffness across its plane until it is under tension.
 
-The edges of a rim join neighbors of the lattice. The circle about such an edge holds no third point
-of the lattice, so the edge is in every Delaunay triangulation of the vertices in the plane, and the
+The edges of a rim join neighbors of the grid. The circle about such an edge holds no third point of
+the grid, so the edge is in every Delaunay triangulation of the vertices in the plane, and the
 triangles of that triangulation whose centers lie in the opening fill it exactly.
 """
 
@@ -38,12 +38,12 @@ class LayerTriangles:
     Attributes
     ----------
     bonded
-        On faces of voxels, (b, 3) vertices.
+        Triangles on faces of voxels, (b, 3) vertices.
     spanning
-        Over openings, (s, 3) vertices, turned so that their normals point along the axis.
+        Triangles over openings, (s, 3) vertices, with their normals along the axis.
     openings
-        The faces of the lattice that they span, (f, 3): the cell above each, in voxels from the
-        lower corner of the mesh.
+        The faces of the grid that they span, (f, 3): the cell above each, in voxels from the lower
+        corner of the mesh.
     axis
         The axis across the layer's plane, if it lies in one.
     """
@@ -54,7 +54,7 @@ class LayerTriangles:
     axis: int | None
 
     def moved(self, first: int) -> LayerTriangles:
-        """The same among the vertices of a joined mesh, in which its body begins with `first`."""
+        """Renumber the vertices for a joined mesh, in which its body begins with `first`."""
         shift = np.int32(first)
         return replace(self, bonded=self.bonded + shift, spanning=self.spanning + shift)
 
@@ -71,7 +71,7 @@ class Chamber:
     Attributes
     ----------
     cells
-        In voxels from the lower corner of the mesh, (c, 3).
+        Cells, in voxels from the lower corner of the mesh, (c, 3).
     surface
         Volume, area and triangles, as a mesh has them.
     """
@@ -164,7 +164,7 @@ def _cavities_of_bodies(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> tuple
 
 
 def layers_on(body: BodyMesh, layers: tuple[LayerTriangles, ...]) -> tuple[LayerTriangles, ...]:
-    """The layers of a joined mesh that are on one of its bodies, as that has them itself."""
+    """Return the layers of a joined mesh on one of its bodies, with the body's own vertices."""
     return tuple(
         layer.moved(-body.first_vertex)
         for layer in layers
@@ -214,7 +214,7 @@ def chambers(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> list[Chamber]:
 
 
 def _bonded(layer: Layer, mesh: Mesh, inside: Mask) -> Triangles:
-    """Triangles of which every corner is inside: in the layer's plane, or else on the surface."""
+    """Find triangles with all corners inside: in the layer's plane, or else on the surface."""
     axis = layer.axis
     if axis is None:
         return mesh.triangles[inside[mesh.triangles].all(axis=1)]
@@ -228,7 +228,7 @@ def _bonded(layer: Layer, mesh: Mesh, inside: Mask) -> Triangles:
 
 
 def _spanning(layer: Layer, mesh: Mesh, bonded: Triangles, where: str) -> tuple[Triangles, Ints]:
-    """Triangles over the openings that bonded faces enclose, and the faces that they span."""
+    """Find triangles over openings that bonded faces enclose, and the faces that they span."""
     from scipy.ndimage import binary_fill_holes
     from scipy.spatial import Delaunay
 
@@ -301,7 +301,7 @@ def _cells(points: NDArray[np.float64], low: NDArray[np.float64], size: float) -
 
 
 def _filled(mesh: Mesh) -> Mask:
-    """Which cells of the mesh's bounding box are filled."""
+    """Mark the filled cells of the mesh's bounding box."""
     low, size = _frame(mesh)
     # Every tetrahedron of a voxel has its center inside it.
     cells = _cells(mesh.vertices[mesh.tets].mean(axis=1), low, size)
@@ -314,7 +314,7 @@ def _filled(mesh: Mesh) -> Mask:
 def _connected_air(filled: Mask, layers: tuple[LayerTriangles, ...]) -> Ints:
     """Number the empty regions of the padded grid; -1 where filled.
 
-    Two empty cells hang together if they share a face that no layer spans.
+    Two empty cells are connected if they share a face that no layer spans.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components

@@ -1,12 +1,10 @@
 """A path of equilibria: a value of a design, or the time of its histories, changes step by step.
 
-Each equilibrium begins where the one before ended, with its contact: friction remembers the way,
-so that a way there and back is a loop. Loads and motions are made histories of one body, which is
-meshed once.
+Each equilibrium begins where the one before ended, with its contact: friction depends on the load
+path, so that a path there and back is a loop. Loads and motions are made histories of one body,
+which is meshed once.
 
 Long because all that may change along a path, and how it becomes one design, stands here.
-
-Long because a path is followed, kept and resumed by one class that has its state.
 """
 
 from __future__ import annotations
@@ -45,20 +43,20 @@ from voxsoft.simulation.solved_state import SolvedState, is_given_by_positions
 from voxsoft.simulation.start import Start
 from voxsoft.simulation.touching import refuse_contact
 
-#: The longest step of a path on which the answer depends, as a part of all of it.
+#: Longest step where the answer depends on the path, as a part of all of it.
 _LONGEST: Final = 0.05
-#: What may change along a path: the rest of the design says what is meshed.
+#: Entries of a design that may change along a path: the rest decides the mesh.
 _ALONG: Final = ("loads", "tendons", "clamps", "objects")
-#: What may change too, each in a way of its own.
+#: Entries that may change too, each in a way of its own.
 _ALONG_OTHERWISE: Final = ("activations", "supplies")
-#: What one number a path has, by :data:`voxsoft.design.target.Along`.
+#: Reduction of the values along a path to one, by :data:`voxsoft.design.target.Along`.
 _ALONG_PATH: Final[Mapping[Along, Callable[[Sequence[float]], float]]] = {
     "last": lambda values: values[-1],
     "largest": max,
     "smallest": min,
     "mean": fmean,
 }
-#: Values are the same to this part of the largest.
+#: Tolerance of equal values, relative to the largest.
 _SAME: Final = 1e-9
 
 
@@ -69,9 +67,9 @@ class LoadPath:
     Attributes
     ----------
     design
-        What was asked for, with the settings that were used.
+        The design that was asked for, with the settings that were used.
     over
-        What changes, and its values.
+        The key that changes, and its values.
     results
         The equilibrium at each value that was reached; where the path was lost the last one is not
         at rest.
@@ -83,12 +81,12 @@ class LoadPath:
 
     @property
     def status(self) -> str:
-        """That of the last equilibrium."""
+        """Status of the last equilibrium."""
         return self.results[-1].status
 
     @property
     def message(self) -> str:
-        """How it ended, and where."""
+        """End of the path in words, and its position where the path was lost."""
         found, asked = len(self.results), len(self.over.values)
         last = self.results[-1]
         if last.status == "ok":
@@ -141,7 +139,7 @@ class LoadPath:
         }
 
     def summary(self) -> dict[str, Any]:
-        """Plain data in SI units: ``over``, ``values`` and for each of them what ``run`` gives."""
+        """Return plain data in SI units: each value of ``path`` with the numbers of its result."""
         return {
             "status": self.status,
             "message": self.message,
@@ -170,23 +168,23 @@ def follow(
     Parameters
     ----------
     design
-        What is loaded.
+        The design to be loaded.
     over
         The key that changes, as :meth:`~voxsoft.Design.with_values` names keys
         (``"loads[0].value"``, or a parameter), or ``"time"``: then loads and motions are those of
-        their histories at given instants, as if nothing had mass. With its values in one text:
+        their histories at given instants, quasi-statically. With its values in one text:
         ``"loads[0].value=0..30 kPa/16"`` (:class:`Over` reads it).
     values
-        In SI units or with their unit, in the order in which they are reached; a way there and
-        back may show a loop.
+        Values in SI units or with their unit, in the order in which they are reached; a path there
+        and back may show a loop.
     progress
         As for :func:`voxsoft.simulate`.
     step
         Called after each equilibrium with the path so far.
     earlier
-        Positions of the vertices and all else of the first equilibria, as a path that was stopped
-        has left them. It goes on behind them where positions say all of an equilibrium; contact,
-        tendons, supplies and what softens remember their way, which is gone again then.
+        Vertex positions and all other state of the first equilibria of a path that was stopped.
+        It resumes behind them where positions determine an equilibrium; contact, tendons, supplies,
+        softening and planes of symmetry make it start over.
     **settings
         Fields of :class:`voxsoft.design.Solver` that replace the design's own.
 
@@ -272,7 +270,7 @@ def follow(
         )
         used["refine"] = solver.refine
         result = result_of(solved, used, report, time.perf_counter() - started)
-        # The next equilibrium goes on from all that this one remembers.
+        # The next equilibrium continues from the whole state of this one.
         problem, start, before = report.answer.problem, Start(result.positions), instant
         whole = result if part is None else part.unfolded(result)
         results.append(replace(whole, design=designs[number]))
@@ -285,12 +283,12 @@ def follow(
 
 
 def _read(over: str, values: Sequence[float | str] | None, design: Design) -> Over:
-    """A key with its values, given in one text or apart."""
+    """Read a key with its values, given in one text or apart."""
     return Over.read(over) if values is None else Over.of(over, values, design)
 
 
 def _check(design: Design, solver: Solver) -> None:
-    """Refuse what knows no equilibrium, or looks for the load by itself."""
+    """Refuse solvers without an equilibrium, and controls that find the load themselves."""
     if not method_of(design, solver).to_rest or solver.is_timed:
         raise SimulationError(
             "solver",
@@ -317,7 +315,7 @@ def _check_supplies(design: Design, *, over_time: bool) -> None:
 
 
 def _supply_histories(design: Design, *, of_valves_alone: bool) -> Iterator[str]:
-    """The places of histories of supplies and of their valves."""
+    """Yield the places of histories of supplies and of their valves."""
     for index, supply in enumerate(design.supplies):
         if supply.history is not None and not of_valves_alone:
             yield f"supplies[{index}].history"
@@ -332,7 +330,7 @@ def _supply_histories(design: Design, *, of_valves_alone: bool) -> Iterator[str]
 
 
 def _with_value(design: Design, over: Over, number: int) -> Design:
-    """The design at one of the values."""
+    """Return the design at one of the values."""
     value = over.values[number]
     if over.key == TIME:
         return _at_instant(design, value)
@@ -340,12 +338,12 @@ def _with_value(design: Design, over: Over, number: int) -> Design:
 
 
 def _sizes(design: Design) -> list[Growth | None]:
-    """How large its activations make the parts of a design."""
+    """Return the growth of parts by each activation of a design."""
     return [activation.growth for activation in design.activations]
 
 
 def _remembering(designs: list[Design]) -> list[Design]:
-    """Designs whose shape memory goes on, each from where the one before has come to."""
+    """Continue shape memory along designs, each from the state of the one before."""
     found = designs[:1]
     for design in designs[1:]:
         found.append(design.replace(activations=_after(found[-1].activations, design.activations)))
@@ -355,7 +353,7 @@ def _remembering(designs: list[Design]) -> list[Design]:
 def _after(
     before: Sequence[AnyActivation], now: Sequence[AnyActivation]
 ) -> tuple[AnyActivation, ...]:
-    """Activations that go on from where others have come to."""
+    """Continue activations from the state of others."""
     found: list[AnyActivation] = []
     for index, (old, new) in enumerate(zip(before, now, strict=True)):
         if isinstance(old, ShapeMemory) and isinstance(new, ShapeMemory):
@@ -372,7 +370,7 @@ def _after(
 
 
 def _at_instant(design: Design, instant: float) -> Design:
-    """The design whose loads and motions are those of an instant."""
+    """Return the design with the loads and motions of an instant."""
 
     def history(own: History | None) -> History | None:
         return own if own is None else History(time=(0.0,), factor=(own.at(instant),))
@@ -388,7 +386,7 @@ def _with_histories(
     of_load: Callable[[History | None], History | None],
     of_motion: Callable[[History | None], History | None],
 ) -> Design:
-    """The design with other histories."""
+    """Return the design with other histories."""
 
     def moved(holder: Any) -> Any:  # noqa: ANN401 - a clamp or an object
         motion = holder.motion
@@ -405,7 +403,7 @@ def _with_histories(
 
 
 def _joined(designs: list[Design], over: Over, given: Design) -> tuple[Design, list[float]]:
-    """One design whose loads and motions have the values as histories, and its instants."""
+    """Join designs to one with their loads and motions as histories, and return its instants."""
     if over.key == TIME:
         return given, list(over.values)
     instants = [float(number) for number in range(len(designs))]
@@ -440,7 +438,7 @@ def _joined(designs: list[Design], over: Over, given: Design) -> tuple[Design, l
 
 
 def _one_of(variants: list[Any], instants: list[float], where: str, over: Over) -> Any:  # noqa: ANN401
-    """One load, clamp or object with the values of all variants as its history."""
+    """Join variants to one load, clamp or object with their values as its history."""
     if all(each == variants[0] for each in variants):
         return _at_the_end(variants[0])
     if not hasattr(variants[0], "motion"):
@@ -473,7 +471,7 @@ def _one_of(variants: list[Any], instants: list[float], where: str, over: Over) 
 
 
 def _at_the_end(item: Any) -> Any:  # noqa: ANN401 - a load, clamp or object
-    """The same for ever as after its history, which is what equilibria have."""
+    """Keep a load, clamp or object at the end of its history, where equilibria are."""
     holder = item if hasattr(item, "history") else getattr(item, "motion", None)
     history = getattr(holder, "history", None)
     if holder is None or history is None:
@@ -483,7 +481,7 @@ def _at_the_end(item: Any) -> Any:  # noqa: ANN401 - a load, clamp or object
 
 
 def _factors(sizes: list[np.ndarray[Any, Any]], where: str, over: Over) -> tuple[int, list[float]]:
-    """The number of the largest of some vectors, and all of them as multiples of it."""
+    """Return the number of the largest of some vectors, and all as multiples of it."""
     lengths = [float(np.linalg.norm(size)) for size in sizes]
     largest = int(np.argmax(lengths))
     axis = sizes[largest]
@@ -499,7 +497,7 @@ def _factors(sizes: list[np.ndarray[Any, Any]], where: str, over: Over) -> tuple
 
 
 def _history(holders: list[Any], factors: list[float], instants: list[float]) -> History:
-    """Factors at instants, on top of what the histories end with."""
+    """Return the history of factors at instants, times the final factors of the histories."""
     ends = [1.0 if each.history is None else each.history.factors[-1] for each in holders]
     return History(
         time=tuple(instants),

@@ -1,4 +1,4 @@
-"""A setup at any positions under its final loads: what derivatives of metrics look at."""
+"""State of a setup at given positions under its final loads, for derivatives of metrics."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ class LoadedState:
     Attributes
     ----------
     setup
-        The design made ready.
+        The prepared design.
     positions
-        Its vertices, (n, 3), m. The reaction supposes that they are in equilibrium.
+        Its vertices, (n, 3), m. The reaction assumes that they are in equilibrium.
     at
-        The problem with what it remembers there; None where it remembers nothing.
+        The problem with its state variables there, such as contact; None where it has none.
     """
 
     setup: Setup
@@ -53,12 +53,12 @@ class LoadedState:
 
     @property
     def problem(self) -> _core.Problem:
-        """The problem with what it remembers there."""
+        """Mechanical problem with its state variables there."""
         return self.at or self.setup.problem
 
     @property
     def design(self) -> Design:
-        """What is loaded."""
+        """The loaded design."""
         return self.setup.design
 
     @property
@@ -68,12 +68,12 @@ class LoadedState:
 
     @property
     def places(self) -> Mapping[str, Place]:
-        """What each probe averages over."""
+        """Vertices and weights of each probe."""
         return self.setup.places
 
     @property
     def mass(self) -> float:
-        """In kg."""
+        """Mass in kg."""
         return self.problem.mass
 
     @cached_property
@@ -82,7 +82,7 @@ class LoadedState:
 
     @property
     def elastic_energy(self) -> float:
-        """In J."""
+        """Elastic energy in J."""
         return self._elastic[0]
 
     @property
@@ -102,9 +102,9 @@ class LoadedState:
 
     @property
     def reaction(self) -> tuple[float, float, float]:
-        """What all supports carry, N: in equilibrium minus the sum of all loads.
+        """Reaction force of all supports, N: in equilibrium minus the sum of all loads.
 
-        Objects are supports too, and carry what they press the body with.
+        Objects are supports too, with their contact forces on the body.
         """
         of_objects = [each.force for each in self.contacts if each.of[1] != BODY]
         x, y, z = np.sum(of_objects, axis=0) - self.net_forces.sum(axis=0)
@@ -116,7 +116,7 @@ class LoadedState:
         return clamp_reactions(self.design, self.setup.clamped, self._support_forces)
 
     def reaction_in(self, region: Region) -> Force:
-        """The force on the body of what holds a region, N."""
+        """Compute the reaction force on the body in a region, N."""
         return reaction_in(self.design, self.mesh, region, self._support_forces)
 
     @property
@@ -125,12 +125,12 @@ class LoadedState:
 
     @property
     def penetration(self) -> Penetration:
-        """Where the body is in itself or in its floor."""
+        """Penetration of the body into itself or its floor."""
         return penetration_of(self.design, self.mesh, self.positions)
 
     @cached_property
     def contacts(self) -> tuple[ContactState, ...]:
-        """What touches what, with the multipliers that the contact of the problem holds."""
+        """Contacts, with the Lagrange multipliers that the contact of the problem holds."""
         touching = self.setup.touching
         if touching is None:
             return ()
@@ -138,23 +138,23 @@ class LoadedState:
 
     @property
     def cavity_pressures(self) -> tuple[float, ...]:
-        """The final pressure in each cavity, Pa, that of loads: slopes know no supplies."""
+        """Final pressure in each cavity, Pa, of loads alone: derivatives support no supplies."""
         return tuple(pressures_of(self.design, self.mesh))
 
     @property
     def supplies(self) -> tuple[()]:
-        """None: slopes know no supplies."""
+        """Empty: derivatives support no supplies."""
         return ()
 
     @property
     def tendons(self) -> dict[str, TendonState]:
-        """The tendons by name, as if they had been pulled here at once."""
+        """Tendons by name, as if they had been pulled here at once."""
         own = self.setup.tendons
         found = self.problem.tendons(self.positions) if own else []
         return {each.name: each.state(one) for each, one in zip(own, found, strict=True)}
 
     def gap_to(self, name: str) -> float:
-        """The smallest distance of the body and an object, m."""
+        """Measure the smallest distance between the body and an object, m."""
         for each in self.contacts:
             if each.of == (BODY, name) and name != BODY:
                 return each.gap
@@ -166,15 +166,15 @@ class LoadedState:
         return distance_between(self.mesh, self.positions, surface)
 
     def compliance_at(self, place: Place) -> Floats:
-        """How a force along x, y or z, shared by a place, moves it, (3, 3), m/N."""
+        """Compute the compliance at a place under forces along x, y and z, (3, 3), m/N."""
         return compliance_of(self.setup, self.positions, place)
 
     def natural_frequency(self) -> float:
-        """That of the slowest small vibration, Hz."""
+        """Compute the lowest natural frequency, Hz."""
         return float(modes_of(self.setup, self.positions, 1).frequencies[0])
 
     def pushed_triangles(self) -> Iterator[tuple[NDArray[np.int32], float]]:
-        """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa.
+        """Yield triangles of open surfaces under pressure, (t, 3), and the pressure in Pa.
 
         Either split of each surface carries half of its pressure.
         """

@@ -1,4 +1,4 @@
-"""Many candidates of one body at a time: other materials, other parts of the loads."""
+"""Many candidates of one body at a time, with other materials or other load factors."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ from voxsoft.units import format_percent
 #: 20 x 2 x 2 voxels has 120 and takes 1/30 of the time, a plate of 20 x 20 x 1 1,900 and a quarter,
 #: a block of 6^3 1,500 and a third, one of 8^3 3,900 and 1.5 times the time.
 MOST_PRODUCTS: Final = 2_500
-#: What the tangents of the lanes of one thread may take, in bytes.
+#: Memory limit of the tangents of the lanes of one thread, in bytes.
 MOST_BYTES: Final = 256_000_000
 
 
 @dataclass(frozen=True, repr=False)
 class Settled(Shown):
-    """Where one candidate of many ended.
+    """Final state of one candidate of many.
 
     Attributes
     ----------
@@ -53,9 +53,9 @@ class Settled(Shown):
     residual
         Norm of the forces left over on free vertices over that of the loads.
     way
-        ``lanes``, or ``alone`` for what :func:`simulate` solved by itself.
+        ``lanes``, or ``alone`` for a candidate that :func:`simulate` solved by itself.
     setup
-        What all candidates share.
+        The setup that all candidates share.
     """
 
     status: Status
@@ -88,20 +88,20 @@ class Settled(Shown):
 
     @cached_property
     def penetration(self) -> Penetration:
-        """Where the body is in itself or in its floor, and how deep."""
+        """Penetration of the body into itself or its floor."""
         return penetration_of(self.setup.design, self.setup.mesh, self.positions)
 
 
 @dataclass(frozen=True)
 class Ensemble:
-    """A setup made ready for many candidates, one in each lane of the processor.
+    """A setup prepared for many candidates, one in each lane of the processor.
 
     Attributes
     ----------
     setup
-        What they share: mesh, clamps and loads.
+        The setup that they share: mesh, clamps and loads.
     base
-        The material of all parts; None where they are of several, which only loads can vary then.
+        The material of all parts; None where parts differ, so that only loads can vary.
     """
 
     setup: Setup
@@ -110,11 +110,11 @@ class Ensemble:
 
     @classmethod
     def of(cls, setup: Setup) -> Ensemble | None:
-        """Lay out a setup, if lanes are quicker than one candidate after the other.
+        """Prepare a setup for lanes, if they are quicker than one candidate after the other.
 
         They are for lattice bodies in dead loads (weight, forces), with clamps that stand still
-        and no floor, whose cross section is small beside their length; for others there is None.
-        It depends on the body alone, never on the clock.
+        and no floor, whose cross section is small beside their length; for others the answer is
+        None. It depends on the body alone, never on the clock.
         """
         materials = setup.materials
         of_lattice = all(isinstance(material, Lattice) for material in materials)
@@ -134,14 +134,14 @@ class Ensemble:
         load_factors: Sequence[float],
         tolerance: float,
     ) -> list[Settled | None]:
-        """Bring candidates to rest; None for what has to be tried alone.
+        """Bring candidates to rest; None for those that have to be solved alone.
 
         Parameters
         ----------
         materials
-            Of all parts, for each candidate; None for the design's own.
+            Material of all parts, for each candidate; None for the design's own.
         load_factors
-            On all loads, for each candidate.
+            Factor on all loads, for each candidate.
         tolerance
             Largest relative residual.
         """
@@ -177,7 +177,7 @@ def simulate_many(
     load_factors: ArrayLike | None = None,
     tolerance: float | None = None,
 ) -> tuple[Settled, ...]:
-    """Bring a design to rest with many materials, or under many parts of its loads.
+    """Bring a design to rest with many materials, or under many load factors.
 
     Lattice bodies in dead loads that are long beside their cross section are solved by statics
     with a candidate in each lane of the processor, and on all cores, many times quicker than one
@@ -187,7 +187,7 @@ def simulate_many(
     Parameters
     ----------
     design
-        What to simulate; a :class:`Setup` saves meshing again.
+        The design to simulate; a :class:`Setup` saves meshing again.
     materials
         The material of all parts, for each candidate, or the name or path of its card; default:
         the design's own for all.
@@ -200,12 +200,12 @@ def simulate_many(
     Returns
     -------
     tuple of Settled
-        In the order of the candidates.
+        Final states in the order of the candidates.
 
     Raises
     ------
     DesignError
-        The design cannot be solved, or other materials are asked of one with several.
+        The design cannot be solved, or has several materials and `materials` would replace them.
     SimulationError
         No candidates, or lists of different lengths.
 
@@ -277,7 +277,7 @@ def _materials(design: Design) -> list[Material]:
 
 
 def _is_plain(solver: Solver) -> bool:
-    """Whether a solver asks for nothing that lanes do not know."""
+    """Return True if a solver has no setting that lanes do not support."""
     open_to_lanes = {"method", "tolerance", "refine"}
     asked, plain = (each.model_dump(exclude=open_to_lanes) for each in (solver, Solver()))
     return solver.method in ("auto", "statics") and asked == plain
@@ -302,5 +302,5 @@ def _alone(
 
 
 def settled_of(setup: Setup, result: Result) -> Settled:
-    """One of many from a result of its own."""
+    """Wrap a result as one candidate of many."""
     return Settled(result.status, result.message, result.positions, result.residual, "alone", setup)

@@ -1,4 +1,4 @@
-"""The materials of a design as a solver takes them: nothing in them is rigid any more."""
+"""Materials of a design for the solver, with a stiff material in place of a rigid one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from voxsoft.simulation.profiles import shares_of
 
 
 def solid_materials(design: Design) -> list[Material]:
-    """Return the material of each part, with something stiff in place of what is rigid.
+    """Return the material of each part, with a stiff one in place of a rigid one.
 
     Parameters
     ----------
@@ -70,20 +70,20 @@ def core_materials(
     *,
     over_time: bool = False,
 ) -> list[_core.Material]:
-    """What the core takes for each part of a design: its material and its fibers.
+    """Return the core's material of each part of a design, with fibers and growth.
 
     Parameters
     ----------
     design
-        Whose parts have the fibers.
+        The design whose parts have the fibers.
     materials
         One for each part, such as :func:`solid_materials` gives.
     mesh
-        Whose voxels they are for.
+        The mesh of the voxels.
     origin
-        Where the solver's origin is [m], (3,).
+        Origin of the solver [m], (3,).
     over_time
-        Whether activations follow their histories; default: they are as in the end.
+        True to follow the histories of activations; default: their final values.
 
     Raises
     ------

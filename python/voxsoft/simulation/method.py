@@ -1,4 +1,4 @@
-"""What every member of the union of methods is that a design's settings choose from."""
+"""Base class of the solution methods that a design's settings choose from."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ Progress = Callable[[int, float, float], None] | None
 
 @dataclass(frozen=True)
 class Report:
-    """What a solver found.
+    """Report of a solver.
 
     Attributes
     ----------
     answer
-        What the core says.
+        The answer of the core.
     status
-        How it ended, as far as the core can tell and beyond.
+        Final status: that of the core, or one derived from it.
     steps
         Steps of all attempts.
     """
@@ -36,25 +36,25 @@ class Report:
 
     @classmethod
     def of(cls, answer: _core.Answer, earlier: int = 0) -> Report:
-        """An answer as it is, after so many steps of earlier attempts."""
+        """Wrap an answer as it is, after so many steps of earlier attempts."""
         return cls(answer, answer.status, earlier + answer.steps)
 
 
-#: Settings as used, and what was found.
+#: Settings as used, and the report.
 Answer = tuple[dict[str, Any], Report]
 
 
 class Watch(NamedTuple):
-    """What is seen of a run while it is made.
+    """Options to observe a run while it is solved.
 
     Attributes
     ----------
     progress
-        Who is told.
+        Callback for the progress.
     record_interval
-        Time between two records of the probes in s; None for the default.
+        Interval between two records of the probes in s; None for the default.
     frames
-        Whether all vertices are recorded as well.
+        True to record all vertices as well.
     """
 
     progress: Progress = None
@@ -63,7 +63,7 @@ class Watch(NamedTuple):
 
 
 class Method(Record):
-    """A way to the answer with its own settings, and no others.
+    """Solution method with its own settings, and no others.
 
     The settings of a design's :class:`~voxsoft.design.Solver` that a method has a field for are
     used by it; all others are refused. A new method is a subclass with its fields and
@@ -72,27 +72,27 @@ class Method(Record):
 
     error_type: ClassVar[type[VoxSoftError]] = SimulationError
 
-    #: What an error calls it, and what it calls it together with others of its family.
+    #: Name in errors, and common name with other methods of its family.
     title: ClassVar[str]
     family: ClassVar[str]
-    #: Whether it ends when the body is at rest.
+    #: True if it ends when the body is at rest.
     to_rest: ClassVar[bool] = True
     #: Keyword arguments of :func:`~voxsoft.simulation.simulate` that it uses besides its fields.
     extra: ClassVar[frozenset[str]] = frozenset()
 
     @abstractmethod
     def solve(self, setup: Setup, watch: Watch) -> Answer:
-        """Solve a design made ready.
+        """Solve a prepared design.
 
         Parameters
         ----------
         setup
-            The design made ready.
+            The prepared design.
         watch
-            Who is told, and what is recorded.
+            Progress callback and recording options.
 
         Returns
         -------
         used, report
-            The settings as used, as ``result.solver`` tells them, and what was found.
+            The settings as used, as in ``result.solver``, and the report.
         """

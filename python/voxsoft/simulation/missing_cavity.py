@@ -1,4 +1,4 @@
-"""Why a design has no enclosed cavity: an opening, voxels that are too large, or no void at all."""
+"""Reasons for a missing cavity: an opening, voxels that are too large, or no void at all."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from voxsoft.voxels import Voxels
 
 Marks = NDArray[np.bool_]
 
-#: A hollow has material on this many of its six sides, seen along the axes.
+#: Smallest number of sides, of six along the axes, on which a hollow has material.
 _SIDES: Final = 5
-#: A hollow of fewer cells is a groove.
+#: Smallest number of cells of a hollow; fewer are a groove.
 _FEWEST: Final = 8
-#: Voxels half as large are tried up to this number.
+#: Largest number of voxels of half the size that are tried.
 _AFFORDABLE: Final = 400_000
 
 
 def why_no_cavity(design: Design, mesh: Mesh) -> tuple[str, str]:
-    """Say why a body has no cavity, and what to try.
+    """Explain why a body has no cavity, and suggest a remedy.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def why_no_cavity(design: Design, mesh: Mesh) -> tuple[str, str]:
 
 
 def _opening(mesh: Mesh) -> str | None:
-    """The opening of the largest hollow, in words."""
+    """Describe the opening of the largest hollow."""
     from scipy.ndimage import label
 
     found: tuple[int, str] | None = None
@@ -83,7 +83,7 @@ def _opening(mesh: Mesh) -> str | None:
 
 
 def _sides(filled: Marks) -> NDArray[np.int64]:
-    """On how many of its six sides each cell has material."""
+    """Count the sides, of six, on which each cell has material."""
     count = np.zeros(filled.shape, dtype=np.int64)
     for axis in range(3):
         count += np.maximum.accumulate(filled, axis=axis)
@@ -92,7 +92,7 @@ def _sides(filled: Marks) -> NDArray[np.int64]:
 
 
 def _end(hollow: Marks, outside: Marks) -> tuple[NDArray[np.int64], int]:
-    """The cells of a hollow that touch the outside most, along one axis, and that axis."""
+    """Find the cells of a hollow that touch the outside most, along one axis, and that axis."""
     ends = []
     for axis in range(3):
         for step in (-1, 1):
@@ -102,7 +102,7 @@ def _end(hollow: Marks, outside: Marks) -> tuple[NDArray[np.int64], int]:
 
 
 def _on_small_voxels(design: Design, mesh: Mesh) -> str | None:
-    """The first cavity that voxels half as large have, in words."""
+    """Describe the first cavity that voxels half as large have."""
     if 8 * len(mesh.tets) // 5 > _AFFORDABLE:
         return None
     for name in design.body_names or ("",):

@@ -1,4 +1,4 @@
-"""Where clamps put the vertices that they hold."""
+"""Prescribed positions of clamped vertices."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def held_axes(setup: Setup) -> NDArray[np.bool_]:
-    """Which coordinates clamps hold, (n, 3)."""
+    """Mark the coordinates that clamps hold, (n, 3)."""
     held = np.zeros(setup.mesh.vertices.shape, dtype=bool)
     for clamp, vertices in zip(setup.design.clamps, setup.clamped, strict=True):
         held[vertices] |= _axes(clamp)
@@ -22,14 +22,14 @@ def held_axes(setup: Setup) -> NDArray[np.bool_]:
 
 
 def held_positions(setup: Setup) -> NDArray[np.float64]:
-    """Where clamps want their vertices in the end, in m, (n, 3); the others where they are at rest.
+    """Compute final prescribed positions of clamped vertices, m, (n, 3); others stay unloaded.
 
-    Where two clamps hold the same axis of a vertex, the later one decides.
+    The later of two clamps that hold the same axis of a vertex decides.
 
     Parameters
     ----------
     setup
-        The design made ready.
+        The prepared design.
     """
     rest = setup.mesh.vertices
     placed = rest.copy()
@@ -44,9 +44,9 @@ def _axes(clamp: Clamp) -> NDArray[np.bool_]:
 
 
 def moved_by(motion: Motion | None, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where a motion puts points in the end, (n, 3), m.
+    """Move points by the final rotation and displacement of a motion, (n, 3), m.
 
-    First turned, then displaced, both times the last factor of the history.
+    They are first rotated, then displaced, both times the last factor of the history.
     """
     if motion is None:
         return points

@@ -1,4 +1,4 @@
-"""What is seen of a body in motion at one moment."""
+"""Observation of a body in motion at one moment."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ class ChamberState:
     Attributes
     ----------
     name
-        As the design names it; empty if it does not.
+        Its name in the design; empty without one.
     volume
-        In m³.
+        Volume in m³.
     pressure
-        Gauge, in Pa.
+        Gauge pressure in Pa.
     """
 
     name: str
@@ -56,17 +56,17 @@ class Observation:
     message
         The status in a sentence.
     positions, velocities
-        Of the vertices, (n, 3), m and m/s; read-only copies.
+        Vertex positions and velocities, (n, 3), m and m/s; read-only copies.
     probes
         Displacement of each probe by name, (3,), m.
     chambers
         All cavities, the largest first.
     loads
-        By name, in SI units, as they act.
+        Values of the loads by name, in SI units, as they act.
     residual
         Largest force that is not balanced, relative to the load: below the tolerance at rest.
     elastic_energy, kinetic_energy
-        In J.
+        Energies in J.
     """
 
     time: float
@@ -90,7 +90,7 @@ class Observation:
 
     @cached_property
     def result(self) -> Result:
-        """The state under its loads, for whatever takes a result; made on demand."""
+        """Result of the state under its loads; made on demand."""
         statuses: dict[MotionStatus, Status] = {"at-rest": "ok", "diverged": "diverged"}
         design = self._commands.under(self._setup.design, self._values)
         return result_at(
@@ -103,12 +103,12 @@ class Observation:
 
     @property
     def metrics(self) -> Mapping[str, float]:
-        """As :attr:`Result.metrics`: what the design asks for, and all that needs no choice."""
+        """Objectives, constraints and metrics that need no choice; see :attr:`Result.metrics`."""
         return self.result.metrics
 
     @property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """What is doubtful about this state: overlaps, collapsed voxels and more; on demand."""
+        """Warnings about this state: overlaps, collapsed voxels and more; made on demand."""
         return self.result.warnings
 
     def metric(self, name: str, **options: Any) -> float:  # noqa: ANN401 - as Result.metric

@@ -1,4 +1,4 @@
-"""The faces of voxels, cut into triangles the other way.
+"""Other split of the faces of voxels into triangles.
 
 A face of a hyperelastic voxel moves bilinearly. One of its two splits into triangles loads its
 corners 1/3, 1/6, 1/3, 1/6, in a checkerboard over the whole surface; the mean of both loads each
@@ -23,14 +23,14 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class OtherSplit:
-    """How some voxels of a mesh are cut the other way.
+    """Other split of the faces of some voxels of a mesh.
 
     Attributes
     ----------
     mesh
         Any mesh; those that are not made of voxels have no other split.
     bilinear
-        Whether the faces of each voxel are bilinear, (v,).
+        True for each voxel with bilinear faces, (v,).
     """
 
     mesh: Mesh
@@ -38,7 +38,7 @@ class OtherSplit:
 
     @classmethod
     def of(cls, design: Design, mesh: Mesh) -> OtherSplit:
-        """The other split of the hyperelastic voxels of a design.
+        """Return the other split of the hyperelastic voxels of a design.
 
         The lattice material *is* its five tetrahedra, with plane triangles for its surface: those
         keep theirs.
@@ -55,11 +55,11 @@ class OtherSplit:
         return cls(mesh, ~has_tets[mesh.tet_part[::5].astype(np.intp) - 1])
 
     def cavity(self, cavity: MeshCavity) -> MeshCavity:
-        """A cavity of the mesh with the other split of its surface."""
+        """Return a cavity of the mesh with the other split of its surface."""
         return replace(cavity, other_triangles=self.triangles(cavity.triangles))
 
     def triangles(self, triangles: NDArray[np.int32]) -> NDArray[np.int32]:
-        """Triangles of the surface, (t, 3), with whole faces cut the other way.
+        """Return triangles of the surface, (t, 3), with whole faces cut the other way.
 
         A triangle whose face is not whole among them, or not one of a bilinear voxel, stays.
         """
@@ -117,7 +117,7 @@ class OtherSplit:
 
 
 def with_other_split(design: Design, mesh: Mesh) -> Mesh:
-    """Return the mesh with cavities that know the other split of their surface.
+    """Return the mesh with cavities that have the other split of their surface.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def with_other_split(design: Design, mesh: Mesh) -> Mesh:
 
 
 def _corners(blocks: Ints) -> tuple[Ints, Ints, Ints]:
-    """Of blocks of five tets: the middle one, the apexes of the others, what lies across each."""
+    """Return the middle tets of blocks of five, the apexes of the others, the corners across."""
     middle = blocks[:, 0]
     is_inner = (blocks[:, 1:, :, None] == middle[:, None, None, :]).any(axis=3)
     apexes = np.where(is_inner, 0, blocks[:, 1:]).sum(axis=2)

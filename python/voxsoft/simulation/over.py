@@ -1,4 +1,4 @@
-"""What changes along a path, and the values it takes."""
+"""Key that changes along a path, and its values."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from voxsoft.errors import SimulationError, VoxSoftError
 from voxsoft.records import steps_of
 from voxsoft.units import KINDS, format_quantity, parse_any, si_value, write_exactly
 
-#: The key that stands for the instants of all histories.
+#: Key of the instants of all histories.
 TIME: Final = "time"
-#: The most values of a path.
+#: Largest number of values of a path.
 _MOST: Final = 10_000
 _NUMBER: Final = r"[-+]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][-+]?\d+)?"
-#: Two numbers or more with dots between them, a unit, and how many values.
+#: Two numbers or more with dots between them, a unit, and the number of values.
 _RANGE: Final = re.compile(rf"({_NUMBER}(?:\s*\.\.\s*{_NUMBER})+)\s*(.*?)\s*/\s*(\d+)")
 _EXAMPLE: Final = (
     'write "loads[0].value=0..30 kPa/16" for 16 values from 0 to 30 kPa, "0..30..0 kPa/31" for '
@@ -29,16 +29,16 @@ _EXAMPLE: Final = (
 
 @dataclass(frozen=True)
 class Over:
-    """What changes along a path, and the values it takes.
+    """Key that changes along a path, and its values.
 
     Attributes
     ----------
     key
-        As :meth:`voxsoft.Design.with_values` names keys, or ``"time"``.
+        Name of the key as for :meth:`voxsoft.Design.with_values`, or ``"time"``.
     values
-        In SI units, in the order in which they are reached.
+        Values in SI units, in the order in which they are reached.
     kind
-        A key of :data:`voxsoft.units.KINDS`.
+        Quantity of the values, a key of :data:`voxsoft.units.KINDS`.
     """
 
     key: str
@@ -47,12 +47,12 @@ class Over:
 
     @classmethod
     def read(cls, text: str) -> Self:
-        """Read a key and a range: two values or more, a unit, and how many values there are.
+        """Read a key and a range: two values or more, a unit, and the number of values.
 
         Raises
         ------
         SimulationError
-            It is not of that form.
+            The text is not of that form.
 
         Examples
         --------
@@ -97,26 +97,26 @@ class Over:
         return cls(key, found, kind)
 
     def up_to(self, count: int) -> Self:
-        """The first so many values."""
+        """Return the path with its first `count` values."""
         return replace(self, values=self.values[:count])
 
     def toml(self, value: float) -> str:
-        """A value as a design file has it."""
+        """Write a value as in a design file."""
         units = KINDS[self.kind].units
         # A parameter that is zero without a unit is a plain number.
         return f"0 {units[0]}" if value == 0.0 and units else write_exactly(value, self.kind)
 
     def in_words(self, value: float) -> str:
-        """The key with a value."""
+        """Write the key with a value."""
         return f"{self.key} = {self.value_in_words(value)}"
 
     def value_in_words(self, value: float) -> str:
-        """A value with a unit that suits it."""
+        """Write a value with a unit that suits it."""
         return format_quantity(float(f"{value:.6g}"), self.kind)
 
 
 def _kind_of(key: str, dimension: object) -> str:
-    """The kind of quantity of a dimension."""
+    """Return the kind of quantity of a dimension."""
     if key == TIME and dimension != KINDS["time"].dimension:
         raise SimulationError("over", "time has no unit of time", 'write "time=0..2 s/21"')
     for name, kind in KINDS.items():
@@ -126,7 +126,7 @@ def _kind_of(key: str, dimension: object) -> str:
 
 
 def _dimension_at(design: Design, key: str) -> object:
-    """The dimension of what a key of a design holds now."""
+    """Return the dimension of the present value of a key of a design."""
     if key in design.parameters:
         return parse_any(str(design.document["parameters"][key]["value"]), where=key).dimension
     here: Any = design.document

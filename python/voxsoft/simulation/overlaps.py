@@ -1,4 +1,4 @@
-"""Overlaps of a designed body: its layers and cut voxels minded, and what is said of them."""
+"""Overlaps of a designed body, with its layers and cut voxels, and warnings of them."""
 
 from __future__ import annotations
 
@@ -28,28 +28,28 @@ from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.skin import touches_with_skin
 from voxsoft.simulation.touching import keeps_apart
 
-#: How far in each other what contact keeps apart may seem to be, in voxels. Contact meets the faces
-#: as they warp, and overlaps are looked for with two triangles of each, which bulging faces are off
-#: by some hundredths. Distances of shapes from the faces of the voxels are those of the unloaded
-#: body, up to 0.9 voxels, which strains of a quarter change by as much. What goes through a wall is
-#: deeper.
+#: Largest apparent penetration of surfaces that contact keeps apart, in voxels. Contact meets the
+#: faces as they warp, and overlaps are found with two triangles for each, from which bulging faces
+#: differ by some hundredths. Distances of shapes from the faces of the voxels are those of the
+#: unloaded body, up to 0.9 voxels, which strains of a quarter change by as much. Surfaces that pass
+#: through a wall are deeper.
 TOUCHING: Final = 0.25
 
 Floats = NDArray[np.float64]
 
 #: Depths below this part of a voxel are left out: solvers leave positions at rest open by about as
 #: much (a residual of 1e-6 of the load moves a body by 1e-6 of its displacement, which is of the
-#: size of a voxel or more), and what merely touches is then in each other by it.
+#: size of a voxel or more), and surfaces that merely touch then overlap by it.
 NEGLIGIBLE: Final = 1e-6
 
 
 def penetration_of(design: Design, mesh: Mesh, positions: Floats) -> Penetration:
     """Find where the body of a design overlaps itself, its films or its floor.
 
-    As :func:`find_penetration`. Where voxels are cut, and where a body touches with its smooth
-    surface, the surface that counts is that of the shapes, carried along by the voxels. What
-    contact keeps apart overlaps if it is more than :data:`TOUCHING` deep. Positions that are not
-    finite overlap nothing: the status of a result tells of them.
+    Overlaps are those of :func:`find_penetration`. Where voxels are cut, and where a body touches
+    with its smooth surface, the surface that counts is that of the shapes, carried along by the
+    voxels. Surfaces that contact keeps apart overlap if they are more than :data:`TOUCHING` deep.
+    Positions that are not finite overlap nothing: the status of a result reports them.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def penetration_of(design: Design, mesh: Mesh, positions: Floats) -> Penetration
     """
     if not np.isfinite(positions).all():
         return Penetration()
-    # A result asks for its metrics, its record and its warnings, each of which looks here.
+    # The metrics, the record and the warnings of a result all need the same penetration.
     digest = hashlib.blake2b(np.ascontiguousarray(positions).tobytes()).digest()
     for known_design, known_mesh, known_digest, found in _latest:
         if known_design() is design and known_mesh() is mesh and known_digest == digest:
@@ -88,9 +88,9 @@ _latest: list[
 
 
 def overlap_warnings(design: Design, mesh: Mesh, positions: Floats) -> Iterator[Diagnostic]:
-    """Say where a body is in itself or in its floor (a check of :data:`CHECKS`).
+    """Warn of overlaps of a body with itself or its floor (a check of :data:`CHECKS`).
 
-    One warning for each two parts that are in each other, the deepest first.
+    One warning for each two parts that overlap, the deepest first.
     """
     least = NEGLIGIBLE * voxel_size(mesh)
     groups: dict[tuple[bool, frozenset[int]], list[Overlap]] = {}
@@ -114,7 +114,7 @@ def overlap_warnings(design: Design, mesh: Mesh, positions: Floats) -> Iterator[
 
 
 def overlapping(design: Design, overlap: Overlap) -> tuple[str, str]:
-    """The parts that are in each other, and how deep, in words."""
+    """Describe the parts that overlap, and the depth."""
     by = f"by {overlap.depth * 1e3:.2g} mm"
     names = [part_name(design, part) for part in overlap.parts]
     if overlap.parts[1] == FLOOR:
@@ -129,7 +129,7 @@ def _turned(design: Design, overlap: Overlap) -> tuple[str, str]:
 
 
 def part_name(design: Design, part: int) -> str:
-    """What messages call a part, counted from 1."""
+    """Return the name of a part in messages, counted from 1."""
     if part == FLOOR:
         return "floor"
     if part == FILM:
@@ -141,7 +141,7 @@ def part_name(design: Design, part: int) -> str:
 
 
 def _beyond_contact(design: Design, mesh: Mesh, found: Penetration, smooth: bool) -> Penetration:
-    """What surfaces that touch, `smooth` or not, do not explain: walls are in each other."""
+    """Keep overlaps that surfaces in contact, `smooth` or not, do not explain."""
     most = TOUCHING * voxel_size(mesh)
     kept = []
     for index, overlap in enumerate(found.overlaps):
@@ -157,7 +157,7 @@ def _beyond_contact(design: Design, mesh: Mesh, found: Penetration, smooth: bool
 
 
 def _kept(found: Penetration, kept: list[tuple[int, Overlap]]) -> Penetration:
-    """Some overlaps with their numbers, the deepest first."""
+    """Select overlaps by their numbers, the deepest first."""
     kept = sorted(kept, key=lambda entry: -entry[1].depth)
     renumbered = {index: number for number, (index, _) in enumerate(kept)}
     covered = [[v, t, renumbered[r]] for v, t, r in found.covered.tolist() if r in renumbered]
@@ -166,10 +166,11 @@ def _kept(found: Penetration, kept: list[tuple[int, Overlap]]) -> Penetration:
 
 
 def _of_shapes(design: Design, mesh: Mesh, positions: Floats, found: Penetration) -> Penetration:
-    """The same for the shapes within cut voxels, which reach out of them.
+    """Correct overlaps of voxels to those of the shapes within cut voxels.
 
-    What is at one place are a point of the surface of the voxels, outside the shapes by a distance,
-    and a point inside by another, both unloaded. The shapes overlap by the second less the first.
+    Two points coincide at an overlap: one of the surface of the voxels, outside the shapes by a
+    distance, and one inside by another, both unloaded. The shapes overlap by the second less the
+    first.
     """
     if not found.overlaps:
         return found
@@ -202,7 +203,7 @@ def _of_shapes(design: Design, mesh: Mesh, positions: Floats, found: Penetration
 
 
 def _rest_places(mesh: Mesh, positions: Floats, points: Floats, tets: NDArray[np.int32]) -> Floats:
-    """Where points in tetrahedra at their positions now are in the unloaded body, (c, 3)."""
+    """Map points in deformed tetrahedra to the unloaded body, (c, 3)."""
     corners = mesh.tets[tets]
     now, rest = positions[corners], mesh.vertices[corners]
     frames = np.swapaxes(now[:, 1:] - now[:, :1], 1, 2)
@@ -212,7 +213,7 @@ def _rest_places(mesh: Mesh, positions: Floats, points: Floats, tets: NDArray[np
 
 
 def _distances(design: Design, mesh: Mesh, points: Floats) -> Floats:
-    """Signed distances from the shapes, to first order: negative inside, (c,)."""
+    """Estimate signed distances from the shapes to first order: negative inside, (c,)."""
     if mesh.bodies:
         # Points are at the surface of their body or in it, and bodies are apart: it is the nearest.
         each = ((body, design.alone(body.name)) for body in mesh.bodies)

@@ -1,4 +1,4 @@
-"""The voxels of one part, and where in its body their material is."""
+"""Voxels of one part, and the centers of their material."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ class PartVoxels(NamedTuple):
     Attributes
     ----------
     numbers
-        Which of the voxels of the mesh they are, (n,).
+        Numbers of the voxels in the mesh, (n,).
     centers
-        Where their material is, in the frame of the body, in m, (n, 3).
+        Centers of their material, in the frame of the body, in m, (n, 3).
     size
-        Their edge in m.
+        Edge length in m.
     """
 
     numbers: NDArray[np.intp]
@@ -37,9 +37,9 @@ def part_voxels(design: Design, mesh: Mesh, index: int) -> PartVoxels | None:
     design
         The design, with the parts of all its bodies.
     mesh
-        Of its voxels.
+        The mesh of its voxels.
     index
-        Of the part.
+        Index of the part.
     """
     tets = slice(0, len(mesh.tets))
     vertices, size = mesh.vertices, mesh.voxel_size

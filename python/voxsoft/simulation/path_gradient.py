@@ -1,4 +1,4 @@
-"""Derivatives of metrics where something touches: along the load path that led there."""
+"""Derivatives of metrics with contact, along the load path."""
 
 from __future__ import annotations
 
@@ -22,40 +22,40 @@ from voxsoft.units import format_percent
 
 Floats = NDArray[np.float64]
 
-#: Largest relative residual of a state that counts as an equilibrium. What is left over of the
-#: forces enters a derivative with that part of its size, times the condition of the body.
+#: Largest relative residual of a state that counts as an equilibrium. The residual forces enter a
+#: derivative with that part of its size, times the condition of the body.
 LARGEST_RESIDUAL: Final = 1e-5
 
-#: How far the path that is followed again may end from the result, in voxels: it takes the same
-#: steps, and rounds as the same build does.
+#: Largest distance of the result from the end of the path that is followed again, in voxels: it
+#: takes the same steps, and rounds as the same build does.
 _SAME: Final = 1e-9
 
 
-#: The part of the pressure under which something may slip in a step. Points begin and end to slip
-#: at values close by, and slopes across that are not checked.
+#: Largest part of the pressure under which surfaces may slip in a step. Points begin and end to
+#: slip at values close by, and derivatives across that are not checked.
 _MOST_SLIP: Final = 0.01
-#: The part of the pressure on what came into contact under way that is let pass, with friction.
-#: Where a surface was just apart, its anchor changes steeply with what moves it there.
+#: Largest part of the pressure, with friction, on surfaces that came into contact along the path.
+#: The anchor of a surface that was just apart changes steeply with the motion that closes the gap.
 _MOST_LATER: Final = 0.01
 #: Largest tolerance of a state that is differentiated with friction. From 1e-8 on contact is first
-#: corrected by loose equilibria, where its anchors depend on what an iteration has left.
+#: corrected by loose equilibria, where its anchors depend on the residual of an iteration.
 LARGEST_WITH_FRICTION: Final = 1e-9
 
 
 class Variation(Protocol):
-    """A design with a number a little off, some times."""
+    """Variants of a design with a number a little off."""
 
     @property
     def states(self) -> Sequence[LoadedState]:
-        """One for each value."""
+        """State for each value."""
 
     @property
     def weights(self) -> Sequence[float]:
-        """Of a number at each value in its derivative."""
+        """Weight of each value in the derivative."""
 
     @property
     def offsets(self) -> Sequence[float]:
-        """By how much each value is off."""
+        """Difference of each value from the number."""
 
 
 def path_gradient(
@@ -69,11 +69,11 @@ def path_gradient(
     Parameters
     ----------
     setup
-        The design of the result made ready.
+        The prepared design of the result.
     result
-        Of statics with load control.
+        A result of statics with load control.
     targets
-        By name.
+        Targets by name.
     variations
         The design with each number a little off.
 
@@ -120,7 +120,7 @@ def _check_surfaces(setup: Setup, variation: Variation, name: str) -> None:
 
 
 def _recorded_path(setup: Setup, result: Result) -> tuple[_core.Problem, list[float]]:
-    """The problem at the end of a path that its contact has recorded, and the load factors."""
+    """Return the problem at the end of a path recorded by its contact, and the load factors."""
     used = result.solver
     settings = LoadControl(tolerance=used["tolerance"], first_step=used["first_step"])
     _, report = find_equilibrium(setup, settings, None, _core.recording(setup.problem))
@@ -132,7 +132,7 @@ def _recorded_path(setup: Setup, result: Result) -> tuple[_core.Problem, list[fl
             "solve it again, and differentiate that result",
         )
     points = path_of(report.answer).points
-    # Not that of the result: anchors of friction have come along since.
+    # The residual of this path, not of the result: friction anchors have moved along since.
     check_residual(float(points[-1, 2]))
     precise, slip, later = _core.recorded_contact(report.answer.problem)
     if not precise:
@@ -167,18 +167,18 @@ def _recorded_path(setup: Setup, result: Result) -> tuple[_core.Problem, list[fl
 
 
 def has_friction(design: Design) -> bool:
-    """Whether anything of a design touches with friction."""
+    """Return True if any contact of a design has friction."""
     contact = design.contact or Contact()
     return contact.friction > 0.0 or any(pair.friction for pair in contact.pairs)
 
 
 def check_residual(residual: float) -> None:
-    """Raise where forces are too far from balance for a derivative.
+    """Raise an error where forces are too far from balance for a derivative.
 
     Raises
     ------
     SimulationError
-        With what is left of the load.
+        The residual is too large.
     """
     if not residual <= LARGEST_RESIDUAL:
         left = f"{format_percent(residual)} of the load"

@@ -1,4 +1,4 @@
-"""Where a body overlaps itself or is below its floor: found exactly, and how deep."""
+"""Overlaps of a body with itself and its floor, found exactly, with their depth."""
 
 from __future__ import annotations
 
@@ -16,31 +16,30 @@ from voxsoft.mesh import Mesh
 Floats = NDArray[np.float64]
 Point = tuple[float, float, float]
 
-#: Stand among the parts of an overlap for a film, and for the floor.
+#: Numbers of a film and of the floor among the parts of an overlap.
 FILM: Final = 0
 FLOOR: Final = -1
 
 
 @dataclass(frozen=True)
 class Overlap:
-    """A place where a body is in itself, or in its floor.
+    """Overlap of a body with itself, or with its floor.
 
     Attributes
     ----------
     depth
-        How deep in m: the distance from the deepest point of the surface to the nearest surface of
-        the material that it is in.
+        Depth in m: the distance from the deepest point of the surface to the nearest surface of the
+        material that it is in.
     at_rest
-        That point on the unloaded body, in m.
+        The deepest point on the unloaded body, in m.
     against
-        The point of the unloaded body that is there as well, in m.
+        The other point of the unloaded body that coincides with it, in m.
     at_now
-        Where both are now, in m.
+        Present position of both, in m.
     parts
-        The parts they are of, counted from 1; 0 is a film, -1 the floor.
+        Parts of both points, counted from 1; 0 is a film, -1 the floor.
     inverted
-        Whether nothing overlaps there, but the surface is turned inside out, at tetrahedra that
-        are.
+        True where nothing overlaps, but the surface is turned inside out at inverted tetrahedra.
     """
 
     depth: float
@@ -51,7 +50,7 @@ class Overlap:
     inverted: bool = False
 
     def summary(self) -> dict[str, Any]:
-        """The same as plain data in SI units."""
+        """Return plain data in SI units."""
         return {
             "depth": self.depth,
             "at_rest": list(self.at_rest),
@@ -63,17 +62,17 @@ class Overlap:
 
 @dataclass(frozen=True)
 class Penetration:
-    """Where a body is in itself or in its floor.
+    """Penetration of a body into itself or its floor.
 
     Attributes
     ----------
     overlaps
-        The places, the deepest first; empty where nothing overlaps.
+        The overlaps, the deepest first; empty where nothing overlaps.
     pairs
         Numbers of the triangles of the surface that pass through each other, (p, 2).
     covered
-        For each vertex of the surface in other material its number, that of the tetrahedron that
-        it is in, and that of the overlap, (c, 3).
+        Numbers of each vertex of the surface in other material, of the tetrahedron that it is in,
+        and of the overlap, (c, 3).
     """
 
     overlaps: tuple[Overlap, ...] = ()
@@ -86,7 +85,7 @@ class Penetration:
 
     @cached_property
     def depth(self) -> float:
-        """The largest depth in m; 0 where nothing overlaps."""
+        """Largest depth in m; 0 where nothing overlaps."""
         return max((overlap.depth for overlap in self.overlaps), default=0.0)
 
 
@@ -99,12 +98,12 @@ def find_penetration(
 ) -> Penetration:
     """Find where a body overlaps itself at some positions.
 
-    Whether it does is decided without rounding: bodies that touch to the last bit do not overlap.
+    Overlaps are decided without rounding: bodies that touch to the last bit do not overlap.
 
     Parameters
     ----------
     mesh
-        The body, with as many components as it has.
+        The body, of any number of components.
     positions
         Its vertices now in m, (n, 3).
     membranes
@@ -161,7 +160,7 @@ def _overlap(
 
 
 def _below(mesh: Mesh, now: Floats, floor: float) -> Overlap | None:
-    """The lowest vertex of a body, if it is below its floor."""
+    """Find the lowest vertex of a body, if it is below its floor."""
     lowest = int(np.argmin(now[:, 2]))
     depth = floor - float(now[lowest, 2])
     if depth <= 0.0:
@@ -172,6 +171,6 @@ def _below(mesh: Mesh, now: Floats, floor: float) -> Overlap | None:
 
 
 def point(values: Floats | list[float]) -> Point:
-    """Three numbers as a tuple."""
+    """Convert three numbers to a tuple."""
     x, y, z = values
     return float(x), float(y), float(z)

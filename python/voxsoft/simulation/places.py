@@ -1,4 +1,4 @@
-"""From named places to vertices: regions for clamps and loads, probes to measure at."""
+"""Vertices of named places: regions for clamps and loads, probes to measure at."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def vertices_in(
     where: str,
     points: NDArray[np.float64] | None = None,
 ) -> NDArray[np.uint32]:
-    """Indices of the vertices in a region or within half a voxel of it.
+    """Find the indices of the vertices in a region or within half a voxel of it.
 
     Parameters
     ----------
@@ -39,8 +39,8 @@ def vertices_in(
     where
         The place in the design, for messages.
     points
-        Where the vertices count as being, (n, 3), m, from :func:`on_the_body`; default: where
-        they are.
+        Positions of the vertices for this test, (n, 3), m, from :func:`on_the_body`; default:
+        their own.
 
     Raises
     ------
@@ -68,7 +68,7 @@ _TRY = "move or widen the region so that it touches the body"
 def _bodies_meant(
     region: Region, mesh: Mesh, points: NDArray[np.float64]
 ) -> Iterator[tuple[BodyMesh, NDArray[np.float64]]]:
-    """The bodies that a region may catch, and where their vertices are in its frame."""
+    """Yield the bodies that a region may catch, and their vertices in its frame."""
     for body in mesh.each_body:
         if region.body is None:
             yield body, points[body.vertices]
@@ -77,21 +77,22 @@ def _bodies_meant(
 
 
 def on_the_body(design: Design, mesh: Mesh) -> NDArray[np.float64]:
-    """Where the vertices of a mesh count as being when a region looks for them.
+    """Compute the positions of vertices for the tests of regions: on the surface if outside.
 
     Parameters
     ----------
     design
-        Where the mesh comes from.
+        The design of the mesh.
     mesh
         Its mesh.
 
     Returns
     -------
     ndarray, shape (n, 3)
-        In m. The vertices themselves, unless the mesh has cut voxels: those reach out of the body,
-        and a vertex outside it counts as the nearest point of its surface, within a voxel's
-        diagonal. So a region at a surface catches the vertices that carry it, and not those beside.
+        Positions in m: the vertices themselves, unless the mesh has cut voxels: those reach out of
+        the body, and a vertex outside it counts as the nearest point of its surface, within a
+        voxel's diagonal. So a region at a surface catches the vertices that carry it, and not those
+        beside.
 
     Examples
     --------
@@ -133,7 +134,7 @@ def place_of(
     where: str,
     points: NDArray[np.float64] | None = None,
 ) -> Place:
-    """Vertices and weights that a probe averages over.
+    """Find vertices and weights that a probe averages over.
 
     A point takes the corners of the tetrahedron around it, with barycentric weights. A range of
     zero width takes the two layers of vertices next to it, weighted for linear interpolation
@@ -169,14 +170,14 @@ def _weights(
     shapes: Mapping[str, Shape],
     size: float,
 ) -> NDArray[np.float64]:
-    """What each vertex of a body counts for a probe, (n,)."""
+    """Compute the weight of each vertex of a body for a probe, (n,)."""
     weights = np.ones(len(vertices))
     reach = np.full(3, _HALF * size)
     for axis, name in enumerate("xyz"):
         bounds = getattr(probe, name)
         if bounds is not None and bounds[0] == bounds[1]:
             reach[axis] = size
-            # Between layers the motion is interpolated, so that here vertices are where they are.
+            # Motion is interpolated between layers: vertices are at their true positions here.
             points = vertices
             weights *= 1.0 - np.abs(vertices[:, axis] - bounds[0]) / size
     weights = np.where(inside_region(probe, points, shapes, reach), weights, 0.0)
@@ -193,9 +194,9 @@ def voxel_size(mesh: Mesh) -> float:
 
 
 def is_named(region: Region, mesh: Mesh) -> NDArray[np.bool_]:
-    """Which vertices of a mesh are of the region of its file that a region names, (n,).
+    """Mark the vertices of a mesh in the region of its file that a region names, (n,).
 
-    All where it names none; an unknown name is reported where the design is read.
+    All are marked where it names none; an unknown name is reported where the design is read.
     """
     if region.name is None:
         return np.ones(len(mesh.vertices), dtype=bool)
@@ -208,7 +209,7 @@ def inside_region(
     shapes: Mapping[str, Shape],
     reach: float | NDArray[np.float64],
 ) -> NDArray[np.bool_]:
-    """Which points (n, 3) lie in a region or within some reach (m) of it, (n,)."""
+    """Mark points (n, 3) that lie in a region or within some reach (m) of it, (n,)."""
     reach = np.broadcast_to(reach, (3,))
     inside = np.ones(len(points), dtype=bool)
     for axis, name in enumerate("xyz"):
@@ -226,7 +227,7 @@ def inside_region(
 
 
 def _point(point: NDArray[np.float64], name: str | None, mesh: Mesh, where: str) -> Place:
-    """The place of a point in the frame of a body, or else in that of the mesh."""
+    """Find the place of a point in the frame of a body, or else in that of the mesh."""
     body = next((each for each in mesh.bodies if each.name == name), None)
     if body is not None:
         found = _point(point, None, body.mesh, where)
@@ -237,7 +238,7 @@ def _point(point: NDArray[np.float64], name: str | None, mesh: Mesh, where: str)
     inner = np.linalg.solve(frames, (point - base)[..., None])[..., 0]
     coordinates = np.column_stack([1.0 - inner.sum(axis=1), inner])
     # A point on the true surface may lie a little outside the voxels: it is measured at the
-    # nearest spot of the tetrahedron that it is least outside of.
+    # nearest point of the tetrahedron that it is least outside of.
     best = int(np.argmax(coordinates.min(axis=1)))
     weights = np.clip(coordinates[best], 0.0, None)
     weights /= weights.sum()
@@ -254,7 +255,7 @@ def _point(point: NDArray[np.float64], name: str | None, mesh: Mesh, where: str)
 
 
 def _spans(region: Region, mesh: Mesh) -> str:
-    """What the bodies that a region may catch span, in its frame."""
+    """Describe the extents of the bodies that a region may catch, in its frame."""
     for body in mesh.bodies:
         if region.body == body.name:
             return f'the body "{body.name}" spans {_span(body.mesh)} in its own frame'

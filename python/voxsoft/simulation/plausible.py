@@ -1,4 +1,4 @@
-"""Numbers that are possible and hardly meant: meters for millimeters, pascals for kilopascals."""
+"""Implausible numbers: meters for millimeters, pascals for kilopascals."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.loads import readings
 from voxsoft.units import format_quantity
 
-# Bounds lie where no soft robot is known to be, ten times or more from what is usual, and within a
-# thousand, the slip of a unit, of it.
+# Bounds lie where no soft robot is known to be, ten times or more from usual numbers, and within a
+# factor of a thousand, the slip of a unit.
 #: m: inflatable arms of a few meters are the longest; a finger in meters for millimeters has 80.
 _LONGEST: Final = 5.0
 #: m: a cell has a tenth, a robot of an insect's size ten times as much.
@@ -84,7 +84,7 @@ def _of_size(body: object, mesh: Mesh, mass: float) -> Iterator[Diagnostic]:
 
 
 def _hint_on_size(body: object) -> str:
-    """What to try where a body has hardly the size that was meant."""
+    """Suggest a remedy for a body of an implausible size."""
     if isinstance(body, Design):
         made_of = [each for shape in body.shapes.values() for each in shape.every()]
         files = [(each.path, each.unit) for each in made_of if isinstance(each, TriangleMesh)]
@@ -96,7 +96,7 @@ def _hint_on_size(body: object) -> str:
 
 
 def _of_loads(design: Design) -> Iterator[Diagnostic]:
-    # A file states the unit; what was typed in Python may have been meant in kPa.
+    # A file states the unit; a number typed in Python may have been meant in kPa.
     for index, load in enumerate(readings(design) if design.is_typed("loads") else ()):
         where = f"loads[{index}].value"
         if load.quantity == "pressure":

@@ -1,4 +1,4 @@
-"""Rigid objects where they are now: their surfaces, and how far they are from a body."""
+"""Surfaces of rigid objects at their poses, and their distance from a body."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from voxsoft.simulation.touching import Pose
 
 
 def posed_surface(design: Design, name: str, pose: Pose | None) -> Surface:
-    """The surface of an object of a design at a pose; where it is at first without one.
+    """Return the surface of an object of a design at a pose; at its initial one by default.
 
-    A pose has the middle of the box of the surface, and turns around it.
+    A pose has the middle of the bounding box of the surface, and rotates about it.
 
     Raises
     ------
     DesignError
-        There is no such object.
+        No object has this name.
     """
     names = [each.name for each in design.objects]
     if name not in names:
@@ -36,9 +36,9 @@ def posed_surface(design: Design, name: str, pose: Pose | None) -> Surface:
 
 
 def distance_between(mesh: Mesh, positions: NDArray[np.float64], surface: Surface) -> float:
-    """The smallest distance of a body and an object [m]; negative where they overlap.
+    """Measure the smallest distance of a body and an object [m]; negative where they overlap.
 
-    From the vertices of each to the triangles of the other, as contact is looked for.
+    Distances are from the vertices of each to the triangles of the other, as in contact search.
     """
     body = Surface(positions, mesh.triangles.astype(np.uint32))
     own = positions[np.unique(mesh.triangles)]

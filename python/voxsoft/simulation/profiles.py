@@ -1,4 +1,4 @@
-"""How much of an activation each voxel has, where it has a profile."""
+"""Share of an activation in each voxel, by its profile."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from voxsoft.simulation.part_voxels import PartVoxels, part_voxels
 
 Floats = NDArray[np.float64]
 
-#: How far a factor may be from that of its image, relative to the largest: rounding of expressions.
+#: Tolerance between a factor and that of its image, relative to the largest: rounding.
 _SAME: Final = 1e-9
 
 
@@ -29,11 +29,11 @@ def shares_of(design: Design, mesh: Mesh, index: int, growth: Growth, where: str
     design
         The design, with the parts of all its bodies.
     mesh
-        Of its voxels.
+        The mesh of its voxels.
     index
-        Of the part.
+        Index of the part.
     growth
-        Of the part or of its fibers.
+        Growth of the part or of its fibers.
     where
         The activation, for errors.
 
@@ -79,7 +79,7 @@ def _check_finite(values: Floats, centers: Floats, where: str) -> None:
 
 
 def _check_left(growth: Growth, shares: Floats, voxels: PartVoxels, where: str) -> None:
-    """Refuse a share that leaves nothing somewhere in a voxel."""
+    """Refuse a share that leaves no material somewhere in a voxel."""
     spread = np.abs(shares[:, 1:]).sum(axis=1)
     for base in growth.bases:
         least = np.minimum(
@@ -102,14 +102,14 @@ def check_profile_symmetry(design: Design, mesh: Mesh) -> None:
     Parameters
     ----------
     design
-        With planes of symmetry, of one body.
+        A design of one body, with planes of symmetry.
     mesh
-        Of all its voxels.
+        The mesh of all its voxels.
 
     Raises
     ------
     DesignError
-        A profile that is not.
+        A profile that is not symmetric.
     """
     for number, activation in enumerate(design.activations):
         growth = activation.growth

@@ -1,4 +1,4 @@
-"""Where a place of a robot can be: its equilibria over a grid of what drives it."""
+"""Workspace of a robot: equilibria of a place over a grid of drives."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ from voxsoft.simulation.run import ProgressCallback
 
 Floats = NDArray[np.float64]
 
-#: Kinds of quantity of what one, two and three drives span.
+#: Kinds of quantity of the size of a workspace with one, two and three drives.
 KINDS_OF_SIZE: Final = ("length", "area", "volume")
-#: A part of the longest extent that is rounding: places that far apart lie in a plane.
+#: Rounding as a part of the longest extent: places so close to a plane lie in it.
 _FLAT: Final = 1e-9
 
 
 @dataclass(frozen=True)
 class Workspace:
-    """Where a place of a robot can be.
+    """Positions of a place of a robot over a grid of drives.
 
     Attributes
     ----------
     design
-        What is driven.
+        The robot.
     probe
         The place.
     drives
-        What drives it, and the values that each takes.
+        The keys that drive it, each with its values.
     paths
-        One for each line of the grid: the last drive changes along it. Fewer while it is found.
+        A path for each line of the grid: the last drive changes along it. Fewer while it is solved.
     """
 
     design: Design
@@ -49,12 +49,12 @@ class Workspace:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """How many values each drive takes."""
+        """Number of values of each drive."""
         return tuple(len(drive.values) for drive in self.drives)
 
     @property
     def points(self) -> Floats:
-        """Where the place is, (*shape, 3), m; NaN where no equilibrium was found."""
+        """Positions of the place, (*shape, 3), m; NaN where no equilibrium was found."""
         *lines, along = self.shape
         found = np.full((int(np.prod(lines)), along, 3), np.nan)
         for line, path in zip(found, self.paths, strict=False):
@@ -66,7 +66,7 @@ class Workspace:
 
     @property
     def unloaded(self) -> Floats:
-        """Where the place is in the design as drawn, (3,), m."""
+        """Position of the place in the unloaded design, (3,), m."""
         first = self.paths[0].results[0]
         place = first.places[self.probe]
         found: Floats = place.weights @ first.mesh.vertices[place.vertices]
@@ -74,7 +74,7 @@ class Workspace:
 
     @property
     def missing(self) -> int:
-        """At how many places of the grid no equilibrium was found."""
+        """Number of points of the grid at which no equilibrium was found."""
         return int(np.isnan(self.points[..., 0]).sum())
 
     @property
@@ -91,7 +91,7 @@ class Workspace:
     def hull_volume(self) -> float:
         """Volume of the convex hull of all places, m³; 0 where they lie in a plane.
 
-        It is no less than what can be reached: a bowl is filled.
+        It is no less than the volume that can be reached: a bowl is filled.
         """
         from scipy.spatial import ConvexHull, QhullError  # slow to load
 
@@ -109,7 +109,7 @@ class Workspace:
 
     @property
     def extents(self) -> tuple[tuple[float, float], ...]:
-        """The smallest and the largest x, y and z, m."""
+        """Smallest and largest x, y and z, m."""
         points = self.points.reshape(-1, 3)
         if not np.isfinite(points).any():
             return ((np.nan, np.nan),) * 3
@@ -119,7 +119,7 @@ class Workspace:
         return tuple(zip(low.tolist(), high.tolist(), strict=True))
 
     def table(self) -> list[dict[str, float]]:
-        """A row for each place of the grid: the drives by their keys, and x, y, z in m."""
+        """Return a row for each point of the grid: the drives by their keys, and x, y, z in m."""
         grid = itertools.product(*(drive.values for drive in self.drives))
         keys = [drive.key for drive in self.drives]
         return [
@@ -129,13 +129,13 @@ class Workspace:
 
 
 def size_of_net(points: Floats) -> float:
-    """Length, area or volume of a net of one, two or three directions.
+    """Compute length, area or volume of a net of one, two or three directions.
 
     Parameters
     ----------
     points
-        (n, 3), (n, m, 3) or (n, m, k, 3), m. Cells are cut into simplices: what is reached in two
-        ways counts twice, and a cell with a corner that is NaN does not count.
+        Positions, (n, 3), (n, m, 3) or (n, m, k, 3), m. Cells are cut into simplices: space that is
+        reached in two ways counts twice, and a cell with a corner that is NaN does not count.
 
     Examples
     --------
@@ -147,7 +147,7 @@ def size_of_net(points: Floats) -> float:
     corners = {each: _corner(points, each) for each in itertools.product((0, 1), repeat=count)}
     complete = np.all([np.isfinite(each).all(axis=-1) for each in corners.values()], axis=0)
     total = 0.0
-    # Kuhn's cut of a cube: one simplex for each order in which its axes can be walked.
+    # Kuhn's triangulation of a cube: one simplex for each order of its axes.
     for walk in itertools.permutations(range(count)):
         way = [
             tuple(int(axis in walk[:steps]) for axis in range(count))
@@ -162,7 +162,7 @@ def size_of_net(points: Floats) -> float:
 
 
 def _corner(points: Floats, corner: tuple[int, ...]) -> Floats:
-    """One corner of every cell of a grid of points."""
+    """Return one corner of every cell of a grid of points."""
     each = tuple(slice(c, n - 1 + c) for c, n in zip(corner, points.shape[:-1], strict=True))
     found: Floats = points[each]
     return found
@@ -177,7 +177,7 @@ def workspace(
     line: Callable[[Workspace], None] | None = None,
     **settings: Any,  # noqa: ANN401 - the fields of Solver declare the types
 ) -> Workspace:
-    """Find where a place of a robot can be, over a grid of what drives it.
+    """Find the workspace of a place of a robot, over a grid of drives.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def workspace(
     progress
         As for :func:`voxsoft.simulate`.
     line
-        Called after each line of the grid with what is found so far.
+        Called after each line of the grid with the workspace so far.
     **settings
         Fields of :class:`voxsoft.design.Solver` that replace the design's own.
 
@@ -204,7 +204,7 @@ def workspace(
     Raises
     ------
     DesignError, SimulationError
-        As :func:`voxsoft.follow`; an unknown probe; no drive, or more than three.
+        Errors of :func:`voxsoft.follow`; an unknown probe; no drive, or more than three.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Materials that relax, in answers that know no time."""
+"""Viscoelastic materials in equilibria, which have no time."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from voxsoft.units import format_quantity
 def relaxed_parts(design: Design) -> Iterator[Diagnostic]:
     """Warn of each part whose Prony branches an equilibrium leaves out.
 
-    An equilibrium, and each one along a path, also over the time of histories, is that of a
-    material that has relaxed wholly: stiffer at first and creep on the way are not in it.
+    An equilibrium, and each one along a path, also over the time of histories, is that of a fully
+    relaxed material: the stiffer initial response and creep are left out.
 
     Examples
     --------

@@ -1,9 +1,9 @@
-"""The way to rest of designs that both relaxation and statics can solve.
+"""Relaxation, and the choice between it and statics for designs that both can solve.
 
-A step of relaxation is cheap, and how many it takes grows with the slenderness of the body: 100 for
-a squat cylinder, 30,000 for a thin plate. Statics costs about as much as some thousand steps of
-relaxation on any body (`benchmarks/time_to_rest.py`). So relaxation begins, and what is left of the
-forces after `TRIAL_STEPS` predicts how long it would take.
+A step of relaxation is cheap, and their number grows with the slenderness of the body: 100 for a
+squat cylinder, 30,000 for a thin plate. Statics costs about as much as some thousand steps of
+relaxation on any body (`benchmarks/time_to_rest.py`). So relaxation begins, and the residual after
+`TRIAL_STEPS` predicts how long it would take.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ SLOW_RESIDUAL: Final = 0.6
 
 
 class Relaxation(Method):
-    """Dynamic relaxation to rest; it knows no time, and damps as suits it step by step."""
+    """Dynamic relaxation to rest; it has no physical time, and adapts its damping step by step."""
 
     title: ClassVar[str] = "relaxation"
     family: ClassVar[str] = "relaxation"
@@ -62,13 +62,13 @@ class QuickestRest(Method):
 
     The choice depends on the body and the load alone, never on the clock: the same design gives the
     same bits. Prescribed motions, which relaxation brings up slowly, are left to it. Where statics
-    finds no stable equilibrium relaxation goes on from where it was.
+    finds no stable equilibrium relaxation resumes from its last state.
     """
 
     title: ClassVar[str] = "the quickest way to rest"
     family: ClassVar[str] = "relaxation or statics"
 
-    #: None for what is usual to either.
+    #: Residual at rest; None for the default of each method.
     tolerance: Tolerance | None = None
 
     def solve(self, setup: Setup, watch: Watch) -> Answer:
@@ -98,7 +98,7 @@ class QuickestRest(Method):
 
 
 def _used(tolerance: float) -> dict[str, Any]:
-    """What relaxation says of itself; it damps as suits it, step by step."""
+    """Return the settings of relaxation as used; it adapts its damping step by step."""
     used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance}
     return {**used, "damping": "auto", "max_steps": DEFAULT_MAX_STEPS}
 

@@ -1,6 +1,6 @@
-"""The answer of a simulation. Long because all that it gives is a short property of one class.
+"""Result of a simulation.
 
-Long because it documents every number of a result where it is defined.
+Long because all that it gives is a short property of one class, which documents every number.
 """
 
 from __future__ import annotations
@@ -45,17 +45,17 @@ from voxsoft.units import format_percent, format_quantity
 if TYPE_CHECKING:
     from voxsoft.studio.html import LivePage
 
-#: The part of the loads that an equilibrium with contact may leave without a word. What slips acts
-#: from where it is now once a state is taken, which leaves less than this where it slips little.
+#: Largest residual of an equilibrium with contact without a warning. Surfaces that slip act from
+#: their present position once a state is taken, which leaves less than this where they slip little.
 LARGE_RESIDUAL = 1e-3
 
-#: How a trial can end; ``ok`` is the only one whose numbers may be compared.
+#: Final status of a trial; ``ok`` is the only one whose numbers may be compared.
 Status = Literal["ok", "no-cavity", "disconnected", "diverged", "not-at-rest", "failed"]
 
 
 @dataclass(frozen=True)
 class Recording:
-    """What was recorded over time.
+    """Recording over time, or along the load path.
 
     Attributes
     ----------
@@ -66,15 +66,15 @@ class Recording:
     frames
         Positions of all vertices in m, (f, n, 3); f is 0 unless frames were asked for.
     contacts
-        What touched what, at each instant; empty without contact.
+        Contacts at each instant; empty without contact.
     objects
         Positions in m, (f, 3), and rotations from the first pose, (f, 3, 3), of each object by
         name.
     elastic_energy, kinetic_energy, load_potential
-        In J, (f,), of all bodies and free objects: without what keeps surfaces apart, and with the
+        Energies in J, (f,), of all bodies and free objects: without that of contact, and with the
         loads as they are at that instant. Empty without contact.
     momentum
-        In kg m/s, (f, 3). Empty without contact.
+        Momentum in kg m/s, (f, 3). Empty without contact.
     chambers
         Pressure, volume, mass, flow, work and energy of each supply by name, each (f,); for statics
         at each point of the load path.
@@ -96,12 +96,12 @@ class Recording:
 
 @dataclass(frozen=True, repr=False)
 class Result(Shown):
-    """Where a design ended up, and how sure that is.
+    """Final state of a design, with its status and its residual.
 
     Attributes
     ----------
     design, mesh
-        What was simulated.
+        The design that was simulated, and its mesh.
     status
         ``ok``: at rest (or at the end time, where one was set). ``not-at-rest`` and
         ``diverged`` keep the last good positions.
@@ -116,9 +116,9 @@ class Result(Shown):
     reaction, reaction_moment, load, load_moment
         Totals in N and N m (about the origin), (3,). Springs to fixed points count as loads.
     elastic_energy
-        In J.
+        Elastic energy in J.
     solver
-        Which solver answered, and its settings.
+        The method of the solver, and its settings.
     steps, back_offs
         Substeps taken, and how often the step was halved.
     time
@@ -126,31 +126,31 @@ class Result(Shown):
     seconds
         Wall-clock time of the solution.
     recording
-        What was recorded, for runs over time; for statics one entry for each point of the load
-        path, with the load factor as time.
+        Recording of runs over time; for statics one entry for each point of the load path, with the
+        load factor as time.
     load_factor
         The part of the loads that ``positions`` carry; 1 unless statics met a limit (or, in
-        volume control, what the pressure came to).
+        volume control, the factor that the pressure reached).
     limit_factor
         The largest load factor of a path that turned back, if it did: 0.8 means that a
         pressure of 5 kPa has its limit at 4 kPa.
     stable
-        Whether the equilibrium is stable; None where the solver does not tell.
+        True for a stable equilibrium; None where the solver does not decide it.
     snaps
         The load factors at which a body with contact snapped to another equilibrium on the way.
     contacts
-        What touches what, with how much force; pairs that are apart are left out.
+        Contacts with their forces; pairs that are apart are left out.
     objects
-        Where the rigid objects are, by name.
+        Poses of the rigid objects, by name.
     contact_field
         Pressure, friction and gap at each vertex; None for a design without contact.
     tendons
-        How hard each tendon pulls and how long it is, by name.
+        Tension and length of each tendon, by name.
     supplies
         Pressure, volume, mass, flow, work and energy of each volume of gas or liquid: those of the
         design's supplies in their order, then those that only a connection reaches.
     peaks
-        Where voxels soften: the largest energy of the change of shape that each has had, in J/m³.
+        Largest energy of the change of shape that each softening voxel has had, in J/m³.
     """
 
     design: Design
@@ -187,7 +187,7 @@ class Result(Shown):
 
     @property
     def history(self) -> NoReturn:
-        """Refused, as loads have histories: what was recorded is :attr:`recording`."""
+        """Refused, as loads have histories: see :attr:`recording`."""
         raise AttributeError("a Result has no history: what was recorded is its recording")
 
     @property
@@ -210,7 +210,7 @@ class Result(Shown):
     def cavity_volumes(self) -> tuple[float, ...]:
         """Volume of each cavity now, in m³, in the order of the mesh's cavities.
 
-        Those of named chambers are in :attr:`chamber_volumes`.
+        Volumes of named chambers are in :attr:`chamber_volumes`.
         """
         return tuple(cavity.volume_at(self.positions) for cavity in self.mesh.cavities)
 
@@ -230,7 +230,7 @@ class Result(Shown):
 
     @cached_property
     def clamp_reactions(self) -> Mapping[str, Force]:
-        """The force of each clamp on the body in N, by its name or its place, ``"clamps[0]"``.
+        """Reaction force of each clamp on the body in N, by its name or its place, ``"clamps[0]"``.
 
         Each force counts once: where several clamps hold the same axis of a vertex, for the last.
         """
@@ -238,12 +238,12 @@ class Result(Shown):
         return clamp_reactions(self.design, clamped, self.reactions)
 
     def reaction_in(self, region: Region) -> Force:
-        """The force in N on the body of all that holds the vertices in a region.
+        """Compute the reaction force in N of all supports of the vertices in a region.
 
         Parameters
         ----------
         region
-            Where, in the unloaded body.
+            A region of the unloaded body.
 
         Raises
         ------
@@ -277,9 +277,9 @@ class Result(Shown):
         Parameters
         ----------
         name
-            A key of :data:`voxsoft.metrics.METRICS`, which says what each needs and takes.
+            A key of :data:`voxsoft.metrics.METRICS`, which lists the choices of each.
         probe
-            Where, for a metric that needs it; may be left out if there is one probe.
+            The probe, for a metric that needs it; may be left out if there is one probe.
         base
             Another probe, where the line of a chord begins; may be left out if there are two.
         axis
@@ -287,17 +287,17 @@ class Result(Shown):
         cavity
             The chamber, by its name or the index of the cavity; default: all of them.
         percentile
-            What so many percent of the volume stay at or below, which one sharp corner does not
+            Percentage of the volume at or below the metric, so that one sharp corner does not
             decide; default: 100, the largest of all.
         object
-            What touches the body: an object by its name, or ``"body"`` for the body with itself;
-            default: the only object there is.
+            The contact: an object by its name, or ``"body"`` for self-contact; default: the only
+            object there is.
         tendon
             The tendon, by its name; default: the only one there is.
         clamp
             The clamp, by its name or its place, ``"clamps[0]"``; default: all that hold the body.
         region
-            Where supports count; default: everywhere.
+            Region in which supports count; default: everywhere.
 
         Raises
         ------
@@ -332,9 +332,9 @@ class Result(Shown):
 
     @cached_property
     def metrics(self) -> Mapping[str, float]:
-        """The design's objectives and constraints by name, and everything that needs no choice.
+        """Objectives and constraints of the design by name, and all metrics that need no choice.
 
-        What supplies do is listed where there are any.
+        Metrics of supplies are listed if there are any.
         """
         asked: dict[str, Target] = {**self.design.objectives, **self.design.constraints}
         values = {name: self._value(target) for name, target in asked.items()}
@@ -349,26 +349,26 @@ class Result(Shown):
 
     @cached_property
     def volumes(self) -> Volumes:
-        """Volumes of parts and chambers without load: as simulated, and as described by shapes."""
+        """Volumes of unloaded parts and chambers: as simulated, and as described by shapes."""
         return volumes_of(self.design, self.mesh)
 
     @cached_property
     def penetration(self) -> Penetration:
-        """Where the body is in itself or in its floor, and how deep."""
+        """Penetration of the body into itself or its floor."""
         return penetration_of(self.design, self.mesh, self.positions)
 
     def gap_to(self, name: str) -> float:
-        """The smallest distance of the body and an object [m].
+        """Measure the smallest distance of the body and an object [m].
 
         Parameters
         ----------
         name
-            Of the object.
+            Name of the object.
 
         Raises
         ------
         DesignError
-            There is no such object.
+            No object has this name.
         """
         bodies = self.design.body_names
         touching = [e.gap for e in self.contacts if e.of[0] in bodies and e.of[1] == name]
@@ -380,7 +380,7 @@ class Result(Shown):
         return distance_between(self.mesh, self.positions, surface)
 
     def compliance_at(self, place: Place) -> NDArray[np.float64]:
-        """How a force along x, y or z, shared by a place, moves it, (3, 3), m/N.
+        """Compute the compliance at a place under forces along x, y and z, (3, 3), m/N.
 
         Raises
         ------
@@ -392,14 +392,14 @@ class Result(Shown):
         return compliance(self.design, self.mesh, self.positions, place, self.peaks)
 
     def natural_frequency(self) -> float:
-        """That of the slowest small vibration, Hz; errors as those of :func:`voxsoft.modes`."""
+        """Compute the lowest natural frequency, Hz; errors as those of :func:`voxsoft.modes`."""
         from voxsoft.simulation.vibration import modes  # of results
 
         return float(modes(self, 1).frequencies[0])
 
     @cached_property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """What is doubtful about this result: where, what, and what to try; empty if nothing is."""
+        """Warnings about this result, each with subject, finding and remedy."""
         found = warnings_at(self.design, self.mesh, self.positions, self.fields)
         if self.supplies:
             fluids = Fluids(self.design, self.mesh)
@@ -436,9 +436,9 @@ class Result(Shown):
         yield from shortened([f"warning: {found}" for found in self.warnings])
 
     def show(self) -> LivePage:
-        """Show the design as a page that is alive: in a notebook, or as a file with ``save``.
+        """Show the design as an interactive page: in a notebook, or as a file with ``save``.
 
-        The page begins at this result; its Play shows the way there from the unloaded shape.
+        The page begins at this result; its Play shows the motion there from the unloaded shape.
         """
         # `studio` lies above `simulation` in the layers; this convenience reaches up when called.
         from voxsoft.studio.html import page_of
@@ -446,7 +446,7 @@ class Result(Shown):
         return page_of(self)
 
     def summary(self) -> dict[str, Any]:
-        """Everything a record needs, as plain data in SI units (the ``--json`` of ``run``)."""
+        """Return all that a record needs, as plain data in SI units (the ``--json`` of ``run``)."""
         return {
             "status": self.status,
             "message": self.message,

@@ -1,4 +1,4 @@
-"""Rigid objects: their surface with its edges, mass and inertia of those that are free."""
+"""Rigid objects: their traced surface, and mass and inertia of free ones."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Solid:
-    """What a free object answers to forces with.
+    """Mass and inertia of a free object.
 
     Attributes
     ----------
     mass
-        In kg.
+        Mass in kg.
     center
-        Of mass, m.
+        Center of mass, m.
     axes
         Its principal axes, unit vectors row by row, (3, 3).
     radii
-        The roots of its second moments of mass along them over its mass, m.
+        Square roots of its second moments of mass along them over its mass, m.
     """
 
     mass: float
@@ -40,18 +40,18 @@ class Solid:
 
     @classmethod
     def of(cls, traced: Surface, each: Object, design: Design, shift: Floats) -> Solid:
-        """A solid of one density.
+        """Compute mass and inertia of a solid of one density.
 
         Parameters
         ----------
         traced
-            The surface of its shape.
+            The traced surface of its shape.
         each
             The object.
         design
             The design that has it.
         shift
-            From there to where it is [m].
+            Translation from there to its position [m].
         """
         volume, first, second = _integrals(traced, each, design)
         mass = each.mass if each.density is None else each.density * volume
@@ -63,10 +63,11 @@ class Solid:
 
 
 def _integrals(traced: Surface, each: Object, design: Design) -> tuple[float, Floats, Floats]:
-    """Integrals of 1, x and x ⊗ x over a solid, in m³, m⁴ and m⁵.
+    """Integrate 1, x and x ⊗ x over a solid, in m³, m⁴ and m⁵.
 
     Flat triangles on a round surface leave out a part that falls with the square of their size:
-    those with all sides halved, the middles put on the surface, tell how much (Richardson).
+    triangles with all sides halved, the middles put on the surface, give it (Richardson
+    extrapolation).
     """
     shape = _shape(each, design).build(design.shapes)
     step = (each.voxel_size or design.voxel_size) / SAMPLES[0]
@@ -90,7 +91,7 @@ def _integrals(traced: Surface, each: Object, design: Design) -> tuple[float, Fl
 
 
 def _moments(vertices: Floats, triangles: NDArray[np.int64]) -> tuple[float, Floats, Floats]:
-    """Integrals over the tetrahedra between triangles and the origin, with sign."""
+    """Integrate over the tetrahedra between triangles and the origin, with sign."""
     corners = vertices[triangles]
     volumes = np.linalg.det(corners) / 6.0
     total = corners.sum(axis=1)
@@ -110,7 +111,7 @@ def surface_of(each: Object, design: Design, where: str) -> Surface:
     Raises
     ------
     DesignError
-        It has none that could be traced, or a file's that is open.
+        The surface is too large to be traced, or is that of a file and open.
     """
     shape = _shape(each, design)
     for part in shape.every(design.shapes):

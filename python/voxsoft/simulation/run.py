@@ -1,4 +1,4 @@
-"""One call from a design to its result."""
+"""Simulation of a design in one call."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def simulate(
     """Simulate a design until it comes to rest, or to an end time.
 
     Designs of hyperelastic parts, and those with layers, are solved by statics, Newton's method on
-    the equilibrium. Others are brought to rest by dynamic relaxation, which is quick and knows no
+    the equilibrium. Others are brought to rest by dynamic relaxation, which is quick and has no
     time, or, where its first 200 steps leave more than 0.6 of the load out of balance, by statics.
     With any of `end_time`, `max_time`, `time_step`, `substeps`, `iterations`, `retardation`, or a
     `damping` that is not ``"auto"``, real time is simulated (Algorithm 3 of the paper, extended
@@ -58,21 +58,20 @@ def simulate(
     Parameters
     ----------
     design
-        What to simulate; a :class:`Setup` saves meshing again. Threads that share one wait for each
-        other.
+        The design to simulate; a :class:`Setup` saves meshing again. Threads that share one wait
+        for each other.
     record_interval
-        Time between two records of the probes, in s or with its unit, ``"50 ms"``; default 1/50 s.
-        For runs over time only.
+        Interval between two records of the probes, in s or with its unit, ``"50 ms"``; default
+        1/50 s. For runs over time only.
     frames
-        Whether to record all vertices as well. For runs over time, and for the
-        load path of statics.
+        True to record all vertices as well. For runs over time, and for the load path of statics.
     progress
         Called about ten times a second with (steps, time, residual); an exception it raises
         ends the run.
     coarser
         An equilibrium of the same design on voxels twice as large. Load control without contact
         begins there, in a fraction of the iterations, where the voxels fill the large ones; other
-        ways begin at rest.
+        methods begin at the unloaded body.
     **settings
         Fields of :class:`voxsoft.design.Solver` that replace the design's own: ``time_step``,
         ``substeps``, ``iterations``, ``damping``, ``tolerance``, ``max_time``, ``end_time`` ...
@@ -80,7 +79,7 @@ def simulate(
     Returns
     -------
     Result
-        With ``status`` ``ok``, ``not-at-rest`` or ``diverged``.
+        Result with the ``status`` ``ok``, ``not-at-rest`` or ``diverged``.
 
     Raises
     ------
@@ -89,8 +88,8 @@ def simulate(
     NoCavityError, DisconnectedError
         Special cases of that, which a study counts apart.
     SimulationError
-        A setting that would not be used, with what it belongs to and what to write; or a tangent
-        too large for the memory; a setup that is solved from within its own progress.
+        A setting that would not be used, with the methods that use it and a remedy; a tangent too
+        large for the memory; a setup that is solved from within its own progress.
 
     Examples
     --------
@@ -130,7 +129,7 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
     Parameters
     ----------
     setup
-        Where the problem came from.
+        The setup of the problem.
     problem
         The problem to solve, from :meth:`Setup.problem_with`.
     tolerance
@@ -154,7 +153,7 @@ def balance(setup: Setup, problem: _core.Problem, tolerance: float) -> Result:
     Parameters
     ----------
     setup
-        Where the problem came from.
+        The setup of the problem.
     problem
         The problem to solve, from :meth:`Setup.problem_with`.
     tolerance
@@ -170,14 +169,14 @@ def _settings(own: Solver, changes: dict[str, Any]) -> Solver:
 
 
 def refinement(setup: Setup) -> int:
-    """Into how many along each axis the voxels of a setup's design were cut."""
+    """Return the refinement of a setup: the parts of the design's voxels along each axis."""
     first = setup.mesh.each_body[0]
     own = setup.design.alone(first.name).voxel_size / voxel_size(first.mesh)
     return max(1, round(own / TIMES_AS_SMALL if setup.design.refine else own))
 
 
 def _check_refinement(setup: Setup, settings: dict[str, Any]) -> None:
-    """A setup is meshed already: it cannot be refined any more."""
+    """Refuse another refinement of a setup, which is meshed already."""
     asked, done = settings.get("refine"), refinement(setup)
     if asked is not None and asked != done:
         raise SimulationError(
@@ -199,7 +198,7 @@ _STATUSES: dict[_core.Status, Status] = {
 
 
 def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float) -> Result:
-    """Wrap what was found in a :class:`Result`."""
+    """Wrap the report of a solver in a :class:`Result`."""
     answer, path, touching = report.answer, report.answer.path, setup.touching
     fluids = setup.fluids
     rest = setup.mesh.vertices
@@ -254,7 +253,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
 
 
 def _touch_history(setup: Setup, answer: _core.Answer) -> dict[str, Any]:
-    """What touched, where objects were, energies and momentum, as keywords of a recording."""
+    """Return contacts, poses of objects, energies and momentum, as keywords of a recording."""
     if setup.touching is None or answer.history is None:
         return {}
     history = answer.history
@@ -302,7 +301,7 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
                 "is held well enough to find a rest"
             )
         case _:
-            assert answer.breakdown is not None  # so it is where a body diverged
+            assert answer.breakdown is not None  # the core gives it where a body diverged
             _, place, when = answer.breakdown
             if setup.touching is not None:
                 return _lost_contact(setup, answer)
@@ -315,7 +314,7 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
 
 
 def _lost_contact(setup: Setup, answer: _core.Answer) -> str:
-    """Why a run over time with contact ended early."""
+    """Explain why a run over time with contact ended early."""
     return flies(setup, answer) or (
         f"no step goes on from {answer.time:.6g} s, after {answer.back_offs} halvings: contact did "
         "not settle, or the material cannot carry the load; kept is the last state. Try a shorter "

@@ -1,4 +1,4 @@
-"""The part of a symmetric body that is solved for, and where the rest of the body has its images.
+"""Sector of a symmetric body that is solved, and its mirror images in the rest of the body.
 
 The planes of symmetry pass between voxels. The five tetrahedra of neighbors mirror each other, so
 that the whole mesh is symmetric where its voxels are, and a vertex on one side has its image on the
@@ -24,9 +24,9 @@ from voxsoft.simulation.sector_bodies import BodyImages
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: How far a plane may be from faces of voxels, in voxels: rounding.
+#: Largest distance of a plane from faces of voxels, in voxels: rounding.
 _OFF: Final = 1e-6
-#: How much the fractions of a voxel and of its image may differ: they are measured by points of
+#: Largest difference of the fractions of a voxel and of its image: they are measured by points of
 #: which some lie on the surface of symmetric shapes, where rounding decides.
 _SAME_FRACTION: Final = 0.02
 
@@ -35,7 +35,7 @@ _WHOLE: Final = "describe the whole body (shape.mirror keeps both halves), or le
 
 @dataclass(frozen=True, eq=False)
 class Sector:
-    """A half, quarter or eighth of a body: what is on the positive side of its planes.
+    """A half, quarter or eighth of a body, on the positive side of its planes.
 
     Attributes
     ----------
@@ -44,15 +44,15 @@ class Sector:
     whole
         The mesh of the whole body, made of voxels.
     images
-        For each plane the image of each vertex of the whole, (n,).
+        Image of each vertex of the whole for each plane, (n,).
     vertices
         The vertices of the whole that are in the sector, (m,).
     source
-        For each vertex of the whole, the vertex of the sector whose image it is, (n,).
+        Vertex of the sector whose image each vertex of the whole is, (n,).
     signs
-        For each vertex of the whole, by what a vector is multiplied on the way there, (n, 3).
+        Factors on the components of a vector from its source to each vertex of the whole, (n, 3).
     body_images
-        For each plane the number of the image of each body.
+        Number of the image of each body for each plane.
     """
 
     planes: tuple[Symmetry, ...]
@@ -74,7 +74,7 @@ class Sector:
         mesh
             The whole body, or several bodies that are images of themselves or of each other.
         kinds
-            For each part from 1 on, a number that parts of one material share; default: every part
+            A number for each part from 1 on, which parts of one material share; default: every part
             is mirrored to itself.
 
         Raises
@@ -112,7 +112,7 @@ class Sector:
 
     @classmethod
     def _of_bodies(cls, planes: Sequence[Symmetry], mesh: Mesh, kinds: Ints | None) -> Self:
-        """The sector of several bodies."""
+        """Find the sector of several bodies."""
         parts = np.arange(int(mesh.tet_part.max())) if kinds is None else kinds
         found = BodyImages(mesh, planes, parts)
         source = np.arange(len(mesh.vertices))
@@ -132,7 +132,7 @@ class Sector:
 
     @property
     def count(self) -> int:
-        """How many sectors the body is made of."""
+        """Number of sectors of the body."""
         return int(2 ** len(self.planes))
 
     @cached_property
@@ -149,7 +149,7 @@ class Sector:
 
     @cached_property
     def on_planes(self) -> NDArray[np.bool_]:
-        """Which vertices of the whole are on which planes, (n, p)."""
+        """Marks of the vertices of the whole that are on each plane, (n, p)."""
         own = np.arange(len(self.whole.vertices))
         return np.stack([image == own for image in self.images], axis=1)
 
@@ -162,7 +162,7 @@ class Sector:
 
     @cached_property
     def shares(self) -> Floats:
-        """The part of what acts on a vertex of the whole that the sector takes, (n,)."""
+        """Share of the sector in a force on each vertex of the whole, (n,)."""
         parts = 0.5 ** self.on_planes.sum(axis=1)
         return np.where(self.numbers >= 0, parts, 0.0)
 
@@ -196,40 +196,39 @@ class Sector:
         )
 
     def inside(self, elements: NDArray[np.integer]) -> NDArray[np.bool_]:
-        """Which elements, (e, k) vertices of the whole, have all their corners in the sector."""
+        """Mark elements, (e, k) vertices of the whole, with all their corners in the sector."""
         return np.asarray((self.numbers[elements] >= 0).all(axis=1))
 
     def restricted(self, elements: NDArray[np.integer]) -> NDArray[np.uint32]:
-        """Elements of the whole that are in the sector, by its own numbers."""
+        """Select elements of the whole that are in the sector, by its own numbers."""
         found: NDArray[np.uint32] = self.numbers[elements[self.inside(elements)]].astype(np.uint32)
         return found
 
     def images_of(
         self, elements: NDArray[np.integer]
     ) -> tuple[NDArray[np.uint32], Floats, NDArray[np.uint32]]:
-        """Elements of the whole, (e, k), whose corners are numbered as images of the sector.
+        """Renumber the corners of elements of the whole, (e, k), as images of the sector.
 
         Returns
         -------
         of, signs, elements
-            The vertex of the sector that each image is of, by what its vectors are multiplied, and
-            the elements.
+            The source of each image in the sector, the factors on its vectors, and the elements.
         """
         used, numbered = np.unique(elements, return_inverse=True)
         of = self.source[used].astype(np.uint32)
         return of, self.signs[used], numbered.reshape(elements.shape).astype(np.uint32)
 
     def unfolded(self, vectors: Floats) -> Floats:
-        """Vectors on the vertices of the sector, (..., m, 3), on those of the whole."""
+        """Map vectors on the vertices of the sector, (..., m, 3), to those of the whole."""
         found: Floats = vectors[..., self.source, :] * self.signs
         return found
 
     def places(self, positions: Floats) -> Floats:
-        """Positions in the sector's frame, (..., m, 3), as those of the whole."""
+        """Map positions in the sector's frame, (..., m, 3), to those of the whole."""
         return self.unfolded(positions) + self.origin
 
     def patterns(self) -> Iterator[tuple[Floats, NDArray[np.bool_]]]:
-        """Yield for each sector by what vectors are multiplied, and which vertices are there."""
+        """Yield the factors on vectors in each sector, and the marks of its vertices."""
         for number in range(self.count):
             sign = np.ones(3)
             sign[self.axes] = [-1.0 if number >> bit & 1 else 1.0 for bit in range(len(self.axes))]
@@ -238,7 +237,7 @@ class Sector:
 
 @dataclass(frozen=True, eq=False)
 class _Lattice:
-    """Vertices and voxels of a mesh by whole numbers, counted from the planes."""
+    """Vertices and voxels of a mesh by integer coordinates, counted from the planes."""
 
     mesh: Mesh
     planes: Sequence[Symmetry]
@@ -246,7 +245,7 @@ class _Lattice:
 
     @cached_property
     def origin(self) -> Floats:
-        """Where counting begins [m], (3,)."""
+        """Origin of the coordinates [m], (3,)."""
         found: Floats = self.mesh.vertices.min(axis=0)
         for plane in self.planes:
             found[plane.axis] = plane.at
@@ -254,17 +253,17 @@ class _Lattice:
 
     @cached_property
     def vertices(self) -> Ints:
-        """The vertices, (n, 3)."""
+        """Coordinates of the vertices, (n, 3)."""
         return np.rint((self.mesh.vertices - self.origin) / self.size).astype(np.int64)
 
     @cached_property
     def voxels(self) -> Ints:
-        """The lower corners of the voxels, (v, 3)."""
+        """Coordinates of the lower corners of the voxels, (v, 3)."""
         found: Ints = self.vertices[self.mesh.tets.reshape(-1, 20)].min(axis=1)
         return found
 
     def check_plane(self, plane: Symmetry, where: str) -> None:
-        """Raise where the voxels are not symmetric in a plane."""
+        """Raise an error where the voxels are not symmetric in a plane."""
         first = (self.mesh.vertices[0, plane.axis] - plane.at) / self.size
         off = abs(first - np.rint(first))
         if off > _OFF:
@@ -304,7 +303,7 @@ def _mirrored(keys: Ints, axis: int) -> Ints:
 
 
 def _found_in(keys: Ints, wanted: Ints) -> Ints:
-    """Where whole numbers (w, 3) are among others (k, 3), all different; -1 where they are not."""
+    """Find integers (w, 3) among others (k, 3), all different; -1 where they are missing."""
     low = np.minimum(keys.min(axis=0), wanted.min(axis=0))
     shape = np.maximum(keys.max(axis=0), wanted.max(axis=0)) - low + 1
     codes = np.ravel_multi_index(tuple((keys - low).T), tuple(shape))

@@ -1,4 +1,4 @@
-"""The mirror images of several bodies: each is its own image, or that of another one."""
+"""Mirror images of several bodies: each is its own image, or that of another one."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from voxsoft.mesh import BodyMesh, Mesh
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: How far a vertex may be from the image of another one, in voxels: rounding of poses.
+#: Largest distance of a vertex from the image of another one, in voxels: rounding of poses.
 _OFF: Final = 1e-6
-#: How much the fractions of a voxel and of its image may differ, as for one body.
+#: Largest difference of the fractions of a voxel and of its image, as for one body.
 _SAME_FRACTION: Final = 0.02
 
 _HINT: Final = (
@@ -31,16 +31,16 @@ _HINT: Final = (
 
 @dataclass(frozen=True, eq=False)
 class BodyImages:
-    """Which vertex of which body is the image of each.
+    """Images of the vertices of several bodies.
 
     Parameters
     ----------
     mesh
-        Of several bodies of voxels.
+        A mesh of several bodies of voxels.
     planes
         The planes of symmetry.
     kinds
-        For each part from 1 on, a number that parts of one material share.
+        A number for each part from 1 on, which parts of one material share.
     """
 
     mesh: Mesh
@@ -49,17 +49,17 @@ class BodyImages:
 
     @property
     def vertices(self) -> tuple[Ints, ...]:
-        """For each plane the image of each vertex, (n,); errors as for :attr:`kept`."""
+        """Image of each vertex for each plane, (n,); errors as for :attr:`kept`."""
         return tuple(image for _, image in self._found)
 
     @property
     def bodies(self) -> tuple[list[int], ...]:
-        """For each plane the number of the image of each body; errors as for :attr:`kept`."""
+        """Number of the image of each body for each plane; errors as for :attr:`kept`."""
         return tuple(bodies for bodies, _ in self._found)
 
     @cached_property
     def kept(self) -> NDArray[np.bool_]:
-        """Which vertices are on the side of each plane that is solved, (n, p).
+        """Marks of the vertices on the solved side of each plane, (n, p).
 
         Raises
         ------
@@ -82,7 +82,7 @@ class BodyImages:
 
     @cached_property
     def _found(self) -> list[tuple[list[int], Ints]]:
-        """For each plane the images of bodies and of vertices."""
+        """Images of bodies and of vertices for each plane."""
         found = []
         for number, plane in enumerate(self.planes):
             image = np.zeros(len(self.mesh.vertices), dtype=np.int64)
@@ -96,7 +96,7 @@ class BodyImages:
         return found
 
     def _image_of(self, body: BodyMesh, plane: Symmetry, where: str) -> tuple[int, Ints]:
-        """The number of the body that is the image of one, and the vertices of it."""
+        """Find the number of the body that is the image of one, and its vertices."""
         from scipy.spatial import cKDTree
 
         mirrored = self.mesh.vertices[body.vertices].copy()
@@ -156,7 +156,7 @@ class BodyImages:
 
 
 def kinds_of(parts: Sequence[Part]) -> Ints:
-    """A number for each part that those share which differ in name and shape alone, (k,)."""
+    """Number parts by material: equal where they differ in name, shape and body alone, (k,)."""
     found: list[dict[str, Any]] = []
     kinds = []
     for part in parts:

@@ -1,4 +1,4 @@
-"""What of a symmetric body's clamps, layers and loads the solved part takes."""
+"""Clamps, layers and loads of a symmetric body for its solved sector."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from voxsoft.simulation.touching import CoreHistory
 Floats = NDArray[np.float64]
 Indices = NDArray[np.uint32]
 
-#: How far loads may be from symmetric, as a part of the largest: sums in different orders.
+#: Tolerance of symmetric loads, as a part of the largest: sums in different orders.
 _ROUNDING: Final = 1e-9
 
-#: Parts of a motion at which it is compared with its image: a turn is not linear in its angle.
+#: Parts of a motion at which it is compared with its image: a rotation is not linear in its angle.
 _PARTS: Final = (1.0, 0.5)
 #: The kind of a load and its history.
 _Key: TypeAlias = tuple[str, tuple[tuple[float, ...], ...] | None]
@@ -35,7 +35,7 @@ def _key(history: CoreHistory) -> tuple[tuple[float, ...], ...] | None:
 
 @dataclass(frozen=True)
 class _Lone:
-    """The sum of loads of one kind and history that have no image alone, on vertices."""
+    """Sum of loads of one kind and history that have no image alone, on vertices."""
 
     where: str
     what: str
@@ -44,13 +44,13 @@ class _Lone:
 
 @dataclass(frozen=True)
 class _Clamp:
-    """A clamp of the whole."""
+    """A clamp of the whole body."""
 
     where: str
     motion: dict[str, Any]
 
     def displaced(self, points: Floats, part: float) -> Floats:
-        """By how much a part of its motion moves points, whatever its history."""
+        """Compute the displacement of points by a part of its motion, whatever its history."""
         found = np.zeros_like(points)
         if self.motion.get("angle"):
             arm = points - np.asarray(self.motion["center"])
@@ -61,21 +61,21 @@ class _Clamp:
 
 
 class SectorParts:
-    """Takes the parts of a whole body's problem, as the core does, and keeps those of the sector.
+    """Receiver of the parts of a whole body's problem that keeps those of the sector.
 
     Parameters
     ----------
     sector
-        The part of the body.
+        The sector of the body.
     spanning
         All triangles of the whole that span openings, (s, 3).
 
     Attributes
     ----------
     kept
-        What the core gets.
+        Parts of the problem for the core.
     where
-        The place in the design of what comes next, for messages.
+        Place in the design of the next entry, for messages.
     """
 
     def __init__(self, sector: Sector, spanning: NDArray[np.int32]) -> None:
@@ -114,7 +114,7 @@ class SectorParts:
         self.kept.clamp(mine[mine >= 0].astype(np.uint32), axes, **motion)
 
     def hold_planes(self) -> None:
-        """Hold what is on the planes along their normals, where no clamp does."""
+        """Hold vertices on the planes along the normals, where no clamp does."""
         held = self._decides[self._sector.vertices] >= 0
         for axis, on in zip(self._sector.axes, self._sector.on_planes.T, strict=True):
             free = on[self._sector.vertices] & ~held[:, axis]
@@ -123,12 +123,12 @@ class SectorParts:
                 self.kept.clamp(found, [axis == each for each in range(3)])
 
     def check(self) -> None:
-        """Check what is symmetric only together: clamps, and loads that are images of each other.
+        """Check entries that are symmetric only together: clamps, and loads with images.
 
         Raises
         ------
         DesignError
-            The first that has no image.
+            The first entry that has no image.
         """
         self._check_clamps()
         for (_, history), lone in self._lone.items():
@@ -139,7 +139,7 @@ class SectorParts:
                 self._refuse(f"is not symmetric: {lone.what} has no image across {found}{also}")
 
     def _check_clamps(self) -> None:
-        """Raise unless the image of what is held is held, and goes where its image goes."""
+        """Raise unless clamps hold the images of their vertices, with mirrored motions."""
         whole, decides = self._sector.whole, self._decides
         for plane, image in zip(self._sector.planes, self._sector.images, strict=True):
             self._check_held((decides >= 0) != (decides[image] >= 0), "what it holds", plane, image)
@@ -200,10 +200,10 @@ class SectorParts:
             self.kept.mirrored_pressure((of, signs), corners, value / sector.count, history)
 
     def _split(self, triangles: Indices) -> tuple[Indices, Indices]:
-        """Triangles on faces of voxels, and those that span openings.
+        """Separate triangles on faces of voxels from those that span openings.
 
-        How an opening is cut into triangles need not be symmetric. Over symmetric states all of
-        them together have as many times the energy of the sector as there are sectors.
+        The triangulation of an opening need not be symmetric. Over symmetric states all its
+        triangles together have as many times the energy of the sector as there are sectors.
         """
         if len(self._spanning) == 0:
             return triangles, triangles[:0]
@@ -211,7 +211,7 @@ class SectorParts:
         return triangles[~spans], triangles[spans]
 
     def _keys(self, triangles: NDArray[np.integer]) -> NDArray[np.int64]:
-        """A number for each triangle between vertices of openings, whichever way it is turned."""
+        """Number each triangle between vertices of openings, whichever way it is turned."""
         rim = np.unique(self._spanning)
         numbers = np.full(len(self._sector.whole.vertices), -1, dtype=np.int64)
         numbers[rim] = np.arange(len(rim))
@@ -233,7 +233,7 @@ class SectorParts:
         self.kept.floor(z - self._sector.origin[2])
 
     def attach(self, _term: str, _elements: str) -> None:
-        """Refuse what is attached to the body."""
+        """Refuse an attachment of the body."""
         self._refuse("is not known to planes of symmetry yet", "leave it out, or the planes")
 
     def tendon(self, _tendon: str, _history: CoreHistory) -> None:
@@ -246,7 +246,7 @@ class SectorParts:
                 self._refuse(f"is not symmetric: {what} points across {plane.plane}")
 
     def _add(self, key: _Key, values: Floats, elements: NDArray[Any], what: str) -> None:
-        """Take values of a load on elements, which others of its kind may be the image of."""
+        """Take values of a load on elements, whose images may be other loads of its kind."""
         whole = self._on_vertices(values, elements)
         if self._asymmetry(whole) is None:
             return
@@ -263,14 +263,14 @@ class SectorParts:
             self._refuse(f"is not symmetric: {what} has no image across {found}")
 
     def _on_vertices(self, values: Floats, elements: NDArray[Any]) -> Floats:
-        """Sums over the vertices of the whole of values on elements, (e, 1) or vectors (e, 3)."""
+        """Sum values on elements, (e, 1) or vectors (e, 3), over the vertices of the whole."""
         whole = np.zeros((len(self._sector.whole.vertices), values.shape[1]))
         for corner in elements.T:
             np.add.at(whole, corner, values)
         return whole
 
     def _asymmetry(self, whole: Floats) -> str | None:
-        """The plane and place where values on vertices are not their own images; None if none."""
+        """Find the plane and place where values on vertices are not their own images, if any."""
         size = max(float(np.abs(whole).max(initial=0.0)), 1e-300)
         for plane, image in zip(self._sector.planes, self._sector.images, strict=True):
             mirrored = whole[image]
@@ -282,7 +282,7 @@ class SectorParts:
         return None
 
     def _at(self, vertex: int, plane: Symmetry) -> str:
-        """A plane, and a vertex of the whole that it is told of."""
+        """Describe a plane and the position of a vertex of the whole."""
         x, y, z = 1e3 * self._sector.whole.vertices[vertex]
         return f"{plane.plane} at ({x:.1f}, {y:.1f}, {z:.1f}) mm"
 

@@ -1,4 +1,4 @@
-"""A part of a symmetric body made ready for a solver, and its result as that of the whole body."""
+"""Setup of the sector of a symmetric body, and its result for the whole body."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ _SHARES: Final = {2: "a half", 4: "a quarter", 8: "an eighth"}
 
 @dataclass(frozen=True, repr=False)
 class SectorSetup(Setup):
-    """What of a symmetric body is solved: its mesh is that of the sector.
+    """Setup of the solved sector of a symmetric body: its mesh is that of the sector.
 
     Attributes
     ----------
     whole
-        The whole body.
+        Setup of the whole body.
     sector
-        Its part that is solved.
+        The sector that is solved.
     """
 
     whole: Setup = field(kw_only=True)
     sector: Sector = field(kw_only=True)
 
     def __post_init__(self) -> None:
-        """Nothing: the layers and chambers are those of the whole body."""
+        """Skip the preparation: layers and chambers are those of the whole body."""
 
     @classmethod
     def part_of(cls, whole: Setup) -> Self | None:
-        """Return what is solved of a body; None for one without planes of symmetry."""
+        """Return the sector setup of a body; None for one without planes of symmetry."""
         sector = whole.sector
         if sector is None:
             return None
@@ -51,7 +51,7 @@ class SectorSetup(Setup):
 
     @property
     def origin(self) -> Floats:
-        """Where the solver's origin is, (3,), m: on all planes."""
+        """Origin of the solver, (3,), m: on all planes."""
         return self.sector.origin
 
     @cached_property
@@ -73,7 +73,7 @@ class SectorSetup(Setup):
 
     @cached_property
     def places(self) -> dict[str, Place]:
-        """What each probe averages over in each part of the body, as places of the sector."""
+        """Places of each probe in each part of the body, as places of the sector."""
         return {
             f"{name}/{number}": place
             for name in self.whole.places
@@ -81,7 +81,7 @@ class SectorSetup(Setup):
         }
 
     def _parts_of(self, name: str) -> list[tuple[Floats, Place]]:
-        """By what the vectors of each part of a probe are multiplied, and its place."""
+        """Return the factors on vectors of each part of a probe, and its place."""
         place, source = self.whole.places[name], self.sector.source
         found = []
         for sign, here in self.sector.patterns():
@@ -92,7 +92,7 @@ class SectorSetup(Setup):
         return found
 
     def unfolded(self, result: Result) -> Result:
-        """The result of the whole body, of that of the sector."""
+        """Convert the result of the sector to that of the whole body."""
         sector, count = self.sector, self.sector.count
         reactions = self._reactions(result.reactions)
         positions = sector.places(result.positions)
@@ -143,12 +143,12 @@ class SectorSetup(Setup):
                 ),
             ),
             objects=self._poses(result.objects),
-            # What breaks the symmetry is not seen in the sector.
+            # Modes that break the symmetry are not seen in the sector.
             stable=None if result.stable else result.stable,
         )
 
     def _reactions(self, reactions: Floats) -> Floats:
-        """Support forces on the whole: what is on a plane has them from all sides, along it."""
+        """Return reaction forces on the whole: on a plane those of all sides add up, along it."""
         sector = self.sector
         found = sector.unfolded(reactions)
         for axis, on in zip(sector.axes, sector.on_planes.T, strict=True):
@@ -159,18 +159,18 @@ class SectorSetup(Setup):
     def _totals(
         self, of: tuple[float, float, float], about: tuple[float, float, float]
     ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-        """The sum of forces and of their moments about the origin over all parts, of one part's."""
+        """Sum a part's forces and their moments about the origin over all parts."""
         force, own = np.array(of), np.array(about)
         total, moment = np.zeros(3), np.zeros(3)
         for sign, _ in self.sector.patterns():
             image = sign * force
             total += image
-            # A mirror image turns the other way round.
+            # A moment is a pseudovector: mirroring changes its sign besides.
             moment += np.prod(sign) * sign * own + np.cross(self.sector.origin, image)
         return _triple(total), _triple(moment)
 
     def _poses(self, poses: Mapping[str, Pose]) -> dict[str, Pose]:
-        """Poses of objects, which the core knows all of, from the sector's frame."""
+        """Shift poses of objects, all of which the core has, from the sector's frame."""
         return {
             name: replace(pose, position=_triple(np.array(pose.position) + self.origin))
             for name, pose in poses.items()

@@ -1,4 +1,4 @@
-"""Contact of a symmetric body: all of it, on the mirror images of the part that is solved."""
+"""Contact of a whole symmetric body, on the mirror images of the solved sector."""
 
 from __future__ import annotations
 
@@ -26,12 +26,13 @@ from voxsoft.simulation.touching import ContactState, Touching, has_contact
 
 Floats = NDArray[np.float64]
 
-#: How far the traced surface of an object may be from that of its image, in voxels of the body: as
-#: much as voxels may differ in how full they are. Tracing alone rounds what a grid does not meet.
+#: Largest distance of the traced surface of an object from that of its image, in voxels of the
+#: body: as much as the fractions of voxels may differ. Tracing alone rounds edges that are not on
+#: the grid.
 _SAME_SURFACE: Final = 0.02
-#: How far objects may be moved apart from their images, in voxels: rounding.
+#: Largest difference of the motions of objects and of their images, in voxels: rounding.
 _SAME_PLACE: Final = 1e-6
-#: Parts of a motion at which it is compared with its image: a turn is not linear in its angle.
+#: Parts of a motion at which it is compared with its image: a rotation is not linear in its angle.
 _PARTS: Final = (1.0, 0.5)
 
 _HINT: Final = "make it symmetric, or leave the plane of symmetry out"
@@ -39,17 +40,17 @@ _HINT: Final = "make it symmetric, or leave the plane of symmetry out"
 
 @dataclass(frozen=True)
 class SectorTouching(Touching):
-    """What touches a symmetric body, with its mirror images.
+    """Contact of a symmetric body, with its mirror images.
 
-    Contact sees the whole: what meets across a plane, also a body and its own image, meets as in
-    the whole. Of contacts that are images of each other the core counts one. Objects that are held
-    or moved are all there. One that is free is solved for once among its images, and stays in the
-    planes that cut it.
+    Contact sees the whole body: surfaces that meet across a plane, also a body and its own image,
+    meet as in the whole. Of contacts that are images of each other the core counts one. Objects
+    that are held or moved are all there. A free object is solved once among its images, and stays
+    in the planes that cut it.
 
     Attributes
     ----------
     sector
-        The part that is solved.
+        The sector that is solved.
 
     Raises
     ------
@@ -61,9 +62,9 @@ class SectorTouching(Touching):
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """The surface of each object, images of each other to rounding.
+        """Surface of each object, images of each other to rounding.
 
-        Traced surfaces are not: their triangles would press the two sides of a body unlike.
+        Traced surfaces are not exact images: their triangles would press both sides differently.
         """
         found: list[Surface] = []
         for index, (surface, (first, flips)) in enumerate(
@@ -104,7 +105,7 @@ class SectorTouching(Touching):
         parts.whole(images, np.concatenate(voxels).astype(np.uint32), planes)
 
     def contacts(self, found: Sequence[_core.Contact]) -> tuple[ContactState, ...]:
-        """What touches, with the images of what the core found."""
+        """Convert the core's contacts, and add their images."""
         states = super().contacts(found)
         for axis, numbers in zip(self.sector.axes, self.all_images, strict=True):
             pairs = {self.names[at]: self.names[image] for at, image in enumerate(numbers)}
@@ -113,7 +114,7 @@ class SectorTouching(Touching):
 
     @cached_property
     def all_images(self) -> tuple[list[int], ...]:
-        """For each plane the image of each of :attr:`names`: of bodies, objects, a floor."""
+        """Image of each of :attr:`names` for each plane: of bodies, objects, a floor."""
         count = len(self.sector.body_images[0])
         floor = [] if self.design.floor is None else [len(self.names) - 1]
         pairs = zip(self.sector.body_images, self.images, strict=True)
@@ -123,12 +124,12 @@ class SectorTouching(Touching):
 
     @cached_property
     def images(self) -> tuple[list[int], ...]:
-        """For each plane the number of the image of each object.
+        """Number of the image of each object for each plane.
 
         Raises
         ------
         DesignError
-            One that has none.
+            An object without an image.
         """
         count = len(self.design.objects)
         return tuple(
@@ -137,7 +138,7 @@ class SectorTouching(Touching):
 
     @cached_property
     def orbits(self) -> list[tuple[int, tuple[Symmetry, ...]]]:
-        """For each object the first of its images, and the planes that mirror it there."""
+        """First image of each object, and the planes that mirror it there."""
         found = []
         for index in range(len(self.design.objects)):
             orbit: dict[int, tuple[Symmetry, ...]] = {}
@@ -154,7 +155,7 @@ class SectorTouching(Touching):
 
     @cached_property
     def sharing(self) -> list[Sharing]:
-        """How each object is solved for."""
+        """Sharing of each object among its images."""
         sector, found = self.sector, list[Sharing]()
         firsts = [first for first, _ in self.orbits]
         for index, (first, flips) in enumerate(self.orbits):
@@ -174,7 +175,7 @@ class SectorTouching(Touching):
         return found
 
     def _image_of(self, index: int, plane: Symmetry) -> int:
-        """The number of the image of an object."""
+        """Find the number of the image of an object."""
         design, surfaces = self.design, self.separated
         mirrored = _mirrored(surfaces[index].vertices, plane)
         size = self.voxel_size
@@ -223,7 +224,7 @@ class SectorTouching(Touching):
                 raise DesignError(f"{where}.motion", what, _HINT)
 
     def _check_table(self) -> None:
-        """Raise unless friction is that of the images; what is bonded has none that is known."""
+        """Raise where there are bonds, or where friction differs from that of the images."""
         for bond in self.bonds:
             what = "is not known together with planes of symmetry yet"
             raise DesignError(bond.where, what, "leave the planes out, or let it touch")
@@ -243,12 +244,12 @@ class SectorTouching(Touching):
 
 
 def refuse_control(design: Design, control: str | None) -> None:
-    """Raise where contact beside planes of symmetry has not been shown to follow a control.
+    """Raise an error where contact with planes of symmetry does not support a control.
 
     Raises
     ------
     DesignError
-        Arc length, or volume with friction.
+        Arc-length control, or volume control with friction.
     """
     if not design.symmetry or not has_contact(design):
         return
@@ -275,7 +276,7 @@ def _history(each: Object) -> object:
 
 
 def _moved(each: Object, part: float, points: Floats) -> Floats:
-    """Where a part of the motion of an object takes points, whatever its history."""
+    """Move points by a part of the motion of an object, whatever its history."""
     way = each.way
     if way is None:
         return points

@@ -1,4 +1,4 @@
-"""Objects that were moved out of what they were in: told as a warning."""
+"""Warnings of objects that were moved out of surfaces that they penetrated."""
 
 from __future__ import annotations
 

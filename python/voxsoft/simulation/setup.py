@@ -1,4 +1,4 @@
-"""From a design to a mechanical problem: mesh, materials, clamps, loads, probes.
+"""Setup of a design as a mechanical problem: mesh, materials, clamps, loads, probes.
 
 Long because all that is derived from a design stands in one class, a short property each.
 """
@@ -61,19 +61,19 @@ from voxsoft.simulation.touching import (
 )
 from voxsoft.simulation.windings import check_windings
 
-#: Bytes that a voxel takes until it can be solved for; measured on a block of 125,000: 540
-#: (lattice) and 810 (rubber), half as much again for what is not a block.
+#: Bytes that a voxel takes until it can be solved; measured on a block of 125,000: 540
+#: (lattice) and 810 (rubber), half as much again for bodies of other shapes.
 BYTES_PER_VOXEL: Final = 1_200
 
 
 @dataclass(frozen=True, repr=False)
 class Setup:
-    """A design made ready for a solver.
+    """A design prepared for a solver.
 
     Attributes
     ----------
     design
-        Where it came from, with what the designs of its bodies say in lists of its own.
+        The design, with the entries of the designs of its bodies in its own lists.
     mesh
         Its tetrahedra. Chambers that layers close are among its cavities, and cavities have the
         names of the design's chambers.
@@ -87,7 +87,7 @@ class Setup:
 
     Notes
     -----
-    Everything else is derived on first use and kept; :meth:`with_materials` shares all of it.
+    Everything else is derived on first use and kept; :meth:`problem_with` shares it.
     """
 
     design: Design
@@ -113,7 +113,7 @@ class Setup:
         design
             The design.
         allow_loose
-            Whether nothing needs to hold the body; default: if the design's solver has an end
+            True if nothing needs to hold the body; default: if the design's solver has an end
             time, because a run over time need not come to rest.
         refine
             Cut every voxel into this many along each axis; default: as the design's solver says.
@@ -170,7 +170,7 @@ class Setup:
 
     @cached_property
     def layers(self) -> tuple[LayerTriangles, ...]:
-        """The triangles of each layer of the design."""
+        """Triangles of each layer of the design."""
         return all_layer_triangles(self.design, self.mesh)
 
     @cached_property
@@ -186,35 +186,35 @@ class Setup:
 
     @property
     def elements(self) -> int:
-        """How many voxels there are, large and small; five tetrahedra of another mesh are one."""
+        """Number of voxels, large and small; five tetrahedra of another mesh count as one."""
         joined = 7 * len(self.large_voxels) if self.design.refine else 0
         return len(self.mesh.tets) // 5 - joined
 
     @cached_property
     def other_split(self) -> OtherSplit:
-        """The other way to cut the faces that pressure pushes."""
+        """Other split of the faces under pressure into triangles."""
         return OtherSplit.of(self.design, self.mesh)
 
     @cached_property
     def points(self) -> NDArray[np.float64]:
-        """Where the vertices count as being when regions look for them, (n, 3), m."""
+        """Positions of the vertices for the tests of regions, (n, 3), m."""
         return on_the_body(self.design, self.mesh)
 
     @cached_property
     def places(self) -> dict[str, Place]:
-        """What each probe averages over."""
+        """Vertices and weights of each probe."""
         return {
             name: self.place(probe, f"probes.{name}") for name, probe in self.design.probes.items()
         }
 
     @property
     def origin(self) -> NDArray[np.float64]:
-        """Where the solver's origin is, (3,), m."""
+        """Origin of the solver, (3,), m."""
         return np.zeros(3)
 
     @cached_property
     def sector(self) -> Sector | None:
-        """The part of the body that is solved; None for one without planes of symmetry.
+        """Sector of the body that is solved; None without planes of symmetry.
 
         Raises
         ------
@@ -235,7 +235,7 @@ class Setup:
         return found
 
     def _refuse_with_bodies(self) -> None:
-        """What of several bodies has no image that is known."""
+        """Refuse fibers and activations of several bodies, whose images are not supported."""
         fibers = any(part.fibers for part in self.design.parts)
         for what, there in (("fibers", fibers), ("activations", bool(self.design.activations))):
             if there:
@@ -244,14 +244,14 @@ class Setup:
 
     @cached_property
     def sector_parts(self) -> _core.ProblemParts:
-        """Clamps, layers and loads of the part of the body that is solved.
+        """Clamps, layers and loads of the solved sector.
 
         Raises
         ------
         DesignError
-            One that is not symmetric.
+            An entry that is not symmetric.
         """
-        assert self.sector is not None  # asked for with planes of symmetry alone
+        assert self.sector is not None  # used with planes of symmetry alone
         spanning = [np.zeros((0, 3), np.int32), *(layer.spanning for layer in self.layers)]
         parts = SectorParts(self.sector, np.concatenate(spanning))
         self._give_to(parts)
@@ -266,14 +266,14 @@ class Setup:
 
     @cached_property
     def sector_touching(self) -> SectorTouching | None:
-        """Contact of the part that is solved with all of the body, where the design has it."""
+        """Contact of the solved sector with all of the body, where the design has it."""
         if self.sector is None or not has_contact(self.design):
             return None
         return SectorTouching(self.design, self.mesh, self.sector)
 
     @cached_property
     def problem(self) -> _core.Problem:
-        """The problem of the Rust core, with the design's own materials."""
+        """Problem of the Rust core, with the design's own materials."""
         return core_problem(
             self.mesh,
             core_materials(self.design, self.materials, self.mesh, self.origin),
@@ -282,7 +282,7 @@ class Setup:
 
     @cached_property
     def problem_alone(self) -> _core.Problem:
-        """The problem without what the body touches: of what is drawn, and of fields of strain."""
+        """Problem without contact, for drawing and for fields of strain."""
         if self.touching is None:
             return self.problem
         parts = self._parts(touching=False)
@@ -291,14 +291,14 @@ class Setup:
         )
 
     def problem_with(self, materials: list[Material]) -> _core.Problem:
-        """The same problem with other materials, one for each part of the design."""
+        """Return the problem with other materials, one for each part of the design."""
         return self.problem.with_materials(
             core_materials(self.design, materials, self.mesh, self.origin)
         )
 
     @cached_property
     def materials(self) -> list[Material]:
-        """The material of each part, with something stiff in place of what is rigid."""
+        """Material of each part, with a stiff one in place of a rigid one."""
         return solid_materials(self.design)
 
     def _parts(self, *, touching: bool = True) -> _core.ProblemParts:
@@ -311,7 +311,7 @@ class Setup:
         return parts
 
     def _give_to(self, parts: _core.ProblemParts | SectorParts, *, touching: bool = False) -> None:
-        """Hand layers, clamps, loads and what is attached to the problem of the core."""
+        """Add layers, clamps, loads and attachments to the problem of the core."""
         for where, layer, found in _numbered("layers", self.design.layers, self.layers):
             _say_where(parts, where)
             parts.membrane(
@@ -352,33 +352,33 @@ class Setup:
         Raises
         ------
         DesignError
-            An object without a surface, or one that is in the unloaded body.
+            An object without a surface, or one that penetrates the unloaded body.
         """
         return Touching(self.design, self.mesh) if has_contact(self.design) else None
 
     @cached_property
     def fluids(self) -> Fluids | None:
-        """What supplies its chambers, where the design has supplies; errors as for that class."""
+        """Supplies of its chambers, where the design has any; errors as for that class."""
         return Fluids(self.design, self.mesh) if has_supplies(self.design) else None
 
     @cached_property
     def loads(self) -> tuple[ResolvedLoad, ...]:
-        """What each load of the design does.
+        """Each load of the design, resolved to its actions on the mesh.
 
         Raises
         ------
         DesignError
-            One catches nothing.
+            A load catches nothing.
         """
         return tuple(self.load(index) for index in range(len(self.design.loads)))
 
     def load(self, index: int) -> ResolvedLoad:
-        """What one load of the design does; errors as for :attr:`loads`."""
+        """Resolve one load of the design; errors as for :attr:`loads`."""
         return resolve(self.design.loads[index], self, f"loads[{index}]")
 
     @cached_property
     def attached(self) -> dict[str, list[dict[str, Any]]]:
-        """The elements of each term of the core that the design attaches, by the term's name.
+        """Elements of each term of the core that the design attaches, by the term's name.
 
         Raises
         ------
@@ -392,35 +392,35 @@ class Setup:
 
     @cached_property
     def tendons(self) -> tuple[ResolvedTendon, ...]:
-        """The tendons of the design on the mesh.
+        """Tendons of the design on the mesh.
 
         Raises
         ------
         DesignError
-            One that leaves the body, crosses itself, or is too short to reach its ends.
+            A tendon that leaves the body, crosses itself, or is too short to reach its ends.
         """
         return resolve_tendons(self)
 
     @cached_property
     def dielectrics(self) -> tuple[ResolvedDielectric, ...]:
-        """The dielectric sheets of the design on the mesh; errors as for :func:`dielectrics_of`."""
+        """Dielectric sheets of the design on the mesh; errors as for :func:`dielectrics_of`."""
         return dielectrics_of(self.design, self.mesh)
 
     def place(self, probe: Probe, where: str) -> Place:
-        """What a point or region is on the mesh; `where` is the place an error names."""
+        """Find vertices and weights of a point or region; `where` is the place an error names."""
         return place_of(probe, self.mesh, self.design.shapes, where, self.points)
 
     def position(self, place: PlaceOnBody) -> NDArray[np.float64]:
-        """Where a place is in the undeformed body, (3,), m."""
+        """Compute the position of a place in the undeformed body, (3,), m."""
         return np.asarray(place.weights @ self.mesh.vertices[place.vertices])
 
     @cached_property
     def clamped(self) -> list[NDArray[np.uint32]]:
-        """The vertices of each clamp."""
+        """Vertices of each clamp."""
         return clamped_vertices(self.design, self.mesh, self.points)
 
     def vertices_in(self, region: Region, where: str) -> NDArray[np.uint32]:
-        """Vertices that a region catches; `where` is the place an error names."""
+        """Find the vertices that a region catches; `where` is the place an error names."""
         return vertices_in(region, self.mesh, self.design.shapes, where, self.points)
 
     def _check_cavities(self) -> None:
@@ -444,7 +444,7 @@ class Setup:
         return _loose_piece(self.mesh, held)
 
     def _check_support(self) -> None:
-        """Every component must be held, unless it may come to lie on a floor or an object."""
+        """Raise unless every component is held, or may come to lie on a floor or an object."""
         if self.design.floor is not None or self.design.objects:
             return
         if len(self.design.symmetry) == 3:
@@ -467,7 +467,7 @@ class Setup:
 
 
 def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
-    """Vertices of every clamp and probe that catches any, and of the regions of the body's file."""
+    """Find vertices of clamps and probes that catch any, and of the regions of the body's file."""
     design = design.assembled
     regions: dict[str, NDArray[np.uint32]] = {
         name: vertices.astype(np.uint32) for name, vertices in mesh.regions.items()
@@ -489,7 +489,7 @@ def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
 
 
 def _loose_piece(mesh: Mesh, held: NDArray[np.bool_]) -> NDArray[np.int32] | None:
-    """Vertices of the largest component of which none is held, if there is one.
+    """Find the vertices of the largest component of which none is held, if there is one.
 
     Tetrahedra joined by whole faces make a component; those that share only an edge or a vertex
     hinge on it and count as separate components.
@@ -507,7 +507,7 @@ def core_problem(
     parts: _core.ProblemParts,
     directions: NDArray[np.float64] | None = None,
 ) -> _core.Problem:
-    """The problem of the Rust core.
+    """Build the problem of the Rust core.
 
     Parameters
     ----------
@@ -518,7 +518,7 @@ def core_problem(
     parts
         Membranes, clamps and loads.
     directions
-        Of the edges of voxels, (v, 9); default: those of the bodies of the mesh.
+        Directions of the edges of voxels, (v, 9); default: those of the bodies of the mesh.
     """
     if mesh.fractions is not None:
         parts.fractions(mesh.fractions, mesh.moments)
@@ -544,7 +544,7 @@ _Second = TypeVar("_Second")
 def _numbered(
     name: str, first: Iterable[_First], second: Iterable[_Second]
 ) -> Iterator[tuple[str, _First, _Second]]:
-    """Pairs, each with its place in the design."""
+    """Yield pairs, each with its place in the design."""
     for index, (one, other) in enumerate(zip(first, second, strict=True)):
         yield f"{name}[{index}]", one, other
 
@@ -555,7 +555,7 @@ def _say_where(parts: _core.ProblemParts | SectorParts, where: str) -> None:
 
 
 class _CoreLoads(LoadReceiver):
-    """Loads of the core's problem."""
+    """Receiver that adds loads to the core's problem."""
 
     def __init__(
         self,
@@ -578,7 +578,7 @@ class _CoreLoads(LoadReceiver):
             voids = None
         else:
             surfaces = [each for each, _ in cavity.splits]
-            parts = len(surfaces) * cavity.void_parts  # each void is there once
+            parts = len(surfaces) * cavity.void_parts  # each void counts once
             voids = (cavity.void_tets.astype(np.uint32), parts)
         each = value / len(surfaces)
         found = np.concatenate(surfaces).astype(np.uint32)

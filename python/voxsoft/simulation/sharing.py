@@ -1,4 +1,4 @@
-"""How rigid objects are solved for beside planes of symmetry."""
+"""Treatment of rigid objects beside planes of symmetry."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Sharing:
-    """How an object is solved for beside planes of symmetry.
+    """Treatment of an object beside planes of symmetry: solved by itself, or as an image.
 
     Attributes
     ----------
     of, signs
-        The number of the free object that it is the image of, and by what vectors are multiplied;
-        None for one that is solved for itself.
+        The number of the free object that it is the image of, and the factors on its vectors; None
+        for an object that is solved by itself.
     share
-        The part of it that is solved for.
+        The part of it that is solved.
     held
         The axes along which it cannot move: across planes that cut it.
     """

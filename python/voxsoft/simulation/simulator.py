@@ -34,7 +34,7 @@ def _named_or_rate(value: object) -> str:
 
 
 class _Settings(Record):
-    """What a simulator takes besides its design, read as designs are."""
+    """Settings of a simulator besides its design, read as designs are."""
 
     time_step: PositiveTime = TIME_STEP
     damping: Annotated[
@@ -51,7 +51,7 @@ class Simulator:
     Parameters
     ----------
     design
-        A design whose loads have no histories. Motions of clamps go on with the time.
+        A design whose loads have no histories. Motions of clamps follow their histories.
     time_step
         Seconds of each :meth:`step`, which takes as many smaller ones inside as the body needs;
         default 0.02.
@@ -59,7 +59,7 @@ class Simulator:
         Decay rate of velocities in 1/s, or ``"critical"`` (default): as much as keeps the slowest
         mode from swinging, which comes to rest soon. 0 leaves the material's own.
     retardation
-        How slowly the material gives way, s; default 0.
+        Retardation time of the material, s; default 0.
     tolerance
         Residual force at rest, relative to the load; default 1e-4.
 
@@ -70,8 +70,8 @@ class Simulator:
 
     Notes
     -----
-    The same commands give the same bits, for any number of threads, and so do those after a
-    :meth:`reset`. The design's `solver` is for :func:`~voxsoft.simulate` and not used here.
+    Identical commands give identical bits, for any number of threads and after a :meth:`reset`.
+    The design's `solver` is for :func:`~voxsoft.simulate` and not used here.
 
     Examples
     --------
@@ -113,7 +113,7 @@ class Simulator:
 
     @property
     def design(self) -> Design:
-        """What moves."""
+        """The design in motion."""
         return self._setup.design
 
     @property
@@ -127,7 +127,7 @@ class Simulator:
 
     @property
     def time_step(self) -> float:
-        """Seconds of each step."""
+        """Length of each step in s."""
         return self._settings.time_step
 
     @property
@@ -146,7 +146,7 @@ class Simulator:
             The unloaded body, with the same bits as that of a new simulator.
         """
         mesh, settings = self._setup.mesh, self._settings
-        # A new one, because a step that was halved on the way stays so in the old.
+        # A new core object, because a step that was halved stays so in the old one.
         self._live = _core.Live(
             self._of_size_one.problem,
             mesh.triangles.astype(np.uint32),
@@ -173,7 +173,7 @@ class Simulator:
         Parameters
         ----------
         loads
-            By name or index, new values from the beginning of this step on: numbers in SI units,
+            New values by name or index, from the beginning of this step on: numbers in SI units,
             texts with units, or pint quantities; three components for a force. Loads that are not
             named keep their last values. Default: all do.
 
@@ -185,8 +185,7 @@ class Simulator:
         Raises
         ------
         DesignError
-            A load that there is not, or a value of another unit or not finite; the body has not
-            moved.
+            An unknown load, or a value of another unit or not finite; the body has not moved.
         SimulationError
             The body has diverged before: only :meth:`reset` leads on.
         """
@@ -204,7 +203,7 @@ class Simulator:
         return self._state
 
     def _command(self, values: Mapping[int, Value]) -> None:
-        """Let loads act; those that stay are not touched, as they would wake a body at rest."""
+        """Apply changed loads; others are left alone, as they would wake a body at rest."""
         for index, value in values.items():
             sizes = value if isinstance(value, tuple) else (value,)
             for cores, size in zip(self._cores[index], sizes, strict=True):
@@ -213,7 +212,7 @@ class Simulator:
         self._values = {**self._values, **values}
 
     def _advance(self) -> _core.Advance:
-        """Take the steps inside until the time is up, to the nearest of them; less at rest."""
+        """Take inner steps until the end of the step, to the nearest of them; fewer at rest."""
         goal = self._time - self._ahead + self._settings.time_step
         report = self._live.advance(0)
         while report.status == _core.LiveStatus.MOVING:
@@ -226,7 +225,7 @@ class Simulator:
         return report
 
     def _observe(self, report: _core.Advance | None) -> Observation:
-        """The body after an advance; None: as it starts."""
+        """Observe the body after an advance; None for its initial state."""
         mesh, positions = self._setup.mesh, self._live.positions()
         velocities = self._live.velocities()
         positions.flags.writeable = velocities.flags.writeable = False
@@ -259,7 +258,7 @@ class Simulator:
     def _judged(
         self, report: _core.Advance | None, positions: np.ndarray[Any, Any]
     ) -> tuple[MotionStatus, str]:
-        """The status, and what it means: sound bodies move or rest, others are reported."""
+        """Decide the status and its message: sound bodies move or rest, others are reported."""
         if report and report.status == _core.LiveStatus.DIVERGED and report.breakdown:
             _, place, when = report.breakdown
             point = ", ".join(f"{value * 1e3:.1f}" for value in place)
@@ -274,7 +273,7 @@ class Simulator:
         return "moving", "moving"
 
     def _pressures(self) -> list[float]:
-        """Gauge pressure in each cavity, the sum of those that act there."""
+        """Sum the gauge pressures that act in each cavity."""
         pressures = [0.0] * len(self._setup.mesh.cavities)
         for index, cavities in self._pressed:
             value = self._values[index]

@@ -1,4 +1,4 @@
-"""The smooth surface of a body: that of its shapes, carried by its voxels."""
+"""Smooth surface of a body: that of its shapes, carried by its voxels."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def skin_of(design: Design, mesh: Mesh) -> _core.Skin | None:
 
 
 def has_skin(design: Design, mesh: Mesh) -> bool:
-    """Whether the voxels of a mesh are those that the shapes of a design filled.
+    """Return True if the voxels of a mesh are those that the shapes of a design filled.
 
     Examples
     --------
@@ -59,7 +59,7 @@ def has_skin(design: Design, mesh: Mesh) -> bool:
 
 
 def touches_with_skin(design: Design, own: Design, mesh: Mesh) -> bool:
-    """Whether a body of a design touches with its smooth surface; `own` is what fills its voxels.
+    """Return True if contact of a body uses its smooth surface; `own` is the body's own design.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def touches_with_skin(design: Design, own: Design, mesh: Mesh) -> bool:
 
 
 def corners(mesh: Mesh) -> NDArray[np.uint32]:
-    """The vertices at the corners of each voxel, (n, 8).
+    """Return the vertices at the corners of each voxel, (n, 8).
 
     Corner ``c`` is the far one along x where ``c & 4``, along y where ``c & 2``, along z where
     ``c & 1``.

@@ -1,4 +1,4 @@
-"""Designs of rubber that softens where it was stretched more before, and who knows of it."""
+"""Designs of rubber that softens (Mullins effect), and features that do not support it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from voxsoft.materials import Hyperelastic
 
 
 def softening_parts(design: Design) -> Iterator[int]:
-    """Indices of the parts whose material softens."""
+    """Yield the indices of the parts whose material softens."""
     for index, part in enumerate(design.parts):
         material = design.material_of(part)
         if isinstance(material, Hyperelastic) and material.mullins is not None:
@@ -18,12 +18,12 @@ def softening_parts(design: Design) -> Iterator[int]:
 
 
 def refuse_softening(design: Design, who: str) -> None:
-    """Raise where a material softens and someone does not know of it.
+    """Raise an error where a material softens, which `who` does not support.
 
     Raises
     ------
     DesignError
-        Naming who.
+        A material of the design softens.
     """
     for index in softening_parts(design):
         raise DesignError(
@@ -34,7 +34,7 @@ def refuse_softening(design: Design, who: str) -> None:
 
 
 def unknown_with_softening(design: Design) -> Iterator[ErrorDetail]:
-    """Find what a design cannot have beside a material that softens."""
+    """Find entries of a design that are not supported with a softening material."""
     if next(softening_parts(design), None) is None:
         return
     for name, what in (
@@ -47,12 +47,12 @@ def unknown_with_softening(design: Design) -> Iterator[ErrorDetail]:
 
 
 def check_softening(design: Design) -> None:
-    """Raise where a design has something that softening is not known with.
+    """Raise an error where a design has entries that are not supported with softening.
 
     Raises
     ------
     DesignError
-        Naming each.
+        Entries that are not supported, each by its name.
     """
     if found := list(unknown_with_softening(design)):
         raise DesignError.listing(found)

@@ -1,4 +1,4 @@
-"""What a solver found beside the positions of vertices, as arrays and text that can be stored."""
+"""Solver results besides vertex positions, as arrays and text for storage."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.softening import softening_parts
 from voxsoft.simulation.touching import Pose, has_contact
 
-#: What of a result follows from the design, or is stored beside it.
+#: Fields of a result that follow from the design, or are stored beside it.
 _FOUND_AGAIN: Final = frozenset({"design", "mesh", "places", "positions"})
 _VERSION: Final = "voxsoft"
-#: Under what an array has its number in the text.
+#: Key of the number of an array in the text.
 _ARRAY: Final = "array"
 
 
 def is_given_by_positions(design: Design) -> bool:
-    """Whether the places of all vertices say all of an equilibrium of a design.
+    """Return True if vertex positions alone determine an equilibrium of a design.
 
-    Objects have poses of their own and contact remembers how it slipped, supplies have what they
-    gave, and a material that softens remembers how far it was stretched.
+    They do not with objects, which have poses, contact, which depends on its slip, supplies, which
+    depend on the amounts given, and softening, which depends on the largest stretch.
     """
     softens = next(softening_parts(design), None) is not None
     return not (has_contact(design) or has_supplies(design) or softens)
@@ -69,7 +69,7 @@ class SolvedState:
 
     @classmethod
     def of(cls, result: Result) -> Self:
-        """Take what a solver found."""
+        """Collect the results of a solver."""
         arrays: list[NDArray[Any]] = []
 
         def numbered(value: object) -> object:
@@ -94,21 +94,21 @@ class SolvedState:
         return cls(json.dumps({_VERSION: __version__, **found}), tuple(arrays))
 
     def result(self, setup: Setup, positions: NDArray[np.float64]) -> Result:
-        """The result that this was taken of.
+        """Restore the result that this was taken of.
 
-        Its voxels remember again how far they were stretched, as after the solution.
+        Softening voxels get their largest energies again, as after the solution.
 
         Parameters
         ----------
         setup
-            Of the design and on the mesh that were solved.
+            A setup of the design and the mesh that were solved.
         positions
-            Of the vertices in m, (n, 3).
+            Vertex positions in m, (n, 3).
 
         Raises
         ------
         SimulationError
-            It is of another version of VoxSoft, of another mesh, or damaged.
+            The state is of another version of VoxSoft, of another mesh, or damaged.
         """
         if self._plain.get(_VERSION) != __version__:
             raise _unreadable("is of another version of VoxSoft")
@@ -129,7 +129,7 @@ class SolvedState:
 
     @property
     def objects(self) -> Mapping[str, Pose]:
-        """Where the rigid objects are, by name; SimulationError where that is damaged."""
+        """Poses of the rigid objects, by name; SimulationError where these are damaged."""
         poses: Mapping[str, Pose] = self._read("objects", _TYPES["objects"])
         return poses
 
@@ -143,7 +143,7 @@ class SolvedState:
             raise _unreadable("is damaged: expected an object")
         return plain
 
-    def _read(self, name: str, kind: Any) -> Any:  # noqa: ANN401 - the type says what it is
+    def _read(self, name: str, kind: Any) -> Any:  # noqa: ANN401 - of the type `kind`
         def array(_: type, value: object) -> NDArray[Any]:
             if not isinstance(value, dict) or not isinstance(value.get(_ARRAY), int):
                 raise ValueError("expected an array")
@@ -159,7 +159,7 @@ def _unreadable(what: str) -> SimulationError:
     return SimulationError("stored state", what, "solve the design again")
 
 
-#: The type of each field that is stored.
+#: Type of each field that is stored.
 _TYPES: Final[Mapping[str, Any]] = {
     name: kind
     for name, kind in get_type_hints(Result).items()

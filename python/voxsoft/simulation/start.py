@@ -1,4 +1,4 @@
-"""Where the search for an equilibrium begins."""
+"""Start of the search for an equilibrium."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ class Start(NamedTuple):
     Attributes
     ----------
     positions
-        In m, (n, 3).
+        Vertex positions in m, (n, 3).
     pressures
-        In Pa, positive in tension, on the vertices at the lowest corners of voxels, (n,). None
-        for those that the positions have.
+        Pressures in Pa, positive in tension, on the vertices at the lowest corners of voxels, (n,).
+        None for those that the positions have.
     """
 
     positions: NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""The result of a state that no solver ended in: a body as it stands at some moment."""
+"""Result of a given state of a body, in which no solver ended."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from voxsoft.simulation.run import result_of
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.touching import refuse_contact
 
-#: Every state is within it: nothing is solved.
+#: Tolerance that every state meets: nothing is solved.
 _ANY: float = 1e300
 
 
@@ -33,16 +33,16 @@ def result_at(
     setup
         The body.
     positions
-        Where its vertices are in m, (n, 3).
+        Vertex positions in m, (n, 3).
     status, message
-        How it came to be there.
+        Status and message of the result.
     time
-        When that was [s].
+        Time of the state [s].
 
     Returns
     -------
     Result
-        With the forces, the residual, the metrics and the warnings of these positions.
+        Forces, residual, metrics and warnings of these positions.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What supports carry: each clamp, and all that hold a region."""
+"""Reaction forces of supports: of each clamp, and of all supports in a region."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ Force = tuple[float, float, float]
 def clamped_vertices(
     design: Design, mesh: Mesh, points: Floats | None = None
 ) -> list[NDArray[np.uint32]]:
-    """The vertices of each clamp; errors as for :func:`vertices_in`.
+    """Find the vertices of each clamp; errors as for :func:`vertices_in`.
 
     Parameters
     ----------
     design, mesh
         The body.
     points
-        Where vertices count as being, as :func:`on_the_body` gives it; default: found here.
+        Positions of the vertices for this test, from :func:`on_the_body`; default: computed here.
     """
     points = on_the_body(design, mesh) if points is None else points
     return [
@@ -39,19 +39,19 @@ def clamped_vertices(
 def clamp_reactions(
     design: Design, clamped: Sequence[NDArray[np.uint32]], reactions: Floats
 ) -> dict[str, Force]:
-    """The force of each clamp on the body, by its name.
+    """Compute the reaction force of each clamp on the body, by its name.
 
-    Where several clamps hold the same axis of a vertex the last of them decides where it goes, and
-    has its reaction: all of them together count each force once.
+    The last of several clamps that hold the same axis of a vertex prescribes its position, and has
+    its reaction: all of them together count each force once.
 
     Parameters
     ----------
     design
-        With the clamps.
+        The design with the clamps.
     clamped
-        The vertices of each.
+        Vertices of each clamp.
     reactions
-        Support forces on all vertices, (n, 3), N.
+        Reaction forces on all vertices, (n, 3), N.
     """
     decides = np.full(reactions.shape, -1)
     for number, (clamp, vertices) in enumerate(zip(design.clamps, clamped, strict=True)):
@@ -64,16 +64,16 @@ def clamp_reactions(
 
 
 def reaction_in(design: Design, mesh: Mesh, region: Region, reactions: Floats) -> Force:
-    """The force on the body of all that holds the vertices in a region.
+    """Compute the reaction force of all supports of the vertices in a region.
 
     Parameters
     ----------
     design, mesh
         The body.
     region
-        Where, in the unloaded body.
+        A region of the unloaded body.
     reactions
-        Support forces on all vertices, (n, 3), N.
+        Reaction forces on all vertices, (n, 3), N.
 
     Raises
     ------
@@ -85,6 +85,6 @@ def reaction_in(design: Design, mesh: Mesh, region: Region, reactions: Floats) -
 
 
 def force_of(forces: Floats) -> Force:
-    """The sum of forces on vertices, (k, 3), N."""
+    """Sum forces on vertices, (k, 3), N."""
     x, y, z = forces.sum(axis=0).tolist()
     return x, y, z

@@ -1,4 +1,4 @@
-"""Surfaces from files: not quite closed, with faces that disagree, or with shells in others."""
+"""Surfaces from files: not quite closed, with inconsistent faces, or with nested shells."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from voxsoft.units import format_quantity
 
 
 def findings_of_surface(state: SurfaceState, where: str) -> list[Diagnostic]:
-    """Say what is doubtful about a surface from a file."""
+    """Find faults of a surface from a file."""
     found = []
     if state.turned:
         what = (
@@ -64,7 +64,7 @@ def _doubt_of_nest(nest: Nest, where: str) -> Diagnostic:
 def doubtful_surfaces(
     design: Design, mesh: Mesh | None = None, positions: NDArray[np.float64] | None = None
 ) -> Iterator[Diagnostic]:
-    """Say what is doubtful about every surface from a file that a design uses."""
+    """Find faults of every surface from a file that a design uses."""
     seen = set()
     named = [(f"shapes.{name}", shape) for name, shape in design.shapes.items()]
     parts = [(f"parts[{index}].shape", part.shape) for index, part in enumerate(design.parts)]

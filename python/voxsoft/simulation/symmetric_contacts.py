@@ -1,4 +1,4 @@
-"""What touches a symmetric body: what the core counts, one of each image, and its images."""
+"""Contacts of a symmetric body: the core counts one of each image, the others are added."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ def with_images(
     Parameters
     ----------
     states
-        What touches what.
+        The contacts.
     images
-        The name of the image of each that touches; the others are their own.
+        The name of the image of each surface in contact; others are their own.
     axis
-        Across the plane, 0 to 2.
+        Axis across the plane, 0 to 2.
     order
-        All names, as contacts are ordered and the first of two is told from the second.
+        All names, in the order of contacts and of the two surfaces of each.
     """
     mirrored = [_image_of(state, images, axis, order) for state in states]
     found: dict[tuple[str, str], list[ContactState]] = {}
@@ -55,7 +55,7 @@ def _image_of(
 
 
 def _sum(states: Sequence[ContactState]) -> ContactState:
-    """A contact of two surfaces, of its parts."""
+    """Sum the parts of a contact of two surfaces."""
 
     def total(name: str) -> float:
         return float(sum(getattr(each, name) for each in states))

@@ -14,29 +14,29 @@ from voxsoft.simulation.apart import Surface
 Floats = NDArray[np.float64]
 Triangles = NDArray[np.uint32]
 
-#: How near to a plane vertices are moved into it, in steps of the grid that a surface was traced
-#: on: cuts beside them would leave slivers.
+#: Distance from a plane within which vertices are moved into it, in steps of the grid that a
+#: surface was traced on: cuts beside them would leave slivers.
 _SNAP: Final = 1e-3
 
 
 def symmetric(surface: Surface, planes: Iterable[Symmetry], step: float) -> Surface:
-    """Make a closed surface its own mirror image: of its positive side.
+    """Make a closed surface its own mirror image, from its positive side.
 
-    How a traced surface is divided into triangles is not symmetric, where its shape is.
+    The triangulation of a traced surface is not symmetric, even where its shape is.
 
     Parameters
     ----------
     surface
-        Closed, and symmetric up to tracing.
+        A closed surface, symmetric up to tracing.
     planes
-        In which it is symmetric.
+        Planes in which it is symmetric.
     step
-        Of the grid that it was traced on [m].
+        Step of the grid that it was traced on [m].
 
     Returns
     -------
     Surface
-        Closed, its vertices and triangles mirror images of each other.
+        A closed surface, its vertices and triangles mirror images of each other.
 
     Examples
     --------
@@ -55,14 +55,14 @@ def symmetric(surface: Surface, planes: Iterable[Symmetry], step: float) -> Surf
 
 
 def image_of(surface: Surface, plane: Symmetry) -> Surface:
-    """The mirror image of a surface, outward as before."""
+    """Return the mirror image of a surface, outward as before."""
     vertices = surface.vertices.copy()
     vertices[:, plane.axis] = 2.0 * plane.at - vertices[:, plane.axis]
     return Surface(vertices, np.ascontiguousarray(surface.triangles[:, ::-1]))
 
 
 def _cut(surface: Surface, plane: Symmetry, snap: float) -> Surface:
-    """What of a surface is on the positive side of a plane, with an open rim in it."""
+    """Keep the positive side of a surface at a plane, with an open rim in it."""
     vertices = surface.vertices.copy()
     across = vertices[:, plane.axis] - plane.at
     near = np.abs(across) <= snap
@@ -75,7 +75,7 @@ def _cut(surface: Surface, plane: Symmetry, snap: float) -> Surface:
     pieces: list[list[int]] = []
 
     def crossing(a: int, b: int) -> int:
-        """The point of an edge in the plane, one for both of its triangles."""
+        """Return the point of an edge in the plane, one for both of its triangles."""
         key = min(a, b), max(a, b)
         if key not in numbers:
             numbers[key] = len(vertices) + len(numbers)
@@ -102,7 +102,7 @@ def _cut(surface: Surface, plane: Symmetry, snap: float) -> Surface:
 
 
 def _with_image(surface: Surface, plane: Symmetry) -> Surface:
-    """A surface on one side of a plane, joined with its image at the vertices in the plane."""
+    """Join a surface on one side of a plane with its image at the vertices in the plane."""
     image = image_of(surface, plane)
     on = surface.vertices[:, plane.axis] == plane.at
     numbers = np.arange(len(on))

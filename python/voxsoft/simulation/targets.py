@@ -1,4 +1,4 @@
-"""Whether what a design asks for can be measured at all."""
+"""Check of objectives and constraints: metrics, units and places."""
 
 from __future__ import annotations
 

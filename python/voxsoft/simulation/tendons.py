@@ -1,4 +1,4 @@
-"""Tendons of a design made ready for the core: where they run, what pulls them, what came of it."""
+"""Tendons of a design prepared for the core: paths, drives and results."""
 
 from __future__ import annotations
 
@@ -27,33 +27,33 @@ Floats = NDArray[np.float64]
 #: ``EA`` where a design gives none [N]: a steel rope of a millimeter, 200 GPa half filled. A line
 #: under 10 N is longer by a ten-thousandth then, which no tendon in rubber is measured to.
 STIFF: Final = 100e3
-#: Vertices that one tendon may join. With friction, or drawn in, it joins each with each: so many
-#: take 150 MB in the tangent.
+#: Largest number of vertices that one tendon may join. With friction, or drawn in, it joins each
+#: with each: so many take 150 MB in the tangent.
 _MOST_VERTICES: Final = 1500
-#: Two channels nearer than this, in voxels, cross: they would have to be cut into each other.
+#: Distance below which two channels cross, in voxels: they would have to be cut into each other.
 _CROSSING: Final = 1e-3
 
 
 @dataclass(frozen=True)
 class TendonState:
-    """A tendon in a result.
+    """State of a tendon in a result.
 
     Attributes
     ----------
     tension
-        At the pulled end [N].
+        Tension at the pulled end [N].
     anchor_tension
-        At the anchor [N]: less, with friction.
+        Tension at the anchor [N]: less, with friction.
     length
-        Of the way that it runs, from the pulled end to the anchor [m].
+        Length of its path, from the pulled end to the anchor [m].
     slack
-        By how much it is longer than that [m]; zero where it is taut.
+        Excess of the tendon's own length over that [m]; zero where it is taut.
     shortening
-        By how much that way is shorter than in the undeformed design [m].
+        Shortening of the path against the undeformed design [m].
     tensions
-        Of each straight segment from the pulled end on [N], (s,).
+        Tension of each straight segment from the pulled end on [N], (s,).
     points
-        The points between these segments now [m], (s + 1, 3).
+        Present end points of these segments [m], (s + 1, 3).
     """
 
     tension: float
@@ -66,7 +66,7 @@ class TendonState:
 
     @property
     def words(self) -> str:
-        """How hard it is pulled, and how far it was drawn in or paid out."""
+        """Tension, and length drawn in or paid out, in words."""
         if self.tension == 0.0:
             pull = "0 N"
         else:
@@ -80,7 +80,7 @@ class TendonState:
         return f"{pull}, {'drawn in' if self.shortening >= 0.0 else 'paid out'} by {way}"
 
     def summary(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data."""
         names = ("tension", "anchor_tension", "length", "slack", "shortening")
         return {name: getattr(self, name) for name in names}
 
@@ -92,13 +92,13 @@ class ResolvedTendon:
     Attributes
     ----------
     name
-        What results call it.
+        Its name in results.
     tendon
-        Of the design.
+        The tendon of the design.
     places
-        What carries each point of its way, as the core takes it.
+        Carrier of each point of its path, as the core takes it.
     points
-        Where these are in the undeformed design [m], (n, 3).
+        Positions of these points in the undeformed design [m], (n, 3).
     """
 
     name: str
@@ -108,40 +108,40 @@ class ResolvedTendon:
 
     @property
     def lengths(self) -> Floats:
-        """Of each straight segment in the undeformed design [m]."""
+        """Length of each straight segment in the undeformed design [m]."""
         found: Floats = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         return found
 
     @property
     def length(self) -> float:
-        """In the undeformed design [m]."""
+        """Length in the undeformed design [m]."""
         return float(self.lengths.sum())
 
     @property
     def size(self) -> float:
-        """Its tension [N], or by how much it is drawn in [m], without the history."""
+        """Tension [N], or length drawn in [m], without the history."""
         return self._drawn_in[0]
 
     @property
     def final_factor(self) -> float:
-        """The factor on that in the end."""
+        """Final factor on :attr:`size`."""
         history = self.history
         return 1.0 if history is None else history[1][-1]
 
     def scaled(self, factor: float) -> Tendon:
-        """The tendon of the design with so many times that, and no history."""
+        """Return the tendon of the design with so many times its final size, and no history."""
         changes = {"tension": None, "length": None, "shortening": None, "history": None}
         drive = "tension" if self.tendon.drive == "tension" else "shortening"
         value = factor * self.final_factor * self.size
         return self.tendon.replace(**{**changes, drive: value})
 
     def core(self, *, objects: bool = True) -> dict[str, Any]:
-        """The core's `Tendon`, by the names of its fields, as plain data.
+        """Return the core's `Tendon`, by the names of its fields, as plain data.
 
         Parameters
         ----------
         objects
-            Whether there are objects that carry points; without them these do not move.
+            True if there are objects that carry points; without them these points do not move.
         """
         drive: dict[str, Any]
         if self.tendon.drive == "tension":
@@ -163,12 +163,12 @@ class ResolvedTendon:
 
     @property
     def history(self) -> CoreHistory:
-        """The factor on the drive of :attr:`core`."""
+        """Factor on the drive of :attr:`core` over time."""
         return self._drawn_in[1]
 
     @property
     def _drawn_in(self) -> tuple[float, CoreHistory]:
-        """By what length it is drawn in, and the factor on that; a length is made one."""
+        """Size of the drive and its history; a prescribed length becomes a length drawn in."""
         history = times_and_factors(self.tendon.history)
         if self.tendon.drive != "length":
             return self.tendon.value, history
@@ -180,7 +180,7 @@ class ResolvedTendon:
         return most, (times, (by / most).tolist())
 
     def state(self, found: _core.Tendon) -> TendonState:
-        """What came of it."""
+        """Convert the core's result to a state."""
         return TendonState(
             tension=found.tensions[0],
             anchor_tension=found.tensions[-1],
@@ -193,12 +193,12 @@ class ResolvedTendon:
 
 
 def resolve_tendons(setup: Setup) -> tuple[ResolvedTendon, ...]:
-    """Lay the tendons of a design on its mesh.
+    """Resolve the tendons of a design on its mesh.
 
     Raises
     ------
     DesignError
-        One that leaves the body, crosses itself, or is too short to reach its ends.
+        A tendon that leaves the body, crosses itself, or is too short to reach its ends.
     """
     tendons = setup.design.tendons
     found: list[ResolvedTendon] = []
@@ -214,7 +214,7 @@ def resolve_tendons(setup: Setup) -> tuple[ResolvedTendon, ...]:
 
 @dataclass(frozen=True, eq=False)
 class _Stop:
-    """A point on the way: what carries it, and where it is in the frame of that, and in space."""
+    """A point on the path: its carrier, and its position in space and in the carrier's frame."""
 
     where: str
     position: Floats
@@ -226,7 +226,7 @@ class _Stop:
 
 @dataclass(frozen=True, eq=False)
 class _Way:
-    """The way of a tendon while it is laid out."""
+    """Path of a tendon while it is laid out."""
 
     setup: Setup
     carriers: Sequence[tuple[BodyMesh, Carrier]]
@@ -239,7 +239,7 @@ class _Way:
             for index, at in enumerate(self.tendon.through)
         ]
         for stop in stops:
-            self._place(stop)  # before what is between them
+            self._place(stop)  # before the points between them
         self._check_crossing(stops)
         places, points = [], []
         for stop in self._laid_out(stops):
@@ -271,7 +271,7 @@ class _Way:
         return _Stop(where, point, own, number, radius=guide.radius)
 
     def _laid_out(self, stops: Sequence[_Stop]) -> Iterator[_Stop]:
-        """All points, those in channels with one in about every voxel."""
+        """Yield all points, in channels with one in about every voxel."""
         yield stops[0]
         for before, stop in pairwise(stops):
             if self._is_channel(before, stop):
@@ -290,7 +290,7 @@ class _Way:
         return channel and before.body is not None and before.body == stop.body
 
     def _place(self, stop: _Stop) -> tuple[Mapping[str, Any], Floats]:
-        """What carries a point, and where that puts it in space."""
+        """Find the carrier of a point, and its position in space."""
         if stop.object is not None:
             return {"object": stop.object, "point": stop.position.tolist()}, stop.position
         if stop.body is None:
@@ -317,7 +317,7 @@ class _Way:
         return place, at
 
     def _check_crossing(self, stops: Sequence[_Stop]) -> None:
-        """No channel of one line may run through another one of it."""
+        """Raise where a channel of a line runs through another one of it."""
         channels = [
             (index, before.own, stop.own, before.body)
             for index, (before, stop) in enumerate(pairwise(stops))
@@ -363,7 +363,7 @@ class _Way:
 
 
 def _distance(a: Floats, b: Floats, c: Floats, d: Floats) -> float:
-    """The least distance of the segments ab and cd."""
+    """Compute the smallest distance of the segments ab and cd."""
     u, v, w = b - a, d - c, a - c
     uu, uv, vv, uw, vw = u @ u, u @ v, v @ v, u @ w, v @ w
     cross = uu * vv - uv * uv

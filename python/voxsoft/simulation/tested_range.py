@@ -1,4 +1,4 @@
-"""Strain beyond what the specimens of a material went through."""
+"""Strain beyond the tested range of a material."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from voxsoft.units import format_percent
 #:
 #: At a sharp inner corner strain has no bound: the finer the voxels the larger it is, in an ever
 #: smaller volume around the corner. The largest of all voxels thus says more of the mesh than of
-#: the body; what the hundredth of the volume that is strained most has in common converges.
+#: the body; the strain that the most strained hundredth of the volume exceeds converges.
 WITHIN: Final = 99.0
 
 
@@ -28,7 +28,7 @@ def beyond_tests(design: Design, fields: Fields) -> Iterator[Diagnostic]:
     Parameters
     ----------
     design
-        The design; its materials say how far they were tested, or nothing.
+        The design, whose materials may state their tested range.
     fields
         Its stress and strain.
 

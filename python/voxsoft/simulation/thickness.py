@@ -1,4 +1,4 @@
-"""Walls and offsets that are thicker or thinner than they are written."""
+"""Walls and offsets that are thicker or thinner than written."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from voxsoft.shapes.base import Shape
 from voxsoft.simulation.diagnostic import Diagnostic, near
 from voxsoft.units import format_quantity
 
-#: Walls may be off by this part before it is told: less than the voxels change them.
+#: Relative deviation of walls up to which there is no warning: less than the voxels change them.
 _TOLERANCE: Final = 0.1
-# Points of a regular grid that look for the surface, and those on it from which one can tell.
+# Points of a regular grid that search the surface, and the fewest on it that allow a judgment.
 _POINTS: Final = 500
 _FEWEST: Final = 30
-# Where the first point lies in its cell: off the planes of symmetry, at which functions have kinks.
+# Position of the first point in its cell: off the planes of symmetry, where functions have kinks.
 _FIRST: Final = (0.31, 0.52, 0.73)
 # Newton's steps from there to the surface, each of at most this part of the box.
 _STEPS: Final = 4
@@ -32,8 +32,8 @@ _DIFFERENCE: Final = 1e-6
 # At an edge the slopes of both sides differ by their own size; the mean of the two is that of no
 # surface. Along smooth ones they differ by the curvature times the difference, a part in a million.
 _KINK: Final = 1e-3
-# The part of the surface on which the smallest and the largest thickness are disregarded: kinks
-# that lie beside the points.
+# Part of the surface on which the smallest and the largest thickness are disregarded: kinks that
+# lie beside the points.
 _KINKS: Final = 0.03
 
 
@@ -77,7 +77,7 @@ def _findings_of(
         built = shape.build(design.shapes)
         measured = _thickness(built, box)
     except VoxSoftError:
-        return  # a shape without a value somewhere is told of where it is sampled
+        return  # a shape without a value somewhere is reported where it is sampled
     if measured is None:
         return
     points, ratio = measured

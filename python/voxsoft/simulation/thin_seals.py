@@ -16,7 +16,7 @@ from voxsoft.units import format_quantity
 
 Ints = NDArray[np.int64]
 
-#: How far the filled part of a full voxel is from 1: as where voxels are refined.
+#: Tolerance of the filled fraction of a full voxel: as where voxels are refined.
 _FULL = 4e-4
 
 
@@ -25,12 +25,12 @@ def thin_seals(
 ) -> Iterator[Diagnostic]:
     """Find chambers that are sealed only along edges or at corners of voxels.
 
-    The air in the chamber and what is outside then share vertices: between them is no wall.
+    The air inside and outside the chamber then shares vertices: between them is no wall.
 
     Parameters
     ----------
     design
-        Not looked at.
+        Not used.
     mesh
         The body; where its layers close a chamber, their rims are no seal of voxels.
 
@@ -94,7 +94,7 @@ def _seal(
 
 
 def _cut(mesh: Mesh) -> NDArray[np.bool_]:
-    """Vertices of cut voxels: the surface is not where their corners are, (n,)."""
+    """Mark vertices of cut voxels: the surface is not at their corners, (n,)."""
     found = np.zeros(len(mesh.vertices), dtype=bool)
     if mesh.fractions is not None and mesh.tet_voxel is not None:
         is_cut = np.abs(mesh.fractions - 1.0) > _FULL
@@ -103,7 +103,7 @@ def _cut(mesh: Mesh) -> NDArray[np.bool_]:
 
 
 def _codes(triangles: Ints, count: int) -> Ints:
-    """One number for each triangle of ordered vertices."""
+    """Number each triangle of ordered vertices."""
     a, b, c = triangles.T
     codes: Ints = (a * count + b) * count + c
     return codes

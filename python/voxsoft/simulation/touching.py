@@ -1,4 +1,4 @@
-"""Contact of a design made ready for the core: surfaces, objects, friction."""
+"""Contact of a design prepared for the core: surfaces, objects, friction."""
 
 from __future__ import annotations
 
@@ -23,40 +23,40 @@ from voxsoft.simulation.sharing import Sharing
 from voxsoft.simulation.skin import skin_of, touches_with_skin
 from voxsoft.units import format_quantity
 
-#: Into how many parts the edge of a voxel is divided by the points where contact is looked for.
+#: Number of parts into which the points of contact search divide the edge of a voxel.
 _SAMPLES: Final = 2
-#: How far what is bonded may be apart or in each other in the unloaded design, in voxels.
+#: Largest distance or penetration of bonded surfaces in the unloaded design, in voxels.
 _REACH: Final = 0.5
-#: How far the floor goes, in sizes of all that is above it: farther than anything may go.
+#: Extent of the floor to each side, in sizes of all that is above it: farther than anything may go.
 _FLOOR: Final = 20.0
 
 
 @dataclass(frozen=True)
 class ContactState:
-    """What touches what.
+    """Contact of two surfaces.
 
     Attributes
     ----------
     of
         The body and an object, or the body twice; two bodies where there are several.
     force
-        On the first [N]; zero for the body with itself.
+        Force on the first [N]; zero for self-contact.
     pressed
-        The sum of the sizes of all forces [N].
+        Sum of the magnitudes of all forces [N].
     pressure
-        The sum of all pressures, which push apart [N].
+        Sum of all normal forces that push apart [N].
     friction
-        The part of the force that is friction [N].
+        Friction, a part of the force [N].
     bound
-        The most that friction can be: the sum of all pressures times their coefficients [N].
+        Largest possible friction: the sum of these normal forces times their coefficients [N].
     area
-        In the unloaded body [m²], with what is bonded.
+        Contact area on the unloaded body [m²], with the bonded area.
     bonded
-        The area that is bonded [m²].
+        Bonded area [m²].
     gap
-        The smallest [m].
+        Smallest gap [m].
     slipping
-        The part of the pressure under which the surfaces slip, 0 to 1.
+        Part of the pressure under which the surfaces slip, 0 to 1.
     """
 
     of: tuple[str, str]
@@ -72,14 +72,14 @@ class ContactState:
 
     @property
     def sentence(self) -> str:
-        """In a sentence."""
+        """The contact in a sentence."""
         size = self.pressed if self.of[0] == self.of[1] else float(np.linalg.norm(self.force))
         first, second = self.of
         who = "itself" if first == second else second
         return f"{first} touches {who} with {format_quantity(rounded(size), 'force')}"
 
     def summary(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data."""
         return {
             "of": list(self.of),
             "force": list(self.force),
@@ -96,26 +96,26 @@ class ContactState:
 
 @dataclass(frozen=True)
 class Pose:
-    """Where an object is: its position [m], of the middle of its box, and its rotation, (3, 3).
+    """Pose of an object: position [m] of the middle of its bounding box, and rotation, (3, 3).
 
-    The box is that of its first pose along the axes, and turns with it.
+    The box is that of its first pose along the axes, and rotates with it.
     """
 
     position: tuple[float, float, float]
     rotation: tuple[tuple[float, float, float], ...]
 
     def summary(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data."""
         return {"position": list(self.position), "rotation": [list(row) for row in self.rotation]}
 
 
 def has_contact(design: Design) -> bool:
-    """Whether anything of a design may touch."""
+    """Return True if anything of a design may be in contact."""
     return design.contact is not None or bool(design.objects) or len(design.body_names) > 1
 
 
 def keeps_apart(design: Design) -> bool:
-    """Whether contact keeps bodies out of themselves and each other."""
+    """Return True if contact keeps bodies out of themselves and each other."""
     contact, bodies = design.contact or Contact(), design.body_names
     table = contact.table(design.objects, design.floor is not None, bodies)
     own = [entry for row in table[: len(bodies)] for entry in row[: len(bodies)]]
@@ -123,12 +123,12 @@ def keeps_apart(design: Design) -> bool:
 
 
 def refuse_contact(design: Design, who: str) -> None:
-    """Raise where a design has contact and someone cannot deal with it.
+    """Raise an error where a design has contact, which `who` does not support.
 
     Raises
     ------
     DesignError
-        Naming who.
+        The design has contact.
     """
     if has_contact(design):
         where = "contact" if design.contact is not None else "objects"
@@ -140,12 +140,12 @@ def refuse_contact(design: Design, who: str) -> None:
 
 
 def refuse_bodies(design: Design, who: str) -> None:
-    """Raise where a design has bodies and someone knows only one, along the axes.
+    """Raise an error where a design has bodies, and `who` supports only one, along the axes.
 
     Raises
     ------
     DesignError
-        Naming who.
+        The design has bodies.
     """
     if design.bodies:
         hint = "take the design of one of them, or solve it with `voxsoft run`"
@@ -154,16 +154,16 @@ def refuse_bodies(design: Design, who: str) -> None:
 
 @dataclass(frozen=True)
 class Bond:
-    """Two surfaces that are bonded.
+    """Bond of two surfaces.
 
     Attributes
     ----------
     of
-        Their numbers.
+        Numbers of the surfaces.
     strength
-        The traction at which it lets go [Pa]; infinite for one that does not.
+        Traction at which it lets go [Pa]; infinite for one that does not.
     where
-        The place in the design.
+        Place in the design.
     """
 
     of: tuple[int, int]
@@ -173,19 +173,19 @@ class Bond:
 
 @dataclass(frozen=True)
 class Touching:
-    """The contact of a design.
+    """Contact of a design.
 
     Attributes
     ----------
     design
-        Where it came from.
+        The design.
     mesh
         Its mesh.
 
     Raises
     ------
     DesignError
-        An object without a surface, or one that is in the unloaded body.
+        An object without a surface, or one that penetrates the unloaded body.
     """
 
     design: Design
@@ -193,25 +193,25 @@ class Touching:
 
     @property
     def voxel_size(self) -> float:
-        """Of the body, m."""
+        """Voxel size of the body, m."""
         return self.mesh.voxel_size or self.design.voxel_size
 
     @property
     def names(self) -> list[str]:
-        """What touches, as surfaces are numbered: bodies, objects, a floor if there is one."""
+        """Names of surfaces in the order of their numbers: bodies, objects, a floor if any."""
         design = self.design
         return names_of(design.objects, design.floor is not None, design.body_names)
 
     @cached_property
     def friction(self) -> NDArray[np.float64]:
-        """The friction of each with each, in the order of names; NaN where they do not touch."""
+        """Friction coefficient of each pair, in the order of names; NaN without contact."""
         design = self.design
         floor = design.floor is not None
         return np.array(self.contact.table(design.objects, floor, design.body_names))
 
     @cached_property
     def skins(self) -> tuple[_core.Skin | None, ...]:
-        """The smooth surface of each body, in its own frame; None where its voxels touch."""
+        """Smooth surface of each body, in its own frame; None where contact is on its voxels."""
         return tuple(
             skin_of(own, body.mesh) if touches_with_skin(self.design, own, body.mesh) else None
             for body in self.mesh.each_body
@@ -220,12 +220,12 @@ class Touching:
 
     @cached_property
     def bodies(self) -> tuple[Surface, ...]:
-        """The surface of each body.
+        """Surface of each body.
 
         Raises
         ------
         DesignError
-            One is in another.
+            A body penetrates another one.
         """
         names, found = self.design.body_names, list[Surface]()
         for index, (body, skin) in enumerate(zip(self.mesh.each_body, self.skins, strict=True)):
@@ -245,7 +245,7 @@ class Touching:
 
     @cached_property
     def traced(self) -> tuple[Surface, ...]:
-        """The surface of each object, wherever it is."""
+        """Traced surface of each object, before it is moved apart."""
         return tuple(
             surface_of(each, self.design, f"objects[{index}]")
             for index, each in enumerate(self.design.objects)
@@ -253,14 +253,14 @@ class Touching:
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """The surface of each object, apart from the body and what else it may touch."""
+        """Surface of each object, apart from the body and all else that it may touch."""
         return self.separated
 
     @cached_property
     def separated(self) -> tuple[Surface, ...]:
-        """The surface of each object as it is traced.
+        """Traced surface of each object, moved apart.
 
-        With ``separate = true`` those that were in something are moved out of it.
+        With ``separate = true`` objects that penetrate something are moved out of it.
         """
         found: list[Surface] = []
         for index, surface in enumerate(self.traced):
@@ -279,7 +279,7 @@ class Touching:
         return tuple(found)
 
     def _beside(self, index: int, found: list[Surface]) -> list[tuple[Surface, str, float]]:
-        """What an object must not be in: its surface, its name, and how deep it may be [m]."""
+        """List obstacles of an object: surface, name, and allowed penetration [m]."""
         each = self.design.objects[index]
         count = len(self.bodies)
         others = []
@@ -293,7 +293,7 @@ class Touching:
         return others
 
     def _allowed(self, first: int, second: int) -> float:
-        """How deep two surfaces may be in each other at rest [m]: bonded ones a little."""
+        """Return the allowed penetration of two unloaded surfaces [m]: a little if bonded."""
         return self.reach if any(bond.of == (first, second) for bond in self.bonds) else 0.0
 
     def _check_above(self, vertices: NDArray[np.float64], where: str) -> None:
@@ -319,7 +319,7 @@ class Touching:
             raise DesignError(where, what, hint)
 
     def _check_bonds(self, surfaces: Sequence[Surface]) -> None:
-        """What is bonded must meet."""
+        """Raise unless bonded surfaces meet."""
         floor = self._floor_under(surfaces)
         everything = [*self.bodies, *surfaces, *([] if floor is None else [floor])]
         for bond in self.bonds:
@@ -333,17 +333,17 @@ class Touching:
 
     @property
     def reach(self) -> float:
-        """How near each other at rest what is bonded must be, m."""
+        """Largest distance of bonded surfaces in the unloaded design, m."""
         return _REACH * self.voxel_size
 
     @property
     def contact(self) -> Contact:
-        """Of the design, or as it is where there is none."""
+        """Contact of the design, or the default where there is none."""
         return self.design.contact or Contact()
 
     @cached_property
     def bonds(self) -> tuple[Bond, ...]:
-        """What is bonded; of two entries for one pair the later one counts."""
+        """Bonds of surfaces; of two entries for one pair the later one counts."""
         found: dict[tuple[int, int], Bond | None] = {}
         for index, pair in enumerate(self.contact.pairs):
             a, b = sorted(self.names.index(name) for name in pair.of)
@@ -354,7 +354,7 @@ class Touching:
 
     @cached_property
     def solids(self) -> tuple[Solid | None, ...]:
-        """What each free object answers to forces with; None for those that are held."""
+        """Mass and inertia of each free object; None for those that are held."""
         rows = zip(self.design.objects, self.traced, self.surfaces, strict=True)
         return tuple(
             Solid.of(traced, each, self.design, now.middle - traced.middle)
@@ -365,7 +365,7 @@ class Touching:
 
     @cached_property
     def floor(self) -> Surface | None:
-        """The floor under everything, a square."""
+        """Floor under everything, a square."""
         return self._floor_under(self.surfaces)
 
     def _floor_under(self, surfaces: Sequence[Surface]) -> Surface | None:
@@ -392,11 +392,11 @@ class Touching:
         Parameters
         ----------
         parts
-            Of the problem.
+            Parts of the problem.
         origin
-            Where that has its origin, (3,), m; default: where the design has it.
+            Origin of the problem, (3,), m; default: that of the design.
         sharing
-            How each object is solved for; default: all by themselves.
+            Treatment of each object beside planes of symmetry; default: all solved by themselves.
         """
         shift = np.zeros(3) if origin is None else origin
         for body, skin in zip(self.mesh.each_body, self.skins, strict=True):
@@ -434,7 +434,7 @@ class Touching:
             parts.bond(*bond.of, self.reach, bond.strength)
 
     def contacts(self, found: Sequence[_core.Contact]) -> tuple[ContactState, ...]:
-        """What touches, as the core found it."""
+        """Convert the core's contacts."""
         return tuple(
             ContactState(
                 of=(self.names[each.a], self.names[each.b]),
@@ -452,9 +452,9 @@ class Touching:
         )
 
     def poses(self, found: Sequence[_core.ObjectPose]) -> dict[str, Pose]:
-        """Where the objects are, by name."""
+        """Convert the core's poses of the objects, by name."""
         poses = {}
-        # A floor comes last among what was found.
+        # A floor comes last among the core's objects.
         for each, surface, solid, pose in zip(
             self.design.objects, self.surfaces, self.solids, found, strict=False
         ):
@@ -472,12 +472,12 @@ CoreHistory = tuple[list[float], list[float]] | None
 
 
 def times_and_factors(history: History | None) -> CoreHistory:
-    """A history as the core takes it."""
+    """Convert a history to that of the core."""
     return None if history is None else (list(history.times), list(history.factors))
 
 
 def motion_arguments(motion: Motion | None) -> dict[str, Any]:
-    """A rigid motion as keyword arguments of the core; none for what stays."""
+    """Convert a rigid motion to keyword arguments of the core; none without a motion."""
     if motion is None:
         return {}
     turn: dict[str, Any] = {}

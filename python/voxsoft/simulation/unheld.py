@@ -1,4 +1,4 @@
-"""Bodies of statics that clamps leave free: they have no place of their own under the loads."""
+"""Rigid-body motions that clamps leave free, so that statics has no unique equilibrium."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from voxsoft.simulation.setup import Setup
 
 
 def unheld(setup: Setup) -> Iterator[Diagnostic]:
-    """Find the rigid motions that clamps leave free, where statics needs them held.
+    """Find the rigid-body motions that clamps leave free, where statics needs them held.
 
     Examples
     --------

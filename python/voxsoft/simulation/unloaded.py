@@ -1,4 +1,4 @@
-"""Checks of the unloaded body, which its state does not change: done once for each mesh."""
+"""Checks of the unloaded body, which its state does not change: made once for each mesh."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ Positions = NDArray[np.float64] | None
 
 
 class Kept(Protocol):
-    """A check that may be given positions, and does not look at them."""
+    """A check that accepts positions without using them."""
 
     def __call__(
         self, design: Design, mesh: Mesh, positions: Positions = None, /
     ) -> tuple[Diagnostic, ...]:
-        """Find what is doubtful."""
+        """Find errors and warnings."""
 
 
 def once_for_each_mesh(
     check: Callable[[Design, Mesh], Iterable[Diagnostic]],
 ) -> Kept:
-    """Keep what a check found for as long as the mesh is in use.
+    """Keep the findings of a check for as long as the mesh is in use.
 
-    The frames of a run and a live body ask again and again.
+    Frames of a run and a live body repeat the check.
 
     Examples
     --------

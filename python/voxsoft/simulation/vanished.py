@@ -1,4 +1,4 @@
-"""Subtracted shapes of which the parameters leave nothing."""
+"""Subtracted shapes that the parameters leave without size."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from voxsoft.simulation.diagnostic import Diagnostic
 def vanished_shapes(
     design: Design, mesh: Mesh | None = None, positions: NDArray[np.float64] | None = None
 ) -> Iterator[Diagnostic]:
-    """Name shapes that are not subtracted as a formula makes one of their sizes zero or negative.
+    """Warn of shapes that are not subtracted: a formula makes a size of them zero or negative.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Natural frequencies and modes of small vibrations about an equilibrium."""
+"""Natural frequencies and eigenmodes of small vibrations about an equilibrium."""
 
 from __future__ import annotations
 
@@ -19,54 +19,54 @@ from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.touching import has_contact
 
-#: How many modes there are unless it is said.
+#: Default number of modes.
 DEFAULT_COUNT: Final = 6
 
 
 @dataclass(frozen=True)
 class Modes:
-    """Small vibrations about an equilibrium, the slowest first.
+    """Eigenmodes of small vibrations about an equilibrium, the slowest first.
 
     Attributes
     ----------
     frequencies
-        In Hz, (k,).
+        Natural frequencies in Hz, (k,).
     shapes
-        How each vertex moves, (k, n, 3), scaled so that the one that moves farthest moves by 1.
+        Displacement of each vertex, (k, n, 3), scaled so that the largest of each mode is 1.
     """
 
     frequencies: NDArray[np.float64]
     shapes: NDArray[np.float64]
 
     def summary(self) -> dict[str, Any]:
-        """The frequencies in Hz as plain data."""
+        """Return the frequencies in Hz as plain data."""
         return {"frequencies": self.frequencies.tolist()}
 
 
 def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
-    """Find the slowest natural vibrations of a loaded body.
+    """Find the slowest eigenmodes of a loaded body.
 
     Solves ``K φ = ω² M φ`` with the tangent of the elastic forces and loads at the equilibrium, and
     the masses of the vertices, by subspace iteration. Pressures keep their value, and nothing is
-    damped. Of a body with planes of symmetry the modes are those of the whole, the odd ones too.
+    damped. With planes of symmetry the modes are those of the whole body, antisymmetric ones too.
 
     Parameters
     ----------
     result
         An equilibrium.
     count
-        How many.
+        Number of modes.
 
     Returns
     -------
     Modes
-        In order of their frequency.
+        Eigenmodes in the order of their frequencies.
 
     Raises
     ------
     SimulationError
-        The result is no stable equilibrium, something touches, chambers have supplies, or the
-        tangent does not fit in memory.
+        The result is no stable equilibrium, the design has contact or supplies, or the tangent does
+        not fit in memory.
 
     Examples
     --------
@@ -98,7 +98,7 @@ def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
 
 
 def modes_of(setup: Setup, positions: NDArray[np.float64], count: int) -> Modes:
-    """The same of an equilibrium of a setup without contact."""
+    """Find the slowest eigenmodes at an equilibrium of a setup without contact."""
     try:
         squares, shapes = _core.modes(setup.problem, positions, count, memory=memory_limit())
     except MemoryError as error:

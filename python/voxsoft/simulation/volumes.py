@@ -26,18 +26,18 @@ from voxsoft.voxels import Voxels
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-#: From this difference on a volume is doubtful.
+#: Relative difference from which a volume is doubtful.
 LARGE: Final = 0.03
-#: Beyond this it is given in whole percent, as far as a quick look knows it.
+#: Difference beyond which it is printed in whole percent, the accuracy of a quick estimate.
 _LARGER: Final = 0.1
-#: Points at most for a table, and for a warning, some 0.3 %: a body of k cells at its surface with
-#: m³ random points in each is off by some √k/(2 m²) cells.
+#: Largest number of points for a table, and for a warning, some 0.3 %: a body of k cells at its
+#: surface with m³ random points in each is off by some √k/(2 m²) cells.
 PRECISE, QUICK = 200_000, 5_000
-#: No more points than it takes to know the smallest part or cavity to a thousandth.
+#: Relative accuracy of the smallest part or cavity at which more points are of no use.
 _ENOUGH = 1e-3
-#: Between these differences a quick look is taken again at so many times the points.
+#: Differences between which a quick estimate is repeated, and its factor on the points.
 _SUSPECT, _AGAIN = (0.02, 0.05), 8
-#: The distance to a surface from a file takes fifty times as long as most shapes.
+#: Divisor of the points for surfaces from files, whose distance takes fifty times as long.
 _OF_A_FILE = 10
 #: Points along a cell, at most, and empty cells around the body.
 _MOST_ALONG, _RIM = 24, 2
@@ -53,13 +53,13 @@ class Volume(NamedTuple):
 
     @property
     def difference(self) -> float:
-        """How much more is simulated than described, as a part of that."""
+        """Relative difference of the simulated from the described volume."""
         if self.described <= 0.0:
             return math.inf if self.simulated > 0.0 else 0.0
         return self.simulated / self.described - 1.0
 
     def summary(self) -> dict[str, float]:
-        """Both as plain data."""
+        """Return both as plain data."""
         return {"simulated": self.simulated, "described": self.described}
 
 
@@ -70,9 +70,10 @@ class Volumes:
     Attributes
     ----------
     parts
-        Of each part, by its name or else ``parts[i]``.
+        Volume of each part, by its name or else ``parts[i]``.
     cavities
-        Of each cavity, by its name or else ``cavity i``. What a layer closes is left out.
+        Volume of each cavity, by its name or else ``cavity i``. Cavities that only a layer closes
+        are left out.
     """
 
     parts: Mapping[str, Volume] = field(default_factory=dict)
@@ -80,18 +81,18 @@ class Volumes:
 
     @property
     def every(self) -> tuple[Volume, ...]:
-        """Those of all parts and cavities."""
+        """Volumes of all parts and cavities."""
         return (*self.parts.values(), *self.cavities.values())
 
     def summary(self) -> dict[str, dict[str, dict[str, float]]]:
-        """Everything as plain data (``volumes`` of ``--json``)."""
+        """Return everything as plain data (``volumes`` of ``--json``)."""
         return {
             "parts": {name: volume.summary() for name, volume in self.parts.items()},
             "cavities": {name: volume.summary() for name, volume in self.cavities.items()},
         }
 
 
-#: What was found of meshes that are still in use, by their identity.
+#: Cache of the volumes of meshes that are still in use, by their identity.
 _known: dict[int, tuple[Design, int, Volumes]] = {}
 
 
@@ -106,9 +107,9 @@ def volumes_of(design: Design, mesh: Mesh, points: int = PRECISE) -> Volumes:
     design
         The design.
     mesh
-        Its mesh of voxels; of other elements nothing is known.
+        Its mesh of voxels; other elements give no volumes.
     points
-        How many points to sample at.
+        Number of sample points.
 
     Examples
     --------
@@ -148,7 +149,7 @@ def volumes_of(design: Design, mesh: Mesh, points: int = PRECISE) -> Volumes:
 def volumes_in(shape: Shape, mesh: Mesh, name: str, points: int = PRECISE) -> Volumes:
     """Compare the voxels of one shape with it; parameters are those of :func:`volumes_of`.
 
-    `name` is what the shape is called.
+    `name` is the name of the shape.
 
     Examples
     --------
@@ -193,7 +194,7 @@ def doubtful_volumes(
 
 
 def doubts(volumes: Volumes, remedy: str) -> Iterator[Diagnostic]:
-    """Word the large differences among volumes, with what to try."""
+    """Warn of large differences among volumes, with a remedy."""
     for kind, found in (("part", volumes.parts), ("chamber", volumes.cavities)):
         for name, volume in found.items():
             if abs(volume.difference) >= LARGE:
@@ -221,7 +222,7 @@ def _is_rubber(design: Design) -> bool:
 
 
 def _labels(design: Design, body: str) -> list[str]:
-    """What the parts of a body are called, each by another name."""
+    """Return the names of the parts of a body, each by another name."""
     labels: list[str] = []
     for index, part in enumerate(design.parts):
         if body and part.body != body:
@@ -232,7 +233,7 @@ def _labels(design: Design, body: str) -> list[str]:
 
 
 def _of_body(design: Design, mesh: Mesh, points: int) -> tuple[list[Volume], list[Volume]] | None:
-    """Volumes of the parts and the cavities of one body; None where it has no voxels."""
+    """Compare the volumes of parts and cavities of one body; None where it has no voxels."""
     size = mesh.voxel_size
     if size is None or mesh.tet_voxel is None or not design.parts:
         return None
@@ -251,7 +252,7 @@ def _of_body(design: Design, mesh: Mesh, points: int) -> tuple[list[Volume], lis
 
 @dataclass(frozen=True, eq=False)
 class GridRegions:
-    """The cells of a body's grid, with a rim of empty ones.
+    """Cells of a body's grid, with a rim of empty ones.
 
     `parts` is the part of each from 1, 0 for none; `rooms` the cavity of each from 0, -1 for the
     outside and -2 for material.
@@ -264,7 +265,7 @@ class GridRegions:
 
     @classmethod
     def of(cls, mesh: Mesh, size: float) -> GridRegions:
-        """Return those of the voxels of a mesh, of edge `size` [m]."""
+        """Return the cells of the voxels of a mesh, of edge `size` [m]."""
         corners = mesh.vertices[mesh.tets.reshape(-1, 20)].min(axis=1)
         origin = corners.min(axis=0) - _RIM * size
         cells = np.rint((corners - origin) / size).astype(np.intp)
@@ -293,7 +294,7 @@ def _affordable(shapes: Iterable[Shape], points: int) -> int:
 def _described(
     shapes: Sequence[_core.Shape], cells: GridRegions, points: int
 ) -> tuple[Floats, Floats]:
-    """Volumes of the parts and of the cavities of the shapes [m³], each by number."""
+    """Estimate the volumes of parts and cavities of the shapes [m³], each by number."""
     near = cells.near
     whole = np.bincount(cells.parts[~near], minlength=len(shapes) + 1)[1:].astype(float)
     count = int(cells.rooms.max(initial=-1)) + 1
@@ -329,7 +330,7 @@ def _described(
 def _regions(
     rooms: NDArray[np.int16], places: Ints, within: Floats, empty: tuple[Ints, ...]
 ) -> Ints:
-    """The cavity that each empty point belongs to, -1 for none: that of the nearest empty cell."""
+    """Find the cavity of each empty point, -1 for none: that of the nearest empty cell."""
     around = places[:, None, :] + _AROUND.astype(np.intp)
     inside = ((around >= 0) & (around < rooms.shape)).all(axis=-1)
     clipped = np.minimum(np.maximum(around, 0), np.array(rooms.shape) - 1)
@@ -356,7 +357,7 @@ def _regions(
 
 
 def shapes_of(design: Design) -> Iterator[Shape]:
-    """Every shape that the parts of a design are made of."""
+    """Yield every shape that the parts of a design are made of."""
     for part in design.parts:
         shape = design.shapes[part.shape] if isinstance(part.shape, str) else part.shape
         yield from shape.every(design.shapes)

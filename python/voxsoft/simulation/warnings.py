@@ -1,4 +1,4 @@
-"""What is doubtful about a body as it is loaded: told wherever it is shown.
+"""Warnings about a loaded body, reported wherever it is shown.
 
 Each check is a function of the design, its mesh and the positions of the vertices, or of the design
 and its stress and strain there, so that results at rest, frames of a run and the live body of the
@@ -33,9 +33,9 @@ from voxsoft.simulation.thin_seals import thin_seals
 from voxsoft.simulation.vanished import vanished_shapes
 from voxsoft.simulation.volumes import doubtful_volumes
 
-#: From a design, its mesh and positions in m, (n, 3), to what is doubtful.
+#: Check of a design, its mesh and positions in m, (n, 3).
 Check = Callable[[Design, Mesh, NDArray[np.float64]], Iterable[Diagnostic]]
-#: From a design and its stress and strain to what is doubtful.
+#: Check of a design and its stress and strain.
 FieldCheck = Callable[[Design, Fields], Iterable[Diagnostic]]
 
 
@@ -44,7 +44,7 @@ def _ambiguous_indices(design: Design, mesh: Mesh, _: NDArray[np.float64]) -> It
 
 
 def _left_out(design: Design, _mesh: Mesh, _: NDArray[np.float64]) -> Iterator[Diagnostic]:
-    """What of the designs of bodies is left out although it decides how they behave alone."""
+    """Warn of entries of bodies' designs that are left out although they affect each alone."""
     return (Diagnostic("warning", *problem) for problem in design.left_out)
 
 
@@ -68,7 +68,7 @@ FIELD_CHECKS: Final[tuple[FieldCheck, ...]] = (collapsed_voxels, beyond_tests)
 def warnings_at(
     design: Design, mesh: Mesh, positions: NDArray[np.float64], fields: Fields | None = None
 ) -> tuple[Diagnostic, ...]:
-    """Find what is doubtful about a body at some positions.
+    """Find warnings about a body at some positions.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def warnings_at(
     Returns
     -------
     tuple of Diagnostic
-        Each with the place, what is wrong there, and what to try; empty if nothing is.
+        Diagnostics with subject, finding and remedy; empty if there are none.
     """
     known = fields_of(design, mesh, positions) if fields is None else fields
     of_fields = (warning for check in FIELD_CHECKS for warning in check(design, known))

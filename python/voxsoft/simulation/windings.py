@@ -1,4 +1,4 @@
-"""Wound fibers on a mesh: whether there is a way around their axis everywhere."""
+"""Check of wound fibers on a mesh: their axis must not run through their part."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ def check_windings(design: Design, mesh: Mesh) -> None:
     """Check that no part with wound fibers lies on their axis.
 
     Within a voxel of the axis the direction around it turns by more than a radian from one end of
-    a voxel to the other, and nothing stands for it.
+    a voxel to the other, which an element cannot represent.
 
     Parameters
     ----------
     design
         The design, with the parts of all its bodies.
     mesh
-        Of its voxels.
+        The mesh of its voxels.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What each kind of load does to a body: the one place where loads are told apart."""
+"""Actions of each kind of load on a body: the one place that distinguishes kinds of loads."""
 
 from voxsoft.simulation.loads.actions import Action, LoadReceiver
 from voxsoft.simulation.loads.kind import LoadedBody, LoadKind, LoadReading

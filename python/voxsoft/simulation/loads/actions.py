@@ -1,7 +1,7 @@
-"""What loads do to a mesh, and who takes it: the core, outside codes, pictures.
+"""Actions of loads on a mesh, and their receivers: the core, outside codes, pictures.
 
-Every load is made of these actions. All that a receiver must know are three of them, accelerations,
-pressures and forces on vertices; it may know better how forces on regions and surfaces are shared.
+Every load is made of these actions. A receiver must take three of them, accelerations, pressures
+and forces on vertices; it may override how forces on regions and surfaces are shared.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _NOWHERE = (0.0, 0.0, 0.0)
 
 
 class LoadReceiver(ABC):
-    """Takes the actions of loads on a mesh; all values are those at a load factor of 1."""
+    """Receiver of the actions of loads on a mesh; all values are those at a load factor of 1."""
 
     def __init__(self, mesh: Mesh) -> None:
         self.mesh = mesh
@@ -56,15 +56,15 @@ class LoadReceiver(ABC):
 
 
 class Action(ABC):
-    """One thing that a load does; the core counts each as a load of its own."""
+    """One action of a load; the core counts each as a load of its own."""
 
     @abstractmethod
     def give_to(self, receiver: LoadReceiver) -> None:
-        """Hand this to who applies it."""
+        """Hand this to its receiver."""
 
     @abstractmethod
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
-        """Where this is drawn on vertices (n, 3), m, and which way it points, zero for no way."""
+        """Return its arrow on vertices (n, 3), m: position and direction, zero for none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,11 +75,11 @@ class Acceleration(Action):
     direction: Floats
 
     def give_to(self, receiver: LoadReceiver) -> None:
-        """Hand this to who applies it."""
+        """Hand this to its receiver."""
         receiver.acceleration(self.value * self.direction)
 
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
-        """Where a line along it through the middle of the body comes into its bounds.
+        """Return the point where a line along it through the body's middle enters the bounds.
 
         An arrow that ends there stands outside of the body: in its middle the head would be hidden.
         """
@@ -95,11 +95,11 @@ class SurfacePressure(Action):
     cavity: MeshCavity | None = None
 
     def give_to(self, receiver: LoadReceiver) -> None:
-        """Hand this to who applies it."""
+        """Hand this to its receiver."""
         receiver.pressure(self.triangles, self.value, self.cavity)
 
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
-        """From the middle of the surface, into it; a cavity has no one way."""
+        """Return the middle of the surface and the inward direction, zero for a cavity."""
         a, b, c = rest[self.triangles].transpose(1, 0, 2)
         inward = -np.cross(b - a, c - a).sum(axis=0)
         direction = _unit(inward) if self.cavity is None else np.array(_NOWHERE)
@@ -114,11 +114,11 @@ class SurfaceTraction(Action):
     value: Floats
 
     def give_to(self, receiver: LoadReceiver) -> None:
-        """Hand this to who applies it."""
+        """Hand this to its receiver."""
         receiver.traction(self.triangles, self.value)
 
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
-        """From the middle of the surface."""
+        """Return the middle of the surface and the direction of the traction."""
         return rest[np.unique(self.triangles)].mean(axis=0), _unit(self.value)
 
 
@@ -130,11 +130,11 @@ class SharedForce(Action):
     value: Floats
 
     def give_to(self, receiver: LoadReceiver) -> None:
-        """Hand this to who applies it."""
+        """Hand this to its receiver."""
         receiver.shared_force(self.vertices, self.value)
 
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
-        """From the middle of the vertices."""
+        """Return the middle of the vertices and the direction of the force."""
         return rest[self.vertices].mean(axis=0), _unit(self.value)
 
 
@@ -146,22 +146,22 @@ class VertexForces(Action):
     value: Floats = field(repr=False)
 
     def give_to(self, receiver: LoadReceiver) -> None:
-        """Hand this to who applies it."""
+        """Hand this to its receiver."""
         receiver.forces(self.vertices, self.value)
 
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
-        """From the middle of the vertices, along the sum."""
+        """Return the middle of the vertices and the direction of the total force."""
         return rest[self.vertices].mean(axis=0), _unit(self.value.sum(axis=0))
 
 
 @dataclass(frozen=True, eq=False)
 class FieldForces(VertexForces):
-    """Dead forces on vertices that a field, (3,), brings about."""
+    """Dead forces on vertices by a field, (3,)."""
 
     field: Floats = field(kw_only=True)
 
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
-        """Where a line along the field through the middle of the body comes into its bounds."""
+        """Return the point where a line along the field through the middle enters the bounds."""
         return _into_bounds(rest, _unit(self.field))
 
 

@@ -1,4 +1,4 @@
-"""What has to be said of a kind of load, and what is known of a load without its mesh."""
+"""Interface of a kind of load, and the description of a load without its mesh."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ L = TypeVar("L")
 
 
 class LoadedBody(Protocol):
-    """What loads are laid on: a :class:`~voxsoft.simulation.Setup`."""
+    """Body that loads act on: a :class:`~voxsoft.simulation.Setup`."""
 
     @property
     def design(self) -> Design:
-        """What it is made from."""
+        """Design that it is made from."""
 
     @property
     def mesh(self) -> Mesh:
@@ -36,24 +36,24 @@ class LoadedBody(Protocol):
 
 @dataclass(frozen=True)
 class LoadReading:
-    """What a load is, before it is laid on a mesh.
+    """Description of a load without its mesh.
 
     Attributes
     ----------
     kind
         Its name in a design.
     label
-        What people call it.
+        Its name for people.
     quantity
-        What its value measures: the kind of its unit.
+        Quantity of its value: the kind of its unit.
     components
         Its value without its history, SI: one number, or x, y, z.
     direction
-        Which way it points, of any length; zero if it follows a surface.
+        Its direction, of any length; zero if it follows a surface.
     history
         Its factor over time.
     cavity
-        Where it is, if that is a cavity.
+        Its cavity, if it acts in one.
     """
 
     kind: str
@@ -72,30 +72,30 @@ class LoadReading:
 
     @property
     def final_factor(self) -> float:
-        """Its factor in the end."""
+        """Final factor of its history; 1 without one."""
         return 1.0 if self.history is None else self.history.factors[-1]
 
 
 class LoadKind(ABC, Generic[L]):
-    """Tells what loads of one kind are, and what they do."""
+    """Description and actions of loads of one kind."""
 
     @abstractmethod
     def read(self, load: L) -> LoadReading:
-        """Say what a load is."""
+        """Describe a load."""
 
     @abstractmethod
     def actions(self, load: L, body: LoadedBody, where: str) -> Sequence[Action]:
-        """Say what it does to a body.
+        """Return the actions of a load on a body.
 
         Parameters
         ----------
         load, body
-            The load, and what it is laid on.
+            The load, and the body that it acts on.
         where
             Its place in the design, for messages.
 
         Raises
         ------
         DesignError
-            It catches nothing.
+            The load catches nothing.
         """

@@ -1,4 +1,4 @@
-"""What each kind of load is and does: the registry of all kinds."""
+"""Description and actions of each kind of load: the registry of all kinds."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ from voxsoft.simulation.loads.magnets import magnet_forces
 
 
 class GravityKind(LoadKind[Gravity]):
-    """What gravity does."""
+    """Gravity: an acceleration of the whole body."""
 
     def read(self, load: Gravity) -> LoadReading:
-        """Say what it is."""
+        """Describe the load."""
         return LoadReading(
             load.kind, "gravity", "acceleration", (load.value,), load.direction, load.history
         )
 
     def actions(self, load: Gravity, body: LoadedBody, where: str) -> list[Acceleration]:
-        """Say what it does."""
+        """Return the actions of the load."""
         down = np.asarray(load.direction) / np.linalg.norm(load.direction)
         return [Acceleration(load.value, down)]
 
 
 class PressureKind(LoadKind[Pressure]):
-    """What a pressure does: one action for each cavity."""
+    """Pressure in cavities: one action for each."""
 
     def read(self, load: Pressure) -> LoadReading:
-        """Say what it is."""
+        """Describe the load."""
         return LoadReading(
             load.kind,
             f"pressure in {_named(load.cavity)}",
@@ -55,7 +55,7 @@ class PressureKind(LoadKind[Pressure]):
         )
 
     def actions(self, load: Pressure, body: LoadedBody, where: str) -> list[SurfacePressure]:
-        """Say what it does."""
+        """Return the actions of the load."""
         cavities = body.mesh.cavities
         chosen = chosen_cavities(load.cavity, body.mesh, f"{where}.cavity")
         return [SurfacePressure(cavities[i].triangles, load.value, cavities[i]) for i in chosen]
@@ -68,29 +68,29 @@ def _named(choice: str | int) -> str:
 
 
 class ForceKind(LoadKind[Force]):
-    """What a force does."""
+    """Force that the vertices of a region share."""
 
     def read(self, load: Force) -> LoadReading:
-        """Say what it is."""
+        """Describe the load."""
         return LoadReading(load.kind, "force", "force", load.value, load.value, load.history)
 
     def actions(self, load: Force, body: LoadedBody, where: str) -> list[SharedForce]:
-        """Say what it does."""
+        """Return the actions of the load."""
         return [SharedForce(body.vertices_in(load.region, where), np.asarray(load.value))]
 
 
 class TractionKind(LoadKind[Traction]):
-    """What a traction does: one number is a pressure, three are a dead load."""
+    """Traction on a surface: one number is a pressure, three are a dead load."""
 
     def read(self, load: Traction) -> LoadReading:
-        """Say what it is."""
+        """Describe the load."""
         if isinstance(load.value, float):
             label, components, direction = "pressure on a surface", (load.value,), (0.0, 0.0, 0.0)
             return LoadReading(load.kind, label, "pressure", components, direction, load.history)
         return LoadReading(load.kind, "traction", "pressure", load.value, load.value, load.history)
 
     def actions(self, load: Traction, body: LoadedBody, where: str) -> list[Action]:
-        """Say what it does."""
+        """Return the actions of the load."""
         triangles = _triangles(load, body, where)
         if isinstance(load.value, float):
             return [SurfacePressure(triangles, load.value)]
@@ -108,22 +108,22 @@ def _triangles(load: Traction, body: LoadedBody, where: str) -> Triangles:
 
 
 class MagneticFieldKind(LoadKind[MagneticField]):
-    """What a magnetic field does."""
+    """Magnetic field: dead forces on parts with a remanence."""
 
     def read(self, load: MagneticField) -> LoadReading:
-        """Say what it is."""
+        """Describe the load."""
         return LoadReading(
             load.kind, "magnetic field", "magnetic field", load.value, load.value, load.history
         )
 
     def actions(self, load: MagneticField, body: LoadedBody, where: str) -> list[Action]:
-        """Say what it does."""
+        """Return the actions of the load."""
         field = np.asarray(load.value)
         vertices, forces = magnet_forces(body.design, body.mesh, field, where)
         return [FieldForces(vertices, forces, field=field)]
 
 
-#: What each model of a load means.
+#: Kind of load of each model.
 KINDS: Final[Mapping[type[object], LoadKind[Any]]] = MappingProxyType(
     {
         Gravity: GravityKind(),

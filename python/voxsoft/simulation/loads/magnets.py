@@ -1,4 +1,4 @@
-"""What a uniform magnetic field does to parts that are hard magnets."""
+"""Forces of a uniform magnetic field on parts that are hard magnets."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def magnet_forces(design: Design, mesh: Mesh, field: Floats, where: str) -> tupl
     Parameters
     ----------
     design
-        Whose parts have the remanence.
+        The design whose parts have the remanence.
     mesh
         Its voxels.
     field
@@ -41,9 +41,9 @@ def magnet_forces(design: Design, mesh: Mesh, field: Floats, where: str) -> tupl
     Returns
     -------
     vertices : ndarray of uint32, shape (v,)
-        Those of the magnets.
+        Vertices of the magnets.
     forces : ndarray of float64, shape (v, 3)
-        On each of them, N; their sum is zero.
+        Force on each of them, N; their sum is zero.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def magnet_forces(design: Design, mesh: Mesh, field: Floats, where: str) -> tupl
         if part.remanence is None or not any(part.remanence):
             continue
         for body in mesh.each_body:
-            # A body by itself counts its own parts; the joined mesh has those of the design.
+            # Parts of a body alone are numbered within it; those of the joined mesh, in the design.
             tets = slice(body.first_tet, body.first_tet + len(body.mesh.tets))
             numbers = np.flatnonzero(mesh.tet_part[tets][::5] == index + 1)
             corners, gradients = body.mesh.voxel_gradients(numbers)
@@ -88,7 +88,7 @@ def magnet_forces(design: Design, mesh: Mesh, field: Floats, where: str) -> tupl
 
 
 def _check_symmetry(design: Design, field: Floats, where: str) -> None:
-    """A field or a magnet across a plane of symmetry pulls its two sides unlike mirror images."""
+    """Refuse a field or remanence across a plane of symmetry: its sides would not mirror."""
     for plane in design.symmetry:
         what = f"points across the plane of symmetry of {plane.plane}"
         hint = "leave this plane out, or turn field and remanence into it"

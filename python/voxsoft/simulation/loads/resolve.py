@@ -1,7 +1,7 @@
-"""From a load of a design to what it does to a mesh: read once, taken by everyone.
+"""Resolution of a design's loads to actions on a mesh, for all users of loads.
 
 The core's problem, the studio's symbols and sliders, bricks of outside codes, predictions of cost,
-warnings and metrics all take what stands here; nobody else asks of which kind a load is.
+warnings and metrics all use it; no other module asks of which kind a load is.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ class ResolvedLoad:
     Attributes
     ----------
     reading
-        What it is, without the mesh: kind, quantity, value, history, cavity.
+        Its description without the mesh: kind, quantity, value, history, cavity.
     actions
-        What it does, without its history; the core counts each as a load of its own.
+        Its actions, without its history; the core counts each as a load of its own.
     mesh
-        What it is laid on.
+        The mesh that it acts on.
     """
 
     reading: LoadReading
@@ -39,12 +39,12 @@ class ResolvedLoad:
 
     @property
     def at(self) -> NDArray[np.float64]:
-        """Where it is drawn, (3,), m; the middle of the body if it does nothing."""
+        """Position of its arrow, (3,), m; the middle of the body if it has no action."""
         return self._arrow[0]
 
     @property
     def direction(self) -> NDArray[np.float64]:
-        """Which way it points, (3,), of length 1; zero if it points no way."""
+        """Direction of its arrow, (3,), of length 1; zero if it has none."""
         return self._arrow[1]
 
     @cached_property
@@ -56,7 +56,7 @@ class ResolvedLoad:
 
 
 def read(load: AnyLoad) -> LoadReading:
-    """Say what a load is, before it is laid on a mesh.
+    """Describe a load without its mesh.
 
     Parameters
     ----------
@@ -74,28 +74,28 @@ def read(load: AnyLoad) -> LoadReading:
 
 
 def readings(design: Design) -> list[LoadReading]:
-    """What each load of a design is, in their order."""
+    """Describe each load of a design, in their order."""
     return [read(load) for load in design.loads]
 
 
 def resolve(load: AnyLoad, body: LoadedBody, where: str) -> ResolvedLoad:
-    """Lay a load on a mesh.
+    """Resolve a load to its actions on a mesh.
 
     Parameters
     ----------
     load
         Any load of a design.
     body
-        A mesh and what its regions catch: a :class:`~voxsoft.simulation.Setup`.
+        A mesh with its regions: a :class:`~voxsoft.simulation.Setup`.
     where
         The load's place in the design, for messages.
 
     Raises
     ------
     DesignError
-        It catches no vertex, or no triangle of the surface.
+        The load catches no vertex, or no triangle of the surface.
     NoCavityError
-        A pressure in a cavity that is not there.
+        A pressure in a cavity that does not exist.
 
     Examples
     --------
