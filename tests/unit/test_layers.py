@@ -7,6 +7,7 @@ import voxsoft as vs
 from voxsoft.errors import DesignError
 from voxsoft.geometry import enclosed_volume
 from voxsoft.simulation import Setup, check, simulate
+from voxsoft.simulation.volumes import volumes_of
 from voxsoft.units import GPa, kPa, mm
 
 SOFT = vs.NeoHookean(young=60 * kPa, poisson=0.49)
@@ -134,6 +135,32 @@ def test_a_sealed_chamber_can_be_inflated():
     result = simulate(block(open_below(), layers, loads=[load]))
     assert result.status == "ok"
     assert result.metric("cavity_volume_change") > 0.0
+
+
+def test_chambers_that_layers_close_are_compared_with_no_shape():
+    chamber = vs.Box(size=(2 * mm, 6 * mm, 2 * mm), corner=(10 * mm, 2 * mm, 4 * mm))
+    open_chamber = vs.Box(size=(4 * mm, 6 * mm, 4 * mm), corner=(2 * mm, 2 * mm, 0))
+    load = vs.Pressure(value=1 * kPa)
+    design = block(
+        vs.Box(size=SIZE) - chamber - open_chamber,
+        [film(plane(2, 0), seal=True, young=10e6)],
+        loads=[load],
+    )
+    result = simulate(design, error="off")
+    own = [c.volume for c in result.mesh.cavities]
+    assert own == pytest.approx([4 * 6 * 4 * mm**3, 2 * 6 * 2 * mm**3])
+    volumes = result.summary()["volumes"]["cavities"]
+    assert volumes.keys() == {"cavity 1"}
+    assert volumes["cavity 1"]["described"] == pytest.approx(2 * 6 * 2 * mm**3)
+    assert not [each for each in result.warnings if "in voxels" in each.what]
+
+
+def test_the_halves_of_a_chamber_that_a_film_divides_are_compared_with_no_shape():
+    chamber = vs.Box(size=(6 * mm, 6 * mm, 4 * mm), corner=(4 * mm, 2 * mm, 2 * mm))
+    design = block(vs.Box(size=SIZE) - chamber, [film(plane(2, 4 * mm), seal=True)])
+    volumes = volumes_of(design, Setup.of(design).mesh)
+    assert not volumes.cavities
+    assert len(volumes.parts) == 1
 
 
 @pytest.mark.parametrize(

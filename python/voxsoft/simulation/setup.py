@@ -77,8 +77,6 @@ class Setup:
     mesh
         Its tetrahedra. Chambers that layers close are among its cavities, and cavities have the
         names of the design's chambers.
-    lock
-        Solutions of it wait for each other, so that threads may share it.
 
     Raises
     ------

@@ -72,8 +72,8 @@ class Volumes:
     parts
         Volume of each part, by its name or else ``parts[i]``.
     cavities
-        Volume of each cavity, by its name or else ``cavity i``. Cavities that only a layer closes
-        are left out.
+        Volume of each cavity, by its name or else ``cavity i``. Cavities that a layer closes or
+        divides are left out.
     """
 
     parts: Mapping[str, Volume] = field(default_factory=dict)
@@ -137,7 +137,8 @@ def volumes_of(design: Design, mesh: Mesh, points: int = PRECISE) -> Volumes:
                 mesh.cavities[first + index].name or f"cavity {first + index}"
                 for index in range(number)
             ]
-            cavities |= dict(zip(names, found[1], strict=True))
+            pairs = zip(names, found[1], strict=True)
+            cavities |= {name: volume for name, volume in pairs if volume is not None}
         first += number
     volumes = Volumes(parts, cavities)
     if known is None:
@@ -232,8 +233,13 @@ def _labels(design: Design, body: str) -> list[str]:
     return labels
 
 
-def _of_body(design: Design, mesh: Mesh, points: int) -> tuple[list[Volume], list[Volume]] | None:
-    """Compare the volumes of parts and cavities of one body; None where it has no voxels."""
+def _of_body(
+    design: Design, mesh: Mesh, points: int
+) -> tuple[list[Volume], list[Volume | None]] | None:
+    """Compare the volumes of parts and cavities of one body; None where it has no voxels.
+
+    Cavities that a layer closes or divides have none.
+    """
     size = mesh.voxel_size
     if size is None or mesh.tet_voxel is None or not design.parts:
         return None
@@ -243,11 +249,19 @@ def _of_body(design: Design, mesh: Mesh, points: int) -> tuple[list[Volume], lis
     if mesh.fractions is not None:
         own = own * mesh.fractions[mesh.tet_voxel]
     simulated = np.bincount(mesh.tet_part, own, len(design.parts) + 1)[1:]
-    rooms = [float(cavity.volume) for cavity in mesh.cavities]
+    pairs = zip(mesh.cavities, _rooms_of(mesh, cells, len(room)), strict=True)
     return (
         [Volume(*pair) for pair in zip(simulated.tolist(), material.tolist(), strict=True)],
-        [Volume(*pair) for pair in zip(rooms, room.tolist(), strict=True)],
+        [None if at is None else Volume(float(c.volume), float(room[at])) for c, at in pairs],
     )
+
+
+def _rooms_of(mesh: Mesh, cells: GridRegions, count: int) -> list[int | None]:
+    """Find the room of the grid that each cavity of a mesh is; None for one that a layer bounds."""
+    if len(mesh.cavities) == count:
+        return [*range(count)]
+    found = [cells.room_behind(mesh.vertices[cavity.triangles]) for cavity in mesh.cavities]
+    return [room if found.count(room) == 1 else None for room in found]
 
 
 @dataclass(frozen=True, eq=False)
@@ -276,6 +290,15 @@ class GridRegions:
         for index, cavity in enumerate(voxels.cavities):
             rooms[tuple(cavity.cells.T)] = index
         return cls(origin, size, parts, rooms)
+
+    def room_behind(self, triangles: Floats) -> int | None:
+        """Find the enclosed room that triangles on faces of voxels point into, (t, 3, 3) [m]."""
+        normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        beside = (triangles.mean(axis=1) - self.origin) / self.size + 0.5 * normals
+        found = self.rooms[tuple(np.floor(beside).astype(np.intp).T)]
+        enclosed = found[found >= 0]
+        return int(np.bincount(enclosed).argmax()) if len(enclosed) else None
 
     @property
     def near(self) -> NDArray[np.bool_]:
