@@ -11,7 +11,9 @@ from voxsoft.shapes import random_shape
 EXTENT = 0.1
 COARSEST, FINEST = 6, 14
 BLOCK = 100
-SECONDS_PER_BLOCK = 120
+SECONDS_PER_BLOCK = 240
+#: Designs of the quick test; those of all blocks are tried with the slow ones.
+QUICK = 25
 
 
 def random_design(seed):
@@ -79,9 +81,9 @@ def meshed(seed):
     return voxels.count
 
 
-def run_block(block):
+def mesh_all(seeds):
     counts = []
-    for seed in range(BLOCK * block, BLOCK * (block + 1)):
+    for seed in seeds:
         try:
             counts.append(meshed(seed))
         except Exception as error:
@@ -90,19 +92,17 @@ def run_block(block):
     return counts
 
 
-@pytest.mark.timeout(SECONDS_PER_BLOCK)
-@pytest.mark.parametrize("block", range(1))
-def test_random_designs_become_sound_meshes(block):
-    counts = run_block(block)
+def test_random_designs_become_sound_meshes():
+    counts = mesh_all(range(QUICK))
     # An empty part is a valid find, but a block of them would test nothing.
-    assert np.count_nonzero(counts) > BLOCK / 2
+    assert np.count_nonzero(counts) > QUICK / 2
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(SECONDS_PER_BLOCK)
-@pytest.mark.parametrize("block", range(1, 100))
+@pytest.mark.parametrize("block", range(100))
 def test_many_more_random_designs_become_sound_meshes(block):
-    counts = run_block(block)
+    counts = mesh_all(range(BLOCK * block, BLOCK * (block + 1)))
     assert np.count_nonzero(counts) > BLOCK / 2
 
 
