@@ -31,6 +31,21 @@ def test_no_document_holds_two_sides_of_a_merge():
     assert sides.search("a\n<<<<<<< HEAD\nb")
 
 
+#: Files that may name an absolute path: an invented one of a user.
+INVENTED = {"docs/how-to/dask.md"}
+
+
+def test_no_file_names_a_folder_of_a_machine():
+    folder = "/(work|root|home|Users)/[A-Za-z]"
+    listed = subprocess.run(
+        ["git", "grep", "-lIE", folder, "--", ":!*.lock"], cwd=ROOT, capture_output=True, text=True
+    )
+    if listed.returncode > 1:
+        pytest.skip("no git repository here")
+    found = set(listed.stdout.splitlines()) - {Path(__file__).relative_to(ROOT).as_posix()}
+    assert found == INVENTED
+
+
 def test_there_are_paths_to_check():
     assert len(list(named_paths())) > 20
 
