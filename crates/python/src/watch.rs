@@ -32,7 +32,8 @@ pub(crate) struct Sensor {
 /// Observer of a run: records, reports progress to Python and passes on Ctrl-C.
 pub(crate) struct Watch {
     progress: Option<Py<PyAny>>,
-    last_call: Instant,
+    /// The first step is reported at once, so that short runs are seen too.
+    last_call: Option<Instant>,
     pub(crate) sensors: Vec<Sensor>,
     pub(crate) keep_frames: bool,
     pub(crate) recorded: usize,
@@ -54,7 +55,7 @@ impl Watch {
     ) -> Self {
         Self {
             progress,
-            last_call: Instant::now(),
+            last_call: None,
             sensors,
             keep_frames,
             recorded: 0,
@@ -107,9 +108,11 @@ impl Watch {
             return ControlFlow::Break(());
         }
         if let Some(progress) = &self.progress
-            && self.last_call.elapsed() >= PROGRESS_PERIOD
+            && self
+                .last_call
+                .is_none_or(|last| last.elapsed() >= PROGRESS_PERIOD)
         {
-            self.last_call = Instant::now();
+            self.last_call = Some(Instant::now());
             if let Err(raised) = Python::attach(|py| progress.call1(py, arguments)) {
                 self.raised = Some(raised);
                 return ControlFlow::Break(());
