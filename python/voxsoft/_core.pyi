@@ -602,6 +602,7 @@ def transient(
     end_time: float | None,
     max_time: float,
     tolerance: float,
+    retardation: float = 0.0,
     record_interval: float | None = None,
     memory: int = ...,
     sensors: Sequence[tuple[NDArray[np.uint32], NDArray[np.float64]]] = ...,
@@ -689,6 +690,16 @@ class Problem:
     def net_forces(
         self, positions: NDArray[np.float64], taut: list[bool] = ...
     ) -> NDArray[np.float64]: ...
+    def measure(
+        self,
+        positions: NDArray[np.float64],
+        velocities: NDArray[np.float64],
+        time: float,
+        memory: Memory,
+        residual: float,
+    ) -> Answer:
+        """Measure a moving state of all vertices, objects included; nothing is solved."""
+
     def relax(
         self,
         *,
@@ -854,6 +865,13 @@ class LiveStatus:
     def __int__(self, /) -> int: ...
 
 @final
+class Memory:
+    """Data of a problem that depend on the load path, at one state."""
+
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
 class Advance:
     """How far a run has come, and what this call did."""
 
@@ -905,7 +923,10 @@ class Live:
         retardation: float = 0.0,
         tolerance: float = 1e-4,
         deterministic: bool = False,
-    ) -> Live: ...
+        converged: bool = False,
+    ) -> Live:
+        """Steps converge, with contact and fluids settled, if ``converged``."""
+
     @property
     def method(self) -> Literal["explicit", "implicit"]: ...
     @property
@@ -925,6 +946,9 @@ class Live:
     def seek(self, positions: NDArray[np.float64], time: float = 0.0) -> None: ...
     def positions(self) -> NDArray[np.float64]: ...
     def velocities(self) -> NDArray[np.float64]: ...
+    def memory(self) -> Memory:
+        """All data that depend on the load path, at the last state."""
+
     @property
     def vertices(self) -> NDArray[np.uint32]: ...
     def pack_topology(self, topology: int) -> bytes: ...

@@ -196,8 +196,6 @@ def test_an_arc_along_which_a_plate_moves_ends_where_load_control_does(friction)
 def test_what_knows_no_contact_says_so(result):
     with pytest.raises(DesignError, match="objects: is not known to states"):
         result_at(Setup.of(pressed()), result.positions)
-    with pytest.raises(DesignError, match="objects: is not known to the simulator yet"):
-        vs.Simulator(pressed())
     lattice = vs.Part(shape=BLOCK, material=vs.Lattice(edge=25 * kPa, bulk=100 * kPa))
     with pytest.raises(DesignError, match="objects: is not known to exported pages of the lattice"):
         page_of_body(StudioBody.of(pressed(parts=[lattice]), 1, 1))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from gripped import BALL, GRAVITY, RUBBER, bar, dropped, pinched
+from gripped import BALL, GRAVITY, bar, dropped, pinched
 
 import voxsoft as vs
 from voxsoft.design import Floor, Object, Solver
@@ -158,19 +158,11 @@ def test_what_cannot_be_is_refused_with_its_place(changes, message):
     [
         ({"method": "dynamics", "substeps": 4}, "substeps: is a setting of explicit dynamics"),
         ({"method": "xpbd", "end_time": 1}, "means dynamics to an end time by xpbd"),
-        ({"method": "dynamics", "retardation": 1e-3}, "retardation: is a setting of explicit"),
     ],
 )
 def test_settings_that_know_no_free_objects_are_refused(settings, message):
     with pytest.raises(SimulationError, match=message):
         simulate(dropped(solver=Solver(**settings)))
-
-
-def test_materials_that_relax_are_refused():
-    relaxing = RUBBER.replace(prony=[{"g": 0.2, "tau": 0.1}])
-    part = vs.Part(shape=vs.Box(size=(20 * mm, 20 * mm, 8 * mm)), material=relaxing)
-    with pytest.raises(SimulationError, match=r"parts\[0\]\.material: relaxes"):
-        simulate(dropped(parts=[part]))
 
 
 def test_two_objects_touch_where_one_of_them_is_free():

@@ -135,10 +135,8 @@ def test_what_it_is_not_known_with_is_refused(changes):
 
 def test_who_does_not_know_it_says_so():
     design = bar([x(0, 0)])
-    with pytest.raises(DesignError, match="refine: local refinement is not known to the simulator"):
-        vs.Simulator(design)
     with pytest.raises(SimulationError, match="refine: is known to statics"):
-        vs.simulate(design, end_time=1.0)
+        vs.simulate(design, method="xpbd", end_time=1.0)
     with pytest.raises(DesignError, match="not known to exported pages"):
         design.show()
     with pytest.raises(DesignError, match="several bodies"):

@@ -76,5 +76,5 @@ pub use motion::{FRAME_TIME, Rest};
 pub use pace::PACES;
 pub use player::{Cast, Player};
 pub use plots::{COLUMNS, Probe};
-pub use stepper::stepper;
+pub use stepper::{converging, stepper};
 pub use touching::{Placed, Touching};

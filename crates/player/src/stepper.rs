@@ -1,5 +1,5 @@
-use voxsoft_solid::{Problem, Stepper};
-use voxsoft_statics::{Implicit, ImplicitSettings};
+use voxsoft_solid::{Problem, Status, Stepper};
+use voxsoft_statics::{Implicit, ImplicitSettings, Motion, Transient};
 use voxsoft_xpbd::{Dynamics, Live};
 
 /// Makes the stepper of a live problem.
@@ -21,4 +21,20 @@ pub fn stepper(problem: Problem, settings: Dynamics) -> Box<dyn Stepper> {
         ..ImplicitSettings::default()
     };
     Box::new(Implicit::new(problem, settings))
+}
+
+/// Makes a stepper whose steps converge, with contact settled and gas and liquid in chambers.
+///
+/// # Errors
+///
+/// The status of a problem whose tangent cannot be made: out of memory.
+pub fn converging(problem: Problem, settings: Dynamics) -> Result<Box<dyn Stepper>, Status> {
+    let settings = Transient {
+        step: settings.time_step,
+        damping: settings.damping,
+        retardation: settings.retardation,
+        tolerance: settings.tolerance,
+        ..Transient::default()
+    };
+    Ok(Box::new(Motion::new(problem, settings)?))
 }

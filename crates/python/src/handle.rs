@@ -1,7 +1,8 @@
-//! Shared handle of a problem whose softening history can be replaced.
+//! Shared handle of a problem whose softening history can be replaced, and the memory of a problem.
 use std::sync::{Arc, PoisonError, RwLock};
 
-use voxsoft_solid::Problem;
+use pyo3::prelude::*;
+use voxsoft_solid::{Memory, Problem};
 
 /// Problem of a `_core.Problem`, shared with its displays and fields.
 ///
@@ -25,3 +26,8 @@ impl Handle {
         act(Arc::make_mut(&mut kept));
     }
 }
+
+/// Memory of a problem, a value: softening, tendons, fluids and contact at one state.
+#[pyclass(frozen, eq, name = "Memory", module = "voxsoft._core")]
+#[derive(PartialEq)]
+pub struct PyMemory(pub(crate) Memory);

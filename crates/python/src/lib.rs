@@ -36,6 +36,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<answer::PyPath>()?;
     module.add_class::<answer::PySettlement>()?;
     module.add_class::<answer::PyStatus>()?;
+    module.add_class::<handle::PyMemory>()?;
     module.add_class::<answer::PyAdvance>()?;
     module.add_class::<answer::PyLiveStatus>()?;
     module.add_class::<materials::PyMaterial>()?;

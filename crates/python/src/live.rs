@@ -4,12 +4,12 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyBytes;
 use voxsoft_frames::FrameHead;
-use voxsoft_player::stepper;
+use voxsoft_player::{converging, stepper};
 use voxsoft_solid::vector::{Vec3, norm, sub};
 use voxsoft_solid::{Ask, Grab, Method, Problem, Stepper};
 use voxsoft_xpbd::Dynamics;
@@ -19,6 +19,7 @@ use crate::arrays::{from_rows, rows};
 use crate::display::{PyDisplay, field as field_of};
 use crate::errors::to_python;
 use crate::gate;
+use crate::handle::PyMemory;
 use crate::player::dynamics;
 use crate::simulate::PyProblem;
 
@@ -83,7 +84,7 @@ type PyGrab = (u32, u32, Vec3, Vec3, f64);
 impl PyLive {
     #[new]
     #[pyo3(signature = (problem, triangles, tags, voxel_size, *, time_step=0.01, substeps=None, iterations=1,
-        damping=None, retardation=0.0, tolerance=1e-4, deterministic=false))]
+        damping=None, retardation=0.0, tolerance=1e-4, deterministic=false, converged=false))]
     #[expect(
         clippy::too_many_arguments,
         reason = "keyword arguments of one Python call"
@@ -101,6 +102,7 @@ impl PyLive {
         retardation: f64,
         tolerance: f64,
         deterministic: bool,
+        converged: bool,
     ) -> PyResult<Self> {
         let settings = Dynamics {
             time_step,
@@ -110,7 +112,18 @@ impl PyLive {
         };
         let surface = PyDisplay::surface(problem, triangles, tags, voxel_size)?;
         let problem = surface.problem.now();
-        let live = gate::run(py, |_| stepper(Problem::clone(&problem), settings))?;
+        let live = gate::run(py, |_| {
+            let problem = Problem::clone(&problem);
+            if converged {
+                converging(problem, settings)
+            } else {
+                Ok(stepper(problem, settings))
+            }
+        })?
+        .map_err(|status| {
+            let message = format!("the tangent of a step cannot be made: {}", status.name());
+            PyMemoryError::new_err(message)
+        })?;
         Ok(Self {
             surface,
             live: Mutex::new(live),
@@ -215,6 +228,11 @@ impl PyLive {
     fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let velocities = self.with(py, |live| live.state().velocities.clone())?;
         Ok(from_rows(py, &velocities))
+    }
+
+    /// Memory at the last state: all data that depend on the load path.
+    fn memory(&self, py: Python<'_>) -> PyResult<PyMemory> {
+        self.with(py, |live| PyMemory(live.problem().memory()))
     }
 
     /// Displayed vertices of the body, in ascending order.

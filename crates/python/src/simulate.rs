@@ -16,13 +16,13 @@ use voxsoft_solid::{
     Hydrostatic, Images, Load, LoadKind, Material, Membrane, MembraneMaterial, Membranes, Mesh,
     Mirrored, Motion, PointForces, Pressure, Problem, ProblemError, State, elastic,
 };
-use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
+use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Status, Trial, relax, simulate};
 
 use crate::answer::PyAnswer;
 use crate::arrays::{from_rows, rows};
 use crate::errors::to_python;
 use crate::gate;
-use crate::handle::Handle;
+use crate::handle::{Handle, PyMemory};
 use crate::materials::PyMaterial;
 use crate::skin::PySkin;
 use crate::tendon::{PyTendon, TendonPart, tendons};
@@ -749,6 +749,44 @@ impl PyProblem {
         problem.start_loads();
         let factor_of = |load: &Load| load.history.at(f64::INFINITY);
         tendons(py, &problem, &positions, &factor_of)
+    }
+
+    /// Measures a moving state of all vertices, objects included, under the loads at its time: nothing is solved.
+    fn measure(
+        &self,
+        py: Python<'_>,
+        positions: PyReadonlyArray2<'_, f64>,
+        velocities: PyReadonlyArray2<'_, f64>,
+        time: f64,
+        memory: &PyMemory,
+        residual: f64,
+    ) -> PyResult<PyAnswer> {
+        let positions = self.positions(&positions)?;
+        let velocities = rows("velocities", &velocities)?;
+        if velocities.len() != positions.len() {
+            let message = format!(
+                "velocities: {} rows, expected {}",
+                velocities.len(),
+                positions.len()
+            );
+            return Err(PyValueError::new_err(message));
+        }
+        let there = self.with(|problem| problem.remember(&memory.0));
+        let answer = Answer {
+            state: State {
+                positions,
+                velocities,
+                time,
+            },
+            status: Status::NotAtRest,
+            residual,
+            steps: 0,
+            back_offs: 0,
+            substep: 0.0,
+            breakdown: None,
+        };
+        let watch = Watch::new(None, Vec::new(), false);
+        there.answer(py, answer, watch, &|load| load.history.at(time))
     }
 
     /// Relaxes to equilibrium. `trial` is a number of steps and the residual above which the run then ends.

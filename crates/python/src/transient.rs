@@ -19,7 +19,7 @@ use crate::watch::{Watch, collect_sensors};
 /// Solves for the motion by implicit steps of `step` seconds, to `end_time` or to rest. Without a rate (1/s), `damping`
 /// is critical.
 #[pyfunction]
-#[pyo3(signature = (problem, *, step, damping, end_time, max_time, tolerance, record_interval=None, memory=u64::MAX, sensors=vec![], frames=false, progress=None))]
+#[pyo3(signature = (problem, *, step, damping, end_time, max_time, tolerance, retardation=0.0, record_interval=None, memory=u64::MAX, sensors=vec![], frames=false, progress=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "keyword arguments of one Python call"
@@ -32,6 +32,7 @@ pub fn transient(
     end_time: Option<f64>,
     max_time: f64,
     tolerance: f64,
+    retardation: f64,
     record_interval: Option<f64>,
     memory: u64,
     sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
@@ -41,6 +42,7 @@ pub fn transient(
     let settings = Transient {
         step,
         damping: damping.map_or(Damping::Critical, Damping::Rate),
+        retardation,
         tolerance,
         end_time,
         max_time,
@@ -112,7 +114,7 @@ struct Motion {
 impl Motion {
     fn of(now: &Progress<'_>) -> Self {
         let problem = now.problem;
-        let stored = elastic::energy(problem.body(), now.positions);
+        let stored = elastic::stored_energy(problem.body(), now.positions);
         let touching = problem
             .contact()
             .map_or(0.0, |contact| contact.energy(now.positions));

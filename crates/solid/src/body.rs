@@ -15,6 +15,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::brick::Within;
 use crate::coarse::Coarse;
 use crate::color::{color_order, interleave};
 use crate::hyperelastic::LocalMaterials;
@@ -304,6 +305,11 @@ impl Body {
     /// Sets the peak isochoric energies (J/m³) of voxels that soften.
     pub(crate) fn set_peaks(&mut self, peaks: &[f64]) {
         self.bricks.set_peaks(peaks);
+    }
+
+    /// Sets the response of hyperelastic voxels within a time step; `None` for the elastic response.
+    pub(crate) fn set_within(&mut self, within: Option<Vec<Within>>) {
+        self.bricks.set_within(within);
     }
 
     /// Sets the free stretch of all materials to that of a time (s).

@@ -11,6 +11,23 @@ pub fn energy(body: &Body, positions: &[Vec3]) -> f64 {
     body.terms().map(|term| term.energy(positions)).sum()
 }
 
+/// The elastic energy in J without the viscous potential of a time step.
+pub fn stored_energy(body: &Body, positions: &[Vec3]) -> f64 {
+    if body.brick_term().is_elastic() {
+        return energy(body, positions);
+    }
+    let others = body.terms_but_bricks();
+    let others: f64 = others.map(|term| term.energy(positions)).sum();
+    body.brick_term().elastic_energy(positions) + others
+}
+
+/// Adds the elastic forces in N, minus the gradient of [`stored_energy`]: without viscous stress.
+pub fn add_stored_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
+    body.terms_but_bricks()
+        .for_each(|term| term.add_forces(positions, forces));
+    body.brick_term().add_elastic_forces(positions, forces);
+}
+
 /// Adds the elastic forces in N, minus the gradient of [`energy`].
 pub fn add_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
     body.terms()

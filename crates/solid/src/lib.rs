@@ -79,6 +79,7 @@ pub mod strips;
 mod terms;
 mod ties;
 pub mod vector;
+mod viscosity;
 mod warping;
 
 pub use body::{Body, Mesh};
@@ -111,3 +112,4 @@ pub use terms::{
     Attachment, Bricks, Edge, Edges, Membranes, Spring, Springs, Strain, Term, Tet, Tets,
 };
 pub use ties::Ties;
+pub use viscosity::Viscosity;

@@ -73,11 +73,11 @@ pub fn adjoint(
 }
 
 /// Equilibrium under all loads with its tangent assembled, which may take `memory` bytes.
-pub(crate) fn with_tangent<'a>(
-    problem: &'a Problem,
+pub(crate) fn with_tangent(
+    problem: &Problem,
     positions: &[Vec3],
     memory: u64,
-) -> Result<Equilibrium<'a>, AdjointError> {
+) -> Result<Equilibrium, AdjointError> {
     let means = Means {
         solver: LinearSolver::Auto,
         memory,

@@ -84,7 +84,7 @@ pub(crate) trait Constraint: Clone {
     fn missing(&self, problem: &Problem, positions: &[Vec3], factor: f64) -> Missing;
 
     /// Derivatives with respect to free coordinates and to the factor.
-    fn gradient(&self, equilibrium: &Equilibrium<'_>, positions: &[Vec3]) -> (Vec<f64>, f64);
+    fn gradient(&self, equilibrium: &Equilibrium, positions: &[Vec3]) -> (Vec<f64>, f64);
 
     /// Tests whether equilibria are stationary points of an energy on the constraint, with the factor as Lagrange
     /// multiplier.
@@ -117,7 +117,7 @@ impl<C: Constraint> Search for Bordered<C> {
 
     fn find(
         &mut self,
-        equilibrium: &mut Equilibrium<'_>,
+        equilibrium: &mut Equilibrium,
         positions: &mut Vec<Vec3>,
         settings: &Settings,
         round: usize,
@@ -159,7 +159,7 @@ impl<C: Constraint> Search for Bordered<C> {
 
 /// Derivative of the forces with respect to an unknown factor, on free coordinates, with clamps in place.
 pub(crate) fn load_direction(
-    equilibrium: &Equilibrium<'_>,
+    equilibrium: &Equilibrium,
     positions: &[Vec3],
     point: Point,
     unknown: Unknown,
@@ -210,11 +210,7 @@ pub(crate) struct Place<'a> {
 }
 
 /// Assembles the tangent at a place, for which the contact pattern is up to date.
-pub(crate) fn assemble(
-    equilibrium: &mut Equilibrium<'_>,
-    place: Place<'_>,
-    residual: &[f64],
-) -> Sides {
+pub(crate) fn assemble(equilibrium: &mut Equilibrium, place: Place<'_>, residual: &[f64]) -> Sides {
     let Place {
         positions,
         point,
@@ -248,7 +244,7 @@ impl Sides {
     /// Solves for `a` and `b` with a factorized tangent; iterative solutions use the given tolerances.
     pub fn solve(
         &self,
-        equilibrium: &Equilibrium<'_>,
+        equilibrium: &Equilibrium,
         factor: &Factor,
         tolerances: [f64; 2],
         stop: &mut dyn FnMut() -> bool,
@@ -327,8 +323,8 @@ struct Memory {
 }
 
 /// Newton's method on both equations.
-struct Newton<'n, 'e, 'o, C> {
-    equilibrium: &'n mut Equilibrium<'e>,
+struct Newton<'n, 'o, C> {
+    equilibrium: &'n mut Equilibrium,
     constraint: &'n C,
     /// Point of the path, in which the unknown factor is replaced.
     point: Point,
@@ -336,7 +332,7 @@ struct Newton<'n, 'e, 'o, C> {
     observer: &'n mut Observer<'o>,
 }
 
-impl<C: Constraint> Newton<'_, '_, '_, C> {
+impl<C: Constraint> Newton<'_, '_, C> {
     /// Finds the equilibrium: from a `near` one with a line search first, otherwise with one last if the problem
     /// `searches`.
     fn find(&mut self, now: &mut Iterate, near: bool, searches: bool) -> Result<Seen, Failure> {

@@ -108,7 +108,7 @@ impl Constraint for Plane<'_> {
         }
     }
 
-    fn gradient(&self, equilibrium: &Equilibrium<'_>, _positions: &[Vec3]) -> (Vec<f64>, f64) {
+    fn gradient(&self, equilibrium: &Equilibrium, _positions: &[Vec3]) -> (Vec<f64>, f64) {
         let mut across = equilibrium.system.gather(&self.tangent.moves);
         across.iter_mut().for_each(|x| *x /= self.unit);
         (across, self.tangent.factor)

@@ -2,6 +2,7 @@
 //! the test for a standstill, and the change from iterative to direct solutions.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
 use voxsoft_solid::matrix::axial;
@@ -77,7 +78,7 @@ impl Forces {
 }
 
 /// Problem with its tangent, and the active set of vertices on the floor.
-pub(crate) struct Equilibrium<'a> {
+pub(crate) struct Equilibrium {
     /// Copy of the problem, with its own memory of the current state.
     pub problem: Problem,
     pub system: System,
@@ -93,7 +94,7 @@ pub(crate) struct Equilibrium<'a> {
     /// positions.
     pub opening: Option<Vec<f64>>,
     /// Inertia of a body in motion, whose forces enter the scale of the residual.
-    pub inertia: Option<&'a Inertia>,
+    pub inertia: Option<Arc<Inertia>>,
     /// Forces in N that are negligible.
     pub negligible: f64,
     /// Requested precision of contact, relative to its default tolerances.
@@ -145,7 +146,7 @@ const STANDSTILL_OF_MOTION: f64 = 1e-9;
 /// Largest relative residual at a standstill: rounding of stiff parts, over a small load.
 const STANDSTILL_RESIDUAL: f64 = 1e-4;
 
-impl<'a> Equilibrium<'a> {
+impl Equilibrium {
     pub fn new(problem: Problem, means: Means) -> Result<Self, FactorError> {
         let mut held = problem.held().to_vec();
         if let Some(floor) = problem.floor() {
@@ -194,7 +195,8 @@ impl<'a> Equilibrium<'a> {
         let supported = square(&net) - residual;
         let negligible = NEGLIGIBLE_STRAIN * self.problem.body().unit_strain_force();
         let scale = if applied > 0.0 { applied } else { supported };
-        let inertial = self.inertia.map_or(0.0, |term| term.size(positions));
+        let inertial = self.inertia.as_ref();
+        let inertial = inertial.map_or(0.0, |term| term.size(positions));
         Forces {
             free,
             residual: residual.sqrt(),

@@ -1,16 +1,16 @@
-//! Inertia over one time step, as an energy term of the body.
+//! Inertia over one time step, and springs that pull at vertices, as an energy term of the body.
 
-use std::sync::{RwLock, RwLockReadGuard};
+use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
 
-use voxsoft_solid::Term;
 use voxsoft_solid::assembly::Visitor;
-use voxsoft_solid::vector::{Vec3, dot, norm, scale, sub};
+use voxsoft_solid::vector::{Vec3, add, dot, norm, scale, sub};
+use voxsoft_solid::{Grab, Term};
 
 /// Incremental potential of inertia, `κ/2 Σ m |x − y|²`: a step ends at the equilibrium of a body that springs pull to
 /// its force-free position `y`.
 #[derive(Debug)]
 pub(crate) struct Inertia {
-    /// Masses of the vertices, kg.
+    /// Masses of the vertices, kg; zero for those that follow others or are held.
     masses: Vec<f64>,
     goal: RwLock<Goal>,
 }
@@ -21,6 +21,7 @@ struct Goal {
     rate: f64,
     /// Force-free positions `y`, m.
     free: Vec<Vec3>,
+    grabs: Vec<Grab>,
 }
 
 impl Inertia {
@@ -28,13 +29,26 @@ impl Inertia {
         let free = vec![[0.0; 3]; masses.len()];
         Self {
             masses: masses.to_vec(),
-            goal: RwLock::new(Goal { rate: 0.0, free }),
+            goal: RwLock::new(Goal {
+                free,
+                ..Goal::default()
+            }),
         }
     }
 
     /// Sets the `κ` (1/s²) and the `y` (m) of another step.
     pub fn set(&self, rate: f64, free: Vec<Vec3>) {
-        *self.goal.write().expect("no holder of the lock panics") = Goal { rate, free };
+        let mut goal = self.write();
+        (goal.rate, goal.free) = (rate, free);
+    }
+
+    /// Replaces the springs that pull at vertices.
+    pub fn pull(&self, grabs: &[Grab]) {
+        self.write().grabs = grabs.to_vec();
+    }
+
+    fn write(&self) -> RwLockWriteGuard<'_, Goal> {
+        self.goal.write().expect("no holder of the lock panics")
     }
 
     fn read(&self) -> RwLockReadGuard<'_, Goal> {
@@ -71,12 +85,19 @@ impl Term for Inertia {
     }
 
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
-        (0..self.masses.len() as u32).for_each(|vertex| visit(&[vertex]));
+        let masses = self.masses.iter().enumerate();
+        for (vertex, _) in masses.filter(|(_, mass)| **mass > 0.0) {
+            visit(&[vertex as u32]);
+        }
     }
 
     fn energy(&self, positions: &[Vec3]) -> f64 {
         let mut sum = 0.0;
         self.each(positions, |_, k, away| sum += k * dot(away, away) / 2.0);
+        for grab in &self.read().grabs {
+            let away = sub(positions[grab.vertex as usize], grab.anchor);
+            sum += grab.stiffness * dot(away, away) / 2.0;
+        }
         sum
     }
 
@@ -84,13 +105,23 @@ impl Term for Inertia {
         self.each(positions, |vertex, k, away| {
             forces[vertex] = sub(forces[vertex], scale(k, away));
         });
+        for grab in &self.read().grabs {
+            let vertex = grab.vertex as usize;
+            forces[vertex] = add(forces[vertex], grab.force(positions[vertex]));
+        }
     }
 
     fn visit_stiffness(&self, _positions: &[Vec3], visit: Visitor<'_>) {
-        let rate = self.read().rate;
-        for (vertex, mass) in self.masses.iter().enumerate() {
-            let k = rate * mass;
-            visit(&[vertex as u32], &[k, 0.0, 0.0, 0.0, k, 0.0, 0.0, 0.0, k]);
+        let goal = self.read();
+        let mut spring = |vertex: u32, k: f64| {
+            visit(&[vertex], &[k, 0.0, 0.0, 0.0, k, 0.0, 0.0, 0.0, k]);
+        };
+        let masses = self.masses.iter().enumerate();
+        for (vertex, mass) in masses.filter(|(_, mass)| **mass > 0.0) {
+            spring(vertex as u32, goal.rate * mass);
+        }
+        for grab in &goal.grabs {
+            spring(grab.vertex, grab.stiffness);
         }
     }
 }
@@ -109,6 +140,13 @@ mod tests {
         check_term(&inertia, &rest, &positions).unwrap();
         let mut forces = vec![[0.0; 3]; 2];
         inertia.add_forces(&positions, &mut forces);
+        inertia.pull(&[Grab {
+            vertex: 1,
+            stiffness: 3.0,
+            target: [0.4, 0.0, 0.1],
+            anchor: [0.3, 0.0, 0.1],
+        }]);
+        check_term(&inertia, &rest, &positions).unwrap();
         let square: f64 = forces.iter().map(|f| dot(*f, *f)).sum();
         assert!((inertia.size(&positions) - square.sqrt()).abs() < 1e-15);
     }

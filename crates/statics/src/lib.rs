@@ -72,5 +72,5 @@ pub use modes::{Mode, modes};
 pub use path::{Start, solve};
 pub use sensitivity::{Varied, sensitivities};
 pub use settings::{Answer, Control, LinearSolver, PathPoint, Settings};
-pub use transient::Transient;
+pub use transient::{Motion, Transient};
 pub use voxsoft_solid::Status;

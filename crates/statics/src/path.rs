@@ -78,7 +78,7 @@ impl Ending {
 
 /// Load path in progress.
 pub(crate) struct Path<'a, 'b> {
-    pub equilibrium: Equilibrium<'a>,
+    pub equilibrium: Equilibrium,
     pub positions: Vec<Vec3>,
     pub point: Point,
     pub points: Vec<PathPoint>,

@@ -35,7 +35,7 @@ pub(crate) trait Search: Clone {
     /// multipliers before a correction.
     fn find(
         &mut self,
-        equilibrium: &mut Equilibrium<'_>,
+        equilibrium: &mut Equilibrium,
         positions: &mut Vec<Vec3>,
         settings: &Settings,
         round: usize,
@@ -64,7 +64,7 @@ impl Search for AtLoad {
 
     fn find(
         &mut self,
-        equilibrium: &mut Equilibrium<'_>,
+        equilibrium: &mut Equilibrium,
         positions: &mut Vec<Vec3>,
         settings: &Settings,
         round: usize,
@@ -75,7 +75,7 @@ impl Search for AtLoad {
     }
 }
 
-impl Equilibrium<'_> {
+impl Equilibrium {
     /// Finds the equilibrium of a `search` from `positions`, which it changes, with floor and contact settled.
     pub fn settle(
         &mut self,

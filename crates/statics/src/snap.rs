@@ -95,16 +95,21 @@ impl Path<'_, '_> {
             ..
         } = path;
         let memory = equilibrium.problem.memory();
+        let before = self.equilibrium.problem.memory();
         self.equilibrium.iterations += equilibrium.iterations;
         self.equilibrium.back_offs += equilibrium.back_offs;
+        if ending.status() != Status::AtRest {
+            return false;
+        }
         // The old tangent has no pattern for the new contact.
+        self.equilibrium.problem.remember(&memory);
         let problem = &self.equilibrium.problem;
-        let system = System::new(problem, &self.equilibrium.held, self.equilibrium.means);
-        let (Status::AtRest, Ok(system)) = (ending.status(), system) else {
+        let Ok(system) = System::new(problem, &self.equilibrium.held, self.equilibrium.means)
+        else {
+            self.equilibrium.problem.remember(&before);
             return false;
         };
         self.equilibrium.system = system;
-        self.equilibrium.problem.remember(&memory);
         self.positions = positions;
         self.point = point;
         self.points.extend(points.last().copied());

@@ -44,7 +44,7 @@ impl Constraint for Volume {
         }
     }
 
-    fn gradient(&self, equilibrium: &Equilibrium<'_>, positions: &[Vec3]) -> (Vec<f64>, f64) {
+    fn gradient(&self, equilibrium: &Equilibrium, positions: &[Vec3]) -> (Vec<f64>, f64) {
         // The gradient of the weighted volume is the load direction itself, for any factor.
         let one = Point::all(1.0);
         (
@@ -212,7 +212,7 @@ impl Growth {
 
 /// Tests whether an equilibrium is stable under its pressures, and whether it is at a fixed volume: one negative
 /// eigenvalue is allowed then, if the volume falls where the pressures rise.
-fn stability(equilibrium: &mut Equilibrium<'_>, positions: &[Vec3], point: Point) -> (bool, bool) {
+fn stability(equilibrium: &mut Equilibrium, positions: &[Vec3], point: Point) -> (bool, bool) {
     if equilibrium.is_stable(positions, point) {
         return (true, true);
     }

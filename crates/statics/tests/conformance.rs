@@ -114,6 +114,25 @@ fn implicit_steps_keep_the_laws_of_a_stepper() {
     }
 }
 
+#[test]
+fn converged_steps_keep_the_laws_of_a_stepper() {
+    for problem in [
+        cantilever([8, 2, 2], 5e-3, rubber()),
+        cantilever([8, 2, 2], 5e-3, lattice()),
+    ] {
+        let settings = Transient {
+            damping: Damping::Critical,
+            ..Transient::default()
+        };
+        let make = || -> Box<dyn Stepper> {
+            Box::new(
+                voxsoft_statics::Motion::new(problem.clone(), settings).expect("a small tangent"),
+            )
+        };
+        check_stepper(&make, settings.tolerance).unwrap();
+    }
+}
+
 /// Statics with a deliberate fault.
 struct Faulty(Law, AtomicU32);
 

@@ -27,7 +27,6 @@ pub mod relaxation;
 mod sample_problems;
 mod slots;
 mod stiffness;
-mod viscosity;
 
 pub use dynamics::{Dynamics, Live, simulate};
 pub use outcome::Answer;

@@ -167,23 +167,29 @@ def unused_settings(
         Other keys of :data:`USERS`, where they are given.
     """
     kind = kind_of(design, solver)
-    if kind not in STATICS:
-        for index in softening_parts(design):
-            what = f"is known to statics, and the settings mean {_explicit(kind)}"
-            hint = 'write method = "statics", follow a path, or leave mullins out'
-            yield ErrorDetail(f"parts[{index}].material.mullins", what, hint)
+    converges = kind in STATICS or (kind in DYNAMICS and solver.method != "xpbd")
+    for index in softening_parts(design):
+        where = f"parts[{index}].material.mullins"
+        if not converges:
+            what = f"is known to statics and implicit dynamics; here is {_explicit(kind)}"
+            hint = 'write method = "statics" or method = "dynamics", or leave mullins out'
+            yield ErrorDetail(where, what, hint)
+        yield from _only_explicit(solver, kind, "softening")
+        break
     yield from unknown_with_softening(design)
-    if design.refine and kind not in STATICS:
-        what = f"is known to statics, and the settings mean {_explicit(kind)}"
-        hint = 'write method = "statics", or refine = 2 under [solver] in its place'
-        yield ErrorDetail("refine", what, hint)
+    if design.refine:
+        if not converges:
+            what = f"is known to statics and implicit dynamics; here is {_explicit(kind)}"
+            hint = 'write method = "statics", or refine = 2 under [solver] in its place'
+            yield ErrorDetail("refine", what, hint)
+        yield from _only_explicit(solver, kind, "local refinement")
     yield from unknown_with_refinement(design)
     if has_contact(design):
         yield from _without_contact(design, solver, kind)
     elif design.assembled.tendons:
         yield from _without_tendons(solver, kind)
     if has_supplies(design):
-        yield from _without_supplies(design, solver, kind)
+        yield from _without_supplies(solver, kind)
     given = given_settings(solver)
     for name in [*given, *(key for key, value in (extra or {}).items() if value)]:
         users = USERS[name]
@@ -197,22 +203,14 @@ def unused_settings(
         yield ErrorDetail(where, what, f"{instead}, or leave {name} out")
 
 
-def _without_supplies(design: Design, solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
+def _without_supplies(solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
     """Find settings and materials that are not supported with supplies."""
     known = kind is LoadControl or (kind in DYNAMICS and solver.method != "xpbd")
     if not known:
         title = f"{kind.title} by xpbd" if kind in DYNAMICS else kind.title
         what = f"means {title}, and supplies are known to load control and implicit dynamics"
         yield ErrorDetail("solver", what, 'write method = "statics", or method = "dynamics"')
-    for index, part in enumerate(design.parts):
-        material = design.material_of(part)
-        if kind in DYNAMICS and isinstance(material, Hyperelastic) and material.prony:
-            what = "relaxes, and implicit dynamics with supplies knows no viscosity"
-            yield ErrorDetail(f"parts[{index}].material", what, "leave prony out of it")
-    for name in ("substeps", "iterations", "retardation"):
-        if kind in DYNAMICS and getattr(solver, name) is not None:
-            what = "is a setting of explicit dynamics, which knows no supplies"
-            yield ErrorDetail(f"solver.{name}", what, f"leave {name} out")
+    yield from _only_explicit(solver, kind, "supplies")
 
 
 def _without_contact(design: Design, solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
@@ -227,11 +225,6 @@ def _without_contact(design: Design, solver: Solver, kind: type[Method]) -> Iter
                 what = "is free, and past a limit of the load nothing holds what arc length follows"
                 hint = 'fix it or move it, or write control = "load" or control = "volume"'
                 yield ErrorDetail(f"objects[{index}].motion", what, hint)
-    for index, part in enumerate(design.parts):
-        material = design.material_of(part)
-        if kind in DYNAMICS and isinstance(material, Hyperelastic) and material.prony:
-            what = "relaxes, and implicit dynamics with contact knows no viscosity"
-            yield ErrorDetail(f"parts[{index}].material", what, "leave prony out of it")
     yield from _only_explicit(solver, kind, "contact")
 
 
@@ -249,7 +242,7 @@ def _explicit(kind: type[Method]) -> str:
 
 
 def _only_explicit(solver: Solver, kind: type[Method], what: str) -> Iterator[ErrorDetail]:
-    for name in ("substeps", "iterations", "retardation"):
+    for name in ("substeps", "iterations"):
         if kind in DYNAMICS and getattr(solver, name) is not None:
             problem = f"is a setting of explicit dynamics, which knows no {what}"
             yield ErrorDetail(f"solver.{name}", problem, f"leave {name} out")

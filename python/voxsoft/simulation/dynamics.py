@@ -10,13 +10,17 @@ from pydantic import Field
 from voxsoft import _core
 from voxsoft._core import Status
 from voxsoft._memory import memory_limit
+from voxsoft.design import Design
 from voxsoft.design.solver import Count, Damping, Tolerance
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.equilibrium import too_large_a_tangent
+from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.growth import grows_over_time
 from voxsoft.simulation.materials import core_materials
 from voxsoft.simulation.method import Answer, Method, Report, Watch
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.softening import softening_parts
+from voxsoft.simulation.touching import has_contact
 from voxsoft.units import NonNegativeTime, PositiveTime, format_quantity
 
 #: Residual at rest of runs over time.
@@ -24,6 +28,12 @@ DEFAULT_DYNAMIC_TOLERANCE: Final = 1e-4
 DEFAULT_MAX_TIME: Final = 60.0
 DEFAULT_TIME_STEP: Final = 0.01
 DEFAULT_RECORD_INTERVAL: Final = 0.02
+
+
+def converges_each_step(design: Design) -> bool:
+    """Return True if every step of a motion has to converge: states depend on the way to them."""
+    softens = next(softening_parts(design), None) is not None
+    return has_contact(design) or has_supplies(design) or softens or bool(design.refine)
 
 
 class Dynamics(Method):
@@ -50,8 +60,7 @@ class Dynamics(Method):
     def solve(self, setup: Setup, watch: Watch) -> Answer:
         """Move the body from its unloaded state."""
         interval = watch.record_interval or max(DEFAULT_RECORD_INTERVAL, self.time_step or 0.0)
-        implicit = (setup.touching, setup.fluids)
-        if setup.tendons or any(each is not None for each in implicit):
+        if setup.tendons or converges_each_step(setup.design):
             return self._by_implicit_steps(setup, watch, interval)
         problem, rate, ends = self._problem(setup), self.rate, self.ends()
         asked: dict[str, Any] = {
@@ -85,6 +94,7 @@ class Dynamics(Method):
             end_time=ends.get("end_time"),
             max_time=ends.get("max_time", DEFAULT_MAX_TIME),
             tolerance=ends.get("tolerance", DEFAULT_DYNAMIC_TOLERANCE),
+            retardation=self.retardation,
             record_interval=interval,
             memory=memory_limit(),
             sensors=[(place.vertices, place.weights) for place in setup.places.values()],
@@ -98,6 +108,8 @@ class Dynamics(Method):
                 "use larger voxels",
             )
         used = {"method": "implicit", "way": "dynamics", "time_step": step, **ends}
+        if self.retardation:
+            used["retardation"] = self.retardation
         return used | {"damping": "critical" if rate is None else rate}, Report.of(answer)
 
     @staticmethod

@@ -10,11 +10,13 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft import _core
 from voxsoft.simulation.commands import LoadCommands, Value
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.result import Result, Status
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.state import result_at
+from voxsoft.simulation.state import measured_result
+from voxsoft.simulation.touching import ContactState, Pose
 
 Floats = NDArray[np.float64]
 #: ``inverted``: voxels are inside out, so that stress and volume mean nothing there.
@@ -38,6 +40,38 @@ class ChamberState:
     name: str
     volume: float
     pressure: float
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """State of all vertices in the core, those of objects after those of the body.
+
+    Attributes
+    ----------
+    positions, velocities
+        (n, 3), m and m/s; set to be read only.
+    time
+        Time in s.
+    memory
+        All data that depend on the load path.
+    residual
+        Largest force that is not balanced, relative to the load.
+    """
+
+    positions: Floats
+    velocities: Floats
+    time: float
+    memory: _core.Memory
+    residual: float
+
+    def __post_init__(self) -> None:
+        self.positions.flags.writeable = self.velocities.flags.writeable = False
+
+    def measured(self, problem: _core.Problem) -> _core.Answer:
+        """Measure forces, contacts and chambers under the loads of a problem on the body."""
+        return problem.measure(
+            self.positions, self.velocities, self.time, self.memory, self.residual
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -81,6 +115,7 @@ class Observation:
     residual: float
     elastic_energy: float
     kinetic_energy: float
+    _moment: Moment = field(compare=False)
     _setup: Setup = field(compare=False)
     _commands: LoadCommands = field(compare=False)
     _values: Mapping[int, Value] = field(compare=False)
@@ -92,14 +127,24 @@ class Observation:
     def result(self) -> Result:
         """Result of the state under its loads; made on demand."""
         statuses: dict[MotionStatus, Status] = {"at-rest": "ok", "diverged": "diverged"}
-        design = self._commands.under(self._setup.design, self._values)
-        return result_at(
-            Setup(design, self._setup.mesh),
-            self.positions,
+        setup = Setup(self._commands.under(self._setup.design, self._values), self._setup.mesh)
+        return measured_result(
+            setup,
+            self._moment.measured(setup.problem),
             status=statuses.get(self.status, "not-at-rest"),
             message=self.message,
             time=self.time,
         )
+
+    @property
+    def contacts(self) -> tuple[ContactState, ...]:
+        """Contact of each pair of surfaces that may touch; made on demand."""
+        return self.result.contacts
+
+    @property
+    def objects(self) -> Mapping[str, Pose]:
+        """Pose of each object by its name; made on demand."""
+        return self.result.objects
 
     @property
     def metrics(self) -> Mapping[str, float]:

@@ -14,13 +14,10 @@ from voxsoft.design import Design, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.records import Record
 from voxsoft.simulation.commands import LoadCommands, LoadName, Value
+from voxsoft.simulation.dynamics import converges_each_step
 from voxsoft.simulation.fields import fields_of
-from voxsoft.simulation.fluids import refuse_supplies
-from voxsoft.simulation.large_voxels import refuse_refinement
-from voxsoft.simulation.observation import ChamberState, MotionStatus, Observation
+from voxsoft.simulation.observation import ChamberState, Moment, MotionStatus, Observation
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.softening import refuse_softening
-from voxsoft.simulation.touching import refuse_contact
 from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
 
 #: Residual at which a body counts as at rest, relative to the load.
@@ -71,7 +68,9 @@ class Simulator:
     Notes
     -----
     Identical commands give identical bits, for any number of threads and after a :meth:`reset`.
-    The design's `solver` is for :func:`~voxsoft.simulate` and not used here.
+    The design's `solver` is for :func:`~voxsoft.simulate` and not used here. With contact,
+    supplies, softening or local refinement, every step converges by Newton's method, as in
+    :func:`~voxsoft.simulate` over time, which takes longer. Supplies act as the design says.
 
     Examples
     --------
@@ -95,10 +94,6 @@ class Simulator:
         tolerance: float = TOLERANCE,
     ) -> None:
         design = require_design(design, "design").assembled
-        refuse_contact(design, "the simulator")
-        refuse_supplies(design, "the simulator")
-        refuse_softening(design, "the simulator")
-        refuse_refinement(design, "the simulator")
         given: dict[str, Any] = {"damping": damping, "retardation": retardation}
         self._settings = _Settings(time_step=time_step, tolerance=tolerance, **given)
         self._commands = LoadCommands(design)
@@ -156,6 +151,7 @@ class Simulator:
             damping=settings.damping if isinstance(settings.damping, float) else None,
             retardation=settings.retardation,
             tolerance=settings.tolerance,
+            converged=converges_each_step(self.design),
         )
         if self._live.method == "implicit":
             self._live.prefer_step(settings.time_step)
@@ -226,9 +222,16 @@ class Simulator:
 
     def _observe(self, report: _core.Advance | None) -> Observation:
         """Observe the body after an advance; None for its initial state."""
-        mesh, positions = self._setup.mesh, self._live.positions()
-        velocities = self._live.velocities()
-        positions.flags.writeable = velocities.flags.writeable = False
+        mesh = self._setup.mesh
+        moment = Moment(
+            positions=self._live.positions(),
+            velocities=self._live.velocities(),
+            time=report.time if report else 0.0,
+            memory=self._live.memory(),
+            residual=report.residual if report else np.inf,
+        )
+        own = len(mesh.vertices)
+        positions, velocities = moment.positions[:own], moment.velocities[:own]
         moved = positions - mesh.vertices
         status, message = self._judged(report, positions)
         return Observation(
@@ -244,12 +247,13 @@ class Simulator:
             },
             chambers=tuple(
                 ChamberState(cavity.name, float(cavity.volume_at(positions)), pressure)
-                for cavity, pressure in zip(mesh.cavities, self._pressures(), strict=True)
+                for cavity, pressure in zip(mesh.cavities, self._pressures(moment), strict=True)
             ),
             loads=self._commands.named(self._values),
-            residual=report.residual if report else np.inf,
+            residual=moment.residual,
             elastic_energy=report.elastic if report else 0.0,
             kinetic_energy=report.kinetic if report else 0.0,
+            _moment=moment,
             _setup=self._setup,
             _commands=self._commands,
             _values=dict(self._values),
@@ -272,7 +276,7 @@ class Simulator:
             return "at-rest", f"at rest, residual {report.residual:.2g} of the load"
         return "moving", "moving"
 
-    def _pressures(self) -> list[float]:
+    def _pressures(self, moment: Moment) -> list[float]:
         """Sum the gauge pressures that act in each cavity."""
         pressures = [0.0] * len(self._setup.mesh.cavities)
         for index, cavities in self._pressed:
@@ -280,4 +284,9 @@ class Simulator:
             assert isinstance(value, float)
             for cavity in cavities:
                 pressures[cavity] += value
+        if (fluids := self._setup.fluids) is not None:
+            answer = moment.measured(self._setup.problem)
+            for supplied in fluids.states(answer.chambers):
+                for cavity in supplied.cavities:
+                    pressures[cavity] = supplied.pressure
         return pressures

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft import _core
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.method import Report
 from voxsoft.simulation.result import Result, Status
@@ -62,7 +63,14 @@ def result_at(
     if not np.isfinite(positions).all():
         raise SimulationError("state", "holds positions that are not finite", "go back before it")
     refuse_contact(setup.design, "states that no solver ended in")
-    used = {"method": "none", "way": "as it stands"}
     answer = setup.problem.relax(tolerance=_ANY, max_steps=0, start=positions)
+    return measured_result(setup, answer, status=status, message=message, time=time)
+
+
+def measured_result(
+    setup: Setup, answer: _core.Answer, *, status: Status, message: str, time: float
+) -> Result:
+    """Wrap the core's measures of a state, in which no solver ended, in a :class:`Result`."""
+    used = {"method": "none", "way": "as it stands"}
     measured = result_of(setup, used, Report.of(answer), seconds=0.0)
     return replace(measured, status=status, message=message, time=time)

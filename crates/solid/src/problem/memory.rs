@@ -1,6 +1,7 @@
 //! Memory of a problem: its data that depend on the load path.
 
 use super::Problem;
+use crate::brick::Within;
 use crate::fluid::FluidMemory;
 use crate::loads::{TendonMemory, Vertices};
 use crate::vector::Vec3;
@@ -77,6 +78,12 @@ impl Problem {
         if self.body.growth_end() > 0.0 {
             self.body_mut().begin(time);
         }
+    }
+
+    /// Sets the response of hyperelastic voxels within a time step, with its viscous stress; `None` for the elastic
+    /// response.
+    pub fn set_within(&mut self, within: Option<Vec<Within>>) {
+        self.body_mut().set_within(within);
     }
 
     /// Clears the memory of tendons and of materials that soften.

@@ -22,6 +22,8 @@ pub struct Bricks {
     pub(crate) ties: Ties,
     /// Set if the material of any of them softens.
     softens: bool,
+    /// Response within a time step, with its viscous stress; `None` for the elastic response.
+    within: Option<Vec<Within>>,
 }
 
 impl Bricks {
@@ -40,7 +42,25 @@ impl Bricks {
             bricks,
             materials,
             ties,
+            within: None,
         }
+    }
+
+    /// Sets the response of every voxel within a time step; `None` for the elastic response.
+    pub(crate) fn set_within(&mut self, within: Option<Vec<Within>>) {
+        self.within = within;
+    }
+
+    /// Tests whether the response is elastic, not that within a time step.
+    pub(crate) fn is_elastic(&self) -> bool {
+        self.within.is_none()
+    }
+
+    /// The elastic energy in J, without a viscous potential.
+    pub(crate) fn elastic_energy(&self, positions: &[Vec3]) -> f64 {
+        let positions = &*self.ties.seen(positions);
+        let energy = |brick: &Brick| brick.energy(self.material_of(brick), positions);
+        self.bricks.iter().map(energy).sum()
     }
 
     /// Tests whether any voxel softens.
@@ -169,6 +189,11 @@ impl Bricks {
         }
     }
 
+    /// Adds the elastic forces in N, without a viscous stress.
+    pub(crate) fn add_elastic_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
+        self.add_forces_of(positions, None, forces);
+    }
+
     fn add_forces_of(&self, positions: &[Vec3], carried: Option<&[Carried]>, forces: &mut [Vec3]) {
         let positions = &*self.ties.seen(positions);
         groups_in_order(
@@ -286,13 +311,22 @@ impl Term for Bricks {
     }
 
     fn energy(&self, positions: &[Vec3]) -> f64 {
-        let positions = &*self.ties.seen(positions);
-        let energy = |brick: &Brick| brick.energy(self.material_of(brick), positions);
-        self.bricks.iter().map(energy).sum()
+        let Some(within) = &self.within else {
+            return self.elastic_energy(positions);
+        };
+        let mut forces = vec![[0.0; 3]; positions.len()];
+        let mut pressures = vec![0.0; self.bricks.len()];
+        self.respond(positions, within, &mut forces, &mut pressures)
+            .1
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        self.add_forces_of(positions, None, forces);
+        if let Some(within) = &self.within {
+            let mut pressures = vec![0.0; self.bricks.len()];
+            self.respond(positions, within, forces, &mut pressures);
+            return;
+        }
+        self.add_elastic_forces(positions, forces);
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
@@ -304,11 +338,28 @@ impl Term for Bricks {
     }
 
     fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+        if let Some(within) = &self.within {
+            self.visit_tangent_within(
+                positions,
+                within,
+                Tangent::Exact,
+                &mut |vertices, matrix| {
+                    visit(Elements {
+                        width: vertices.len(),
+                        vertices,
+                        matrices: matrix,
+                    });
+                },
+            );
+            return;
+        }
         self.visit_elements_of(positions, None, visit);
     }
 
     fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
-        Some(Strain::Voxels(self.carried(positions, None, moves)))
+        // A viscous stress is that of the positions themselves.
+        let elastic = self.within.is_none();
+        elastic.then(|| Strain::Voxels(self.carried(positions, None, moves)))
     }
 
     fn add_predicted_forces(&self, strain: &Strain, positions: &[Vec3], forces: &mut [Vec3]) {

@@ -26,13 +26,12 @@ pub(crate) mod scheme;
 mod step;
 mod stepper;
 mod turns;
-mod viscosity;
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::brick::Tangent;
 use voxsoft_solid::hands::{Hands, shortest_edge};
 use voxsoft_solid::vector::{Vec3, add, axpy};
-use voxsoft_solid::{Ask, Damping, LiveStatus, Problem, State};
+use voxsoft_solid::{Ask, Damping, LiveStatus, Problem, State, Viscosity};
 
 use self::contact::{DEEP_ROUNDS, FACING_ROUNDS};
 use self::lagged::Lagged;
@@ -41,8 +40,7 @@ use self::objective::{Goal, Objective, Value};
 use self::pressures::Pressures;
 use self::quasi_newton::Memory;
 use self::scheme::Stage;
-use self::stepper::STEPS;
-use self::viscosity::Viscosity;
+pub(crate) use self::stepper::STEPS;
 use crate::settings::LinearSolver;
 use crate::system::{FactorError, Means};
 
@@ -67,7 +65,7 @@ const INERTIA_RANGE: f64 = 1.5;
 /// real time, a hand is faster than life, and steps in which it drags a vertex across several voxels cost three times
 /// as many moves, which slows it further. At 240 the PneuNet template stayed at 0.16 of real time under a hand that
 /// turns once a second; at 60 it runs at 0.47.
-const ANCHOR_SPEED: f64 = 60.0;
+pub(crate) const ANCHOR_SPEED: f64 = 60.0;
 /// Most halvings of a step before a run counts as diverged.
 const MAX_BACK_OFFS: u32 = 10;
 /// Successful steps after which a halved one is doubled again.
@@ -197,7 +195,7 @@ impl Implicit {
             lagged: None,
             memory: Memory::default(),
             pressures: Pressures::new(problem.body()),
-            viscosity: Viscosity::new(problem.body(), settings.retardation),
+            viscosity: Viscosity::of_viscous(problem.body(), settings.retardation),
             before: None,
             stage: Stage::First,
             value: Value::default(),

@@ -9,7 +9,7 @@ use super::pressures::Pressures;
 use super::{Failure, Implicit};
 
 /// Shortest and longest step allowed, in s.
-pub(super) const STEPS: [f64; 2] = [1e-6, 0.1];
+pub(crate) const STEPS: [f64; 2] = [1e-6, 0.1];
 
 impl Stepper for Implicit {
     fn method(&self) -> Method {

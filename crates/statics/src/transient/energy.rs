@@ -5,7 +5,7 @@ use voxsoft_solid::hands::loads_end;
 use voxsoft_solid::vector::{Vec3, add, dot, scale, sub};
 use voxsoft_solid::{Problem, State, Term, elastic};
 
-use super::Run;
+use super::Motion;
 
 /// Tolerance of energy gains, relative to the energy converted in a step: the work of loads that follow the body is
 /// known to second order only.
@@ -21,6 +21,8 @@ const ROUNDING: f64 = 1e-9;
 pub(super) struct Now {
     /// Internal forces: all but loads, N.
     pub internal: Vec<Vec3>,
+    /// Viscous part of these, N; empty without viscous stress.
+    pub viscous: Vec<Vec3>,
     /// Loads, N.
     pub external: Vec<Vec3>,
     /// Reactions of supports, inertia included, N.
@@ -40,18 +42,23 @@ impl Now {
     }
 }
 
-impl Run<'_> {
+impl Motion {
     pub(super) fn look_at(&self, state: &State) -> Now {
         let (problem, positions) = (&self.problem, &state.positions);
         let mut internal = vec![[0.0; 3]; positions.len()];
         elastic::add_forces(problem.body(), positions, &mut internal);
         let mut external = vec![[0.0; 3]; positions.len()];
         problem.add_loads(positions, state.time, &mut external);
-        let stored = elastic::energy(problem.body(), positions);
+        for (_, grab) in self.hands.grabs() {
+            let vertex = grab.vertex as usize;
+            external[vertex] = add(external[vertex], grab.force(positions[vertex]));
+        }
+        let stored = elastic::stored_energy(problem.body(), positions);
         let touching = problem
             .contact()
             .map_or(0.0, |contact| contact.energy(positions));
         let mut now = Now {
+            viscous: self.viscous_part(positions, &internal),
             internal,
             external,
             reactions: Vec::new(),
@@ -60,6 +67,17 @@ impl Run<'_> {
         };
         now.take_reactions(problem, std::iter::repeat_n([0.0; 3], positions.len()));
         now
+    }
+
+    /// Viscous part of internal forces (N) at `positions`; empty without viscous stress.
+    fn viscous_part(&self, positions: &[Vec3], internal: &[Vec3]) -> Vec<Vec3> {
+        if self.viscosity.is_none() {
+            return Vec::new();
+        }
+        let mut elastic = vec![[0.0; 3]; positions.len()];
+        elastic::add_stored_forces(self.problem.body(), positions, &mut elastic);
+        let pairs = internal.iter().zip(&elastic);
+        pairs.map(|(all, elastic)| sub(*all, *elastic)).collect()
     }
 
     /// Tests whether a state has more energy than the last one had and received. A second stage returns the energy that
@@ -83,6 +101,11 @@ impl Run<'_> {
             }
             let brake = self.damping_rate * self.problem.body().masses()[vertex];
             work -= brake * dot(next.velocities[vertex], way);
+        }
+        // Branches of Maxwell elements return some of the energy that they take.
+        for (vertex, (now, old)) in found.viscous.iter().zip(&then.viscous).enumerate() {
+            let way = sub(next.positions[vertex], from.positions[vertex]);
+            work += dot(add(*now, *old), way) / 2.0;
         }
         work += self.work_of_growth(from, next.time);
         let (kinetic, stored) = (found.kinetic - then.kinetic, found.elastic - then.elastic);
@@ -132,6 +155,11 @@ impl Run<'_> {
             stiffness += dot(way, add(internal, external));
             inertia += mass * dot(way, way);
         }
+        for (_, grab) in self.hands.grabs() {
+            let vertex = grab.vertex as usize;
+            let way = sub(next.positions[vertex], self.state.positions[vertex]);
+            stiffness += grab.stiffness * dot(way, way);
+        }
         if inertia > 0.0 {
             (stiffness / inertia).max(0.0).sqrt()
         } else {
@@ -147,12 +175,25 @@ impl Run<'_> {
         balance_of_forces(&self.problem, &self.state.positions, external, net).relative_residual()
     }
 
+    /// Relative residual without the viscous stress, given the one with it.
+    fn relaxed_residual(&self, residual: f64) -> f64 {
+        if self.viscosity.is_none() {
+            return residual;
+        }
+        let mut net = self.now.external.clone();
+        elastic::add_stored_forces(self.problem.body(), &self.state.positions, &mut net);
+        let external = &self.now.external;
+        balance_of_forces(&self.problem, &self.state.positions, external, net).relative_residual()
+    }
+
     pub(super) fn is_at_rest(&self, residual: f64) -> bool {
         let tolerance = self.settings.tolerance;
         let fluid = self.problem.fluid();
-        self.state.time >= loads_end(&self.problem)
+        self.hands.arrived()
+            && self.state.time >= loads_end(&self.problem)
             && fluid.is_none_or(|fluid| fluid.is_at_rest(tolerance))
             && residual <= tolerance
+            && self.relaxed_residual(residual) <= tolerance
             && is_still_with(&self.problem, self.now.elastic, self.now.kinetic, tolerance)
     }
 }

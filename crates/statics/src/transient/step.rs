@@ -3,10 +3,12 @@
 use voxsoft_solid::Observer;
 use voxsoft_solid::State;
 use voxsoft_solid::breakdown::Breakdown;
+use voxsoft_solid::brick::Within;
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
 
 use super::energy::Now;
-use super::{Run, Stop};
+use super::motion::{Motion, Stop};
+use crate::implicit::ANCHOR_SPEED;
 use crate::implicit::scheme::Start;
 use crate::point::Point;
 use crate::settings::Settings;
@@ -17,7 +19,7 @@ const STEP_TOLERANCE: f64 = 1e-7;
 /// Negligible force, as the relative change of the momentum by it in a step.
 const NEGLIGIBLE_CHANGE: f64 = 1e-3;
 
-impl Run<'_> {
+impl Motion {
     /// Finds the state at the end of a step.
     pub(super) fn find(
         &mut self,
@@ -45,9 +47,15 @@ impl Run<'_> {
         let coast = |(x, v): (&Vec3, &Vec3)| add(*x, scale(1.0 / braked, *v));
         let free = start.positions.iter().zip(&start.velocities).map(coast);
         self.inertia.set(start.rate * braked, free.collect());
+        if !self.hands.grabs().is_empty() {
+            let mut hands = self.hands.clone();
+            let travel = ANCHOR_SPEED * step * self.shortest_edge;
+            self.inertia.pull(&hands.follow(travel));
+        }
         self.equilibrium.negligible = NEGLIGIBLE_CHANGE * self.momentum() / step;
         let time = self.state.time + step;
         self.begin(time);
+        self.begin_viscosity(step);
         for problem in [&mut self.problem, &mut self.equilibrium.problem] {
             if let Some(fluid) = problem.fluid_mut() {
                 fluid.begin(time, start.rate, start.weights);
@@ -56,7 +64,21 @@ impl Run<'_> {
         let point = Point::at(time);
         let mut positions = self.best_prediction(step, before, point)?;
         self.settle(&mut positions, point, observer)?;
+        self.problem.body().ties().follow(&mut positions);
         Ok(positions)
+    }
+
+    /// Sets the viscous stress of hyperelastic voxels over a step from the state.
+    fn begin_viscosity(&mut self, step: f64) {
+        let Some(viscosity) = &mut self.viscosity else {
+            return;
+        };
+        let body = self.problem.body();
+        let materials = body.bricks().iter().map(|brick| body.material_of(brick));
+        let mut within: Vec<Within> = materials.map(Within::elastic).collect();
+        viscosity.start(body, &self.state.positions, step, &mut within);
+        self.equilibrium.problem.set_within(Some(within.clone()));
+        self.problem.set_within(Some(within));
     }
 
     /// State at the end of a step, with its forces and energies.

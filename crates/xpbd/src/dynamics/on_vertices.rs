@@ -2,13 +2,12 @@
 
 use voxsoft_solid::balance::{Balance, balance_of_forces};
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
-use voxsoft_solid::{Body, Problem, State, elastic};
+use voxsoft_solid::{Body, Problem, State, Viscosity, elastic};
 
 use super::grab::{Held, add_pulls};
 use super::membrane_inertia::MembraneInertia;
 use super::{Arrays, Damping, Subject};
 use crate::damping;
-use crate::viscosity::Viscosity;
 
 /// State and work arrays of a run; nothing is allocated in a substep.
 pub(super) struct OnVertices {
@@ -240,7 +239,7 @@ impl OnVertices {
 impl Arrays for OnVertices {
     fn load(&mut self, state: &State) {
         self.state.clone_from(state);
-        self.viscosity.restart();
+        self.viscosity.jump();
         self.substep_before = 0.0;
     }
 

@@ -1,0 +1,211 @@
+"""A body that is driven step by step while it touches, holds gas, softens, or has large voxels."""
+
+import numpy as np
+import pytest
+
+import voxsoft as vs
+from voxsoft.design import Object, Refinement, VolumeSupply
+from voxsoft.materials import Mullins
+
+SIDE = 10e-3
+CUBE = vs.Part(
+    shape=vs.Box(size=(SIDE, SIDE, SIDE)),
+    material=vs.NeoHookean(young="60 kPa", poisson=0.45, density=1070.0),
+)
+#: A cantilever of four voxels, for designs that change it.
+BEAM = vs.Design(
+    name="beam",
+    voxel_size="5 mm",
+    parts=[
+        vs.Part(
+            name="soft",
+            shape=vs.Box(size=("40 mm", SIDE, SIDE)),
+            material=vs.NeoHookean(young="60 kPa", poisson=0.45, density=1070.0),
+        )
+    ],
+    clamps=[vs.Clamp(name="wall", region=vs.Region(x=(0, 0)))],
+    loads=[
+        vs.Force(region=vs.Region(x=("40 mm", "40 mm")), value=(0, 0, "20 mN")),
+    ],
+    probes={"tip": vs.Probe(x=("40 mm", "40 mm"))},
+)
+#: A plate 1 mm above the free end of the beam.
+PLATE = Object(
+    name="plate", shape=vs.Box(size=("15 mm", "14 mm", "5 mm"), corner=("30 mm", "-2 mm", "11 mm"))
+)
+#: A free block on a floor.
+FREE = vs.Design(
+    name="table",
+    voxel_size="5 mm",
+    parts=[CUBE],
+    clamps=[vs.Clamp(region=vs.Region(z=(0, 0)))],
+    objects=[
+        Object(
+            name="block",
+            shape=vs.Box(size=("6 mm", "6 mm", "4 mm"), corner=("2 mm", "2 mm", "10.5 mm")),
+            motion="free",
+            mass="2 g",
+        )
+    ],
+    loads=[vs.Gravity()],
+)
+SOFT = vs.NeoHookean(
+    young="60 kPa", poisson=0.45, density=1070.0, mullins=Mullins(r=1.5, m="100 Pa", beta=0.1)
+)
+DESIGNS = {
+    "contact": BEAM.replace(objects=[PLATE]),
+    "softening": BEAM.replace(parts=[BEAM.parts[0].replace(material=SOFT)]),
+    "refine": BEAM.replace(refine=[Refinement(region=vs.Region(x=(0, "10 mm")))]),
+}
+
+
+def run_to_rest(simulator, loads, most=300):
+    seen = simulator.step(loads)
+    for _ in range(most):
+        if seen.status != "moving":
+            break
+        seen = simulator.step()
+    assert seen.status == "at-rest", seen.message
+    return seen
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_identical_commands_give_identical_bits(name):
+    def drive(simulator):
+        seen = [simulator.step({"force": (0.0, 0.0, 0.02 * (step % 3))}) for step in range(6)]
+        return [(each.positions.tobytes(), each.velocities.tobytes()) for each in seen]
+
+    simulator = vs.Simulator(DESIGNS[name])
+    first = drive(simulator)
+    simulator.reset()
+    assert drive(simulator) == first
+    assert drive(vs.Simulator(DESIGNS[name])) == first
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_the_rest_under_commands_is_the_equilibrium_of_statics(name):
+    design = DESIGNS[name]
+    seen = run_to_rest(vs.Simulator(design), {"force": (0.0, 0.0, 0.02)})
+    expected = vs.simulate(design, method="statics")
+    assert expected.status == "ok"
+    # Both residuals are below 1e-4 of the load; a slender body turns one into ten times the motion.
+    moved = np.abs(expected.displacements).max()
+    off = np.abs(seen.positions - expected.positions).max()
+    assert off < 2e-3 * moved
+    if name == "contact":
+        [contact], [there] = seen.contacts, expected.contacts
+        assert contact.force == pytest.approx(there.force, abs=5e-3 * abs(there.force[2]))
+        assert contact.force[2] < -1e-3
+
+
+def test_a_free_object_lies_where_statics_finds_it_and_presses_with_its_weight():
+    seen = run_to_rest(vs.Simulator(FREE), {})
+    [contact] = seen.contacts
+    assert abs(contact.force[2]) == pytest.approx(2e-3 * 9.81, rel=1e-3)
+    expected = vs.simulate(FREE).objects["block"].position
+    # A clearance of contact of 1e-4 voxels, twice.
+    assert seen.objects["block"].position == pytest.approx(expected, abs=1e-6)
+    assert len(seen.positions) == len(seen.result.positions)
+
+
+def test_a_syringe_in_motion_reaches_the_pressure_of_its_equilibrium():
+    design = vs.Design(
+        name="syringe",
+        voxel_size="5 mm",
+        parts=[
+            vs.Part(
+                shape=vs.Box(size=("20 mm", "20 mm", "20 mm"))
+                - vs.Box(size=(SIDE, SIDE, SIDE), corner=("5 mm", "5 mm", "5 mm")),
+                material=vs.NeoHookean(young="60 kPa", poisson=0.45, density=1070.0),
+            )
+        ],
+        clamps=[vs.Clamp(region=vs.Region(z=(0, 0)))],
+        chambers={"c": vs.Chamber(point=("10 mm", "10 mm", "10 mm"))},
+        supplies=[VolumeSupply(chamber="c", value="0.3 mL")],
+    )
+    seen = run_to_rest(vs.Simulator(design), {})
+    expected = vs.simulate(design)
+    [chamber], [supply] = seen.chambers, expected.supplies
+    assert supply.pressure > 1e3
+    assert chamber.pressure == pytest.approx(supply.pressure, rel=1e-3)
+    assert chamber.volume == pytest.approx(supply.volume, rel=1e-3)
+    assert seen.result.supplies[0].pressure == chamber.pressure
+
+
+def test_rubber_that_was_pulled_farther_rests_where_the_path_there_and_back_ends():
+    simulator = vs.Simulator(DESIGNS["softening"])
+    first = run_to_rest(simulator, {"force": (0.0, 0.0, 0.01)}).probes["tip"][2]
+    run_to_rest(simulator, {"force": (0.0, 0.0, 0.04)})
+    again = run_to_rest(simulator, {"force": (0.0, 0.0, 0.01)})
+    assert again.probes["tip"][2] > 1.02 * first
+    path = vs.follow(DESIGNS["softening"], "loads[0].value.2", [0.01, 0.04, 0.01])
+    back = path.results[-1]
+    # Motion overshoots by less than a critically damped one, and steps of either are not the same.
+    assert again.probes["tip"][2] == pytest.approx(back.probes["tip"][2], rel=5e-3)
+    assert again.result.peaks == pytest.approx(back.peaks, rel=2e-2, abs=1e-2 * back.peaks.max())
+
+
+def prony(design):
+    """The design with rubber that relaxes by a third, over a tenth of a second."""
+    relaxing = vs.NeoHookean(
+        young="60 kPa", poisson=0.45, density=1070.0, prony=[{"g": 0.3, "tau": "0.1 s"}]
+    )
+    return design.replace(parts=[part.replace(material=relaxing) for part in design.parts])
+
+
+def test_rubber_that_relaxes_rests_where_elastic_rubber_does_and_gets_there_later():
+    def heights(design):
+        simulator = vs.Simulator(design, damping=0.0)
+        loads = {"force": (0.0, 0.0, 0.005)}
+        return np.array([simulator.step(loads).probes["tip"][2] for _ in range(15)])
+
+    refined = DESIGNS["refine"]
+    elastic, relaxing = heights(refined), heights(prony(refined))
+    # The branch adds to the stiffness at first, and takes energy out of the vibration.
+    assert relaxing.max() < 0.99 * elastic.max()
+    assert np.ptp(relaxing[-5:]) < 0.8 * np.ptp(elastic[-5:])
+    seen = run_to_rest(vs.Simulator(prony(refined)), {"force": (0.0, 0.0, 0.02)})
+    expected = vs.simulate(refined, method="statics").probes["tip"][2]
+    assert seen.probes["tip"][2] == pytest.approx(expected, rel=5e-3)
+
+
+@pytest.mark.parametrize("kind", ["relaxing", "retarded"])
+def test_viscous_vibrations_with_contact_are_those_of_explicit_steps(kind):
+    # An object far away makes every step converge, and touches nothing.
+    away = Object(name="away", shape=vs.Box(size=("10 mm",) * 3, corner=("0 mm", "0 mm", "90 mm")))
+    force = BEAM.loads[0].replace(value=(0, 0, "2 mN"))
+    elastic = BEAM.replace(loads=[force])
+    design = prony(elastic) if kind == "relaxing" else elastic
+    settings = {"end_time": 0.15, "damping": 0.0, "record_interval": "4 ms"}
+    viscous = settings | ({} if kind == "relaxing" else {"retardation": "5 ms"})
+
+    def swing(design, **settings):
+        return vs.simulate(design, **settings).recording.probes["tip"][:, 2]
+
+    explicit = swing(design, method="xpbd", **viscous)
+    implicit = {"method": "dynamics", "time_step": "2 ms"}
+    found = swing(design.replace(objects=[away]), **implicit, **viscous)
+    # Steps of 2 ms of a period of 40 ms are off by this much without any viscosity.
+    plain = swing(elastic, method="xpbd", **settings)
+    error = np.abs(swing(elastic.replace(objects=[away]), **implicit, **settings) - plain).max()
+    assert found == pytest.approx(explicit, abs=error)
+    assert np.ptp(found[-12:]) < 0.9 * np.ptp(plain[-12:])
+
+
+@pytest.mark.parametrize("name", ["softening", "refine"])
+def test_slow_motion_follows_the_path_of_equilibria(name):
+    times, factors = ("0 s", "1 s", "2 s"), (0, 1, 0.25)
+    force = (
+        DESIGNS[name]
+        .loads[0]
+        .replace(value=(0, 0, "40 mN"), history={"time": times, "factor": factors})
+    )
+    design = DESIGNS[name].replace(loads=[force])
+    path = vs.follow(design, "time", ["0.5 s", "1 s", "1.5 s", "2 s"])
+    moved = vs.simulate(design, method="dynamics", end_time="2 s", damping="20 1/s")
+    expected = [found.probes["tip"][2] for found in path.results]
+    record = moved.recording
+    seen = np.interp([0.5, 1.0, 1.5, 2.0], record.times, record.probes["tip"][:, 2])
+    # Viscous drag of 20/s lags behind by 20/ω² = 0.02 s of a way that takes 1 s.
+    assert seen == pytest.approx(expected, abs=0.03 * max(expected))
+    assert moved.positions == pytest.approx(path.results[-1].positions, abs=0.03 * max(expected))
