@@ -23,7 +23,6 @@ from voxsoft.simulation.equilibrium import (
     VolumeControl,
 )
 from voxsoft.simulation.fluids import has_supplies
-from voxsoft.simulation.large_voxels import unknown_with_refinement
 from voxsoft.simulation.method import Method
 from voxsoft.simulation.rest import QuickestRest, Relaxation
 from voxsoft.simulation.softening import softening_parts, unknown_with_softening
@@ -124,7 +123,7 @@ def kind_of(design: Design, solver: Solver) -> type[Method]:
     if dynamic:
         return timed
     materials = [design.material_of(part) for part in design.parts]
-    if design.layers or any(isinstance(material, Rigid) for material in materials):
+    if design.layers or design.refine or any(isinstance(m, Rigid) for m in materials):
         return LoadControl
     # A body that only lies on a floor may slide: Newton's method needs a unique equilibrium.
     is_held = bool(design.clamps) or len(design.symmetry) == 3
@@ -177,7 +176,6 @@ def unused_settings(
         what = f"is known to statics, and the settings mean {_explicit(kind)}"
         hint = 'write method = "statics", or refine = 2 under [solver] in its place'
         yield ErrorDetail("refine", what, hint)
-    yield from unknown_with_refinement(design)
     if has_contact(design):
         yield from _without_contact(design, solver, kind)
     elif design.assembled.tendons:

@@ -227,6 +227,10 @@ class SectorParts:
         found = sector.numbers[vertices[inside]].astype(np.uint32)
         self.kept.forces(found, mine[inside], history)
 
+    def coarse(self, groups: Indices) -> None:
+        """Take large voxels, each a group of eight of the whole that are in the sector."""
+        self.kept.coarse(np.searchsorted(self._sector.voxels, groups).astype(np.uint32))
+
     def floor(self, z: float) -> None:
         """Take a floor."""
         self._check_along_planes(np.array([0.0, 0.0, 1.0]), "it")
