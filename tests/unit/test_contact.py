@@ -199,7 +199,7 @@ def test_what_knows_no_contact_says_so(result):
     with pytest.raises(DesignError, match="objects: is not known to the simulator yet"):
         vs.Simulator(pressed())
     lattice = vs.Part(shape=BLOCK, material=vs.Lattice(edge=25 * kPa, bulk=100 * kPa))
-    with pytest.raises(DesignError, match="objects: is not known to exported pages of the lattice"):
+    with pytest.raises(DesignError, match="objects: is not known to exported pages"):
         page_of_body(StudioBody.of(pressed(parts=[lattice]), 1, 1))
 
 

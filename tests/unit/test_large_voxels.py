@@ -5,8 +5,10 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.design import Design, Refinement
-from voxsoft.errors import DesignError, SimulationError
+from voxsoft.errors import DesignError
 from voxsoft.simulation import Setup
+from voxsoft.studio.body import StudioBody
+from voxsoft.studio.html import page_of
 from voxsoft.units import kPa, mm
 
 RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.49, density=1070.0)
@@ -223,11 +225,13 @@ def test_small_voxels_of_one_body_of_two():
     assert 1e-5 < off < 2e-3
 
 
-def test_who_does_not_know_it_says_so():
-    design = bar([x(0, 0)])
-    with pytest.raises(DesignError, match="refine: local refinement is not known to the simulator"):
-        vs.Simulator(design)
-    with pytest.raises(SimulationError, match="refine: is known to statics"):
-        vs.simulate(design, end_time=1.0)
-    with pytest.raises(DesignError, match="not known to exported pages"):
-        design.show()
+def test_uses_of_one_size_take_small_voxels_everywhere():
+    design = bar([x(0, 0)], probes={"end": {"x": ["40 mm", "40 mm"]}})
+    every = design.replace(refine=(), solver={"refine": 2})
+    assert len(vs.Simulator(design).state.positions) == len(vs.Simulator(every).state.positions)
+    for settings in ({"end_time": 0.02}, {"method": "relaxation"}):
+        found, expected = vs.simulate(design, **settings), vs.simulate(every, **settings)
+        assert np.array_equal(found.positions, expected.positions)
+        assert found.probes["end"][2] < 0.0
+    assert page_of(design).text.count("<html") == 1
+    assert StudioBody.of(design, 0, 0).not_live == ""

@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 
 from voxsoft.design import Design, Probe
 from voxsoft.design.attachment import attachments_of
+from voxsoft.design.refinement import TIMES_AS_SMALL
 from voxsoft.errors import DesignError
 from voxsoft.materials import Hyperelastic, Rigid
+from voxsoft.simulation.features import has_feature
 from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.growth import parts_of
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.sector import Sector
-from voxsoft.simulation.softening import softening_parts
 from voxsoft.simulation.touching import has_contact
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def large_voxels(setup: Setup) -> NDArray[np.uint32]:
         A refinement that catches nothing.
     """
     design, mesh = setup.design, setup.mesh
-    if next(softening_parts(design), None) is not None:
+    if has_feature(design, "softening"):
         return np.zeros((0, 8), np.uint32)
     count = len(mesh.tets) // 5
     corners, parts = mesh.voxel_corners(np.arange(count)), mesh.tet_part[::5]
@@ -213,15 +214,17 @@ def _held_in_part(held: NDArray[np.uint32], nodes: NDArray[np.int32], vertices: 
     return found
 
 
-def refuse_refinement(design: Design, who: str) -> None:
-    """Raise an error where voxels are refined locally, which `who` does not support.
+def evenly_small(design: Design, refine: int) -> Design:
+    """Return a design with small voxels everywhere, for uses that take voxels of one size.
 
-    Raises
-    ------
-    DesignError
-        The design has local refinement.
+    Parameters
+    ----------
+    design
+        The design; itself without local refinement.
+    refine
+        Number of parts that its voxels are cut into along each axis, where they stay large.
     """
-    if design.refine:
-        what = f"local refinement is not known to {who} yet"
-        hint = "solve the design by statics, or write refine = 2 under [solver]"
-        raise DesignError("refine", what, hint)
+    if not design.refine:
+        return design
+    solver = design.solver.replace(refine=TIMES_AS_SMALL * refine)
+    return design.replace(refine=(), solver=solver)

@@ -12,6 +12,7 @@ from voxsoft import _core
 from voxsoft.design.symmetry import Symmetry
 from voxsoft.errors import DesignError
 from voxsoft.geometry import rotation_matrix
+from voxsoft.simulation.compatibility import REASONS
 from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.touching import CoreHistory
 
@@ -238,11 +239,11 @@ class SectorParts:
 
     def attach(self, _term: str, _elements: str) -> None:
         """Refuse an attachment of the body."""
-        self._refuse("is not known to planes of symmetry yet", "leave it out, or the planes")
+        self._refuse(*REASONS["springs and the like", "symmetry"])
 
     def tendon(self, _tendon: str, _history: CoreHistory) -> None:
         """Refuse a tendon."""
-        self._refuse("is not known to planes of symmetry yet", "leave it out, or the planes")
+        self._refuse(*REASONS["tendons", "symmetry"])
 
     def _check_along_planes(self, vector: Floats, what: str) -> None:
         for plane in self._sector.planes:

@@ -34,6 +34,7 @@ from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.chambers import check_chambers, with_chamber_names
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.dielectrics import ResolvedDielectric, dielectrics_of
 from voxsoft.simulation.fiber_symmetry import check_fiber_symmetry
 from voxsoft.simulation.fluids import Fluids, has_supplies
@@ -224,28 +225,17 @@ class Setup:
         Raises
         ------
         DesignError
-            The voxels or the fibers are not symmetric.
+            The voxels or the fibers are not symmetric, or the design has a feature that is not
+            known with planes of symmetry.
         """
         planes = self.design.symmetry
-        if planes and has_supplies(self.design):
-            what = "is not known together with supplies yet"
-            raise DesignError("symmetry", what, "leave the planes out, or give pressure loads")
         if not planes:
             return None
-        if self.mesh.bodies:
-            self._refuse_with_bodies()
+        refuse(self.design, "symmetry")
         found = Sector.of(planes, self.mesh, kinds_of(self.design.parts))
         check_fiber_symmetry(self.design)
         check_profile_symmetry(self.design, self.mesh)
         return found
-
-    def _refuse_with_bodies(self) -> None:
-        """Refuse fibers and activations of several bodies, whose images are not supported."""
-        fibers = any(part.fibers for part in self.design.parts)
-        for what, there in (("fibers", fibers), ("activations", bool(self.design.activations))):
-            if there:
-                message = f"is not known together with several bodies that have {what} yet"
-                raise DesignError("symmetry", message, f"leave the planes out, or the {what}")
 
     @cached_property
     def sector_parts(self) -> _core.ProblemParts:

@@ -14,13 +14,11 @@ from voxsoft.design import Design, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.records import Record
 from voxsoft.simulation.commands import LoadCommands, LoadName, Value
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.fields import fields_of
-from voxsoft.simulation.fluids import refuse_supplies
-from voxsoft.simulation.large_voxels import refuse_refinement
+from voxsoft.simulation.large_voxels import evenly_small
 from voxsoft.simulation.observation import ChamberState, MotionStatus, Observation
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.softening import refuse_softening
-from voxsoft.simulation.touching import refuse_contact
 from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
 
 #: Residual at which a body counts as at rest, relative to the load.
@@ -95,10 +93,8 @@ class Simulator:
         tolerance: float = TOLERANCE,
     ) -> None:
         design = require_design(design, "design").assembled
-        refuse_contact(design, "the simulator")
-        refuse_supplies(design, "the simulator")
-        refuse_softening(design, "the simulator")
-        refuse_refinement(design, "the simulator")
+        refuse(design, "simulator")
+        design = evenly_small(design, design.solver.refine)
         given: dict[str, Any] = {"damping": damping, "retardation": retardation}
         self._settings = _Settings(time_step=time_step, tolerance=tolerance, **given)
         self._commands = LoadCommands(design)

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.errors import SimulationError
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.method import Report
 from voxsoft.simulation.result import Result, Status
 from voxsoft.simulation.run import result_of
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.touching import refuse_contact
 
 #: Tolerance that every state meets: nothing is solved.
 _ANY: float = 1e300
@@ -61,7 +61,7 @@ def result_at(
     """
     if not np.isfinite(positions).all():
         raise SimulationError("state", "holds positions that are not finite", "go back before it")
-    refuse_contact(setup.design, "states that no solver ended in")
+    refuse(setup.design, "unsolved states")
     used = {"method": "none", "way": "as it stands"}
     answer = setup.problem.relax(tolerance=_ANY, max_steps=0, start=positions)
     measured = result_of(setup, used, Report.of(answer), seconds=0.0)
