@@ -366,6 +366,17 @@ def test_every_feature_and_use_is_tried_and_every_reason_is_of_some():
     assert {use for _, use in REASONS} <= USES.keys()
 
 
+@pytest.mark.parametrize("feature", ["supplies", "several bodies"])
+def test_a_comparison_has_the_numbers_of_runs_on_each_voxel_size(feature):
+    design = design_with(feature)
+    found = vs.compare(
+        design, solvers=["statics"], outside="none", voxel_sizes=["2.5 mm"], splits=[1]
+    )
+    for run_of_it, size in zip(found.runs, ("5 mm", "2.5 mm"), strict=True):
+        alone = vs.simulate(design.replace(voxel_size=size), method="statics")
+        assert run_of_it.quantities["tip x"].value == pytest.approx(alone.probes["tip"][0])
+
+
 @pytest.mark.parametrize("feature", SAMPLES)
 def test_a_sample_has_its_feature(feature):
     design = design_with(feature)

@@ -177,7 +177,7 @@ def test_settings_that_supplies_do_not_know_are_refused():
 
 def test_who_does_not_know_supplies_says_so():
     design = cube(SYRINGE)
-    for use in (vs.Simulator, page_of, vs.compare):
+    for use in (vs.Simulator, page_of):
         assert "supplies: are not known to" in refusal(DesignError, lambda use=use: use(design))
     halved = design.replace(symmetry=[{"plane": "y", "at": SIDE / 2}])
     assert "supplies: is not known together with planes of symmetry" in refusal(

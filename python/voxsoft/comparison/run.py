@@ -19,6 +19,7 @@ from voxsoft.comparison.defaults import (
     DEFAULT_TIME_LIMIT,
     Outside,
 )
+from voxsoft.comparison.other_voxels import on_voxels
 from voxsoft.comparison.outside import OutsideAnswer
 from voxsoft.comparison.quantities import of_answer, of_result
 from voxsoft.comparison.scikit_fem import run_scikit_fem, scikit_fem_version
@@ -213,7 +214,7 @@ def _tasks(
             yield _Task(finer, last, design.voxel_size, split, solving(last, setup))
     for size in sizes:
         if size != design.voxel_size:
-            other = design.replace(voxel_size=size)
+            other = on_voxels(design, size / design.voxel_size)
             setup = partial(Setup.of, other, allow_loose=False, refine=refine)
             yield _Task(f"{last}, {_length(size)}", last, size, 1, solving(last, setup))
     for split in splits if code else ():

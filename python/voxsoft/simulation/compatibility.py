@@ -195,7 +195,7 @@ _REFUSED: Final[tuple[tuple[str, tuple[str, ...], Reason], ...]] = (
     ("several bodies", ("gradient", "simulator", "page", "live motion"), _BODIES),
     (
         "several bodies",
-        ("comparison", "outside codes", "calibration", "confirmation"),
+        ("outside codes", "calibration", "confirmation"),
         _BODIES,
     ),
     (
@@ -222,7 +222,7 @@ _REFUSED: Final[tuple[tuple[str, tuple[str, ...], Reason], ...]] = (
     ("spring lattice and contact", ("page", "live motion"), _CONTACT),
     (
         "supplies",
-        ("simulator", "live motion", "page", "comparison", "outside codes"),
+        ("simulator", "live motion", "page", "outside codes"),
         _NO_SUPPLIES,
     ),
     (
