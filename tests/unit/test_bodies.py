@@ -450,7 +450,6 @@ def event_count(design):
 @pytest.mark.parametrize(
     ("does", "who"),
     [
-        (vs.compare, "comparisons"),
         (lambda one: vs.gradient(vs.simulate(one), "max_stress", "loads.0.value"), "gradients"),
         (Design.show, "exported pages"),
     ],

@@ -197,7 +197,7 @@ def test_what_knows_no_contact_says_so(result):
     with pytest.raises(DesignError, match="objects: is not known to states"):
         result_at(Setup.of(pressed()), result.positions)
     lattice = vs.Part(shape=BLOCK, material=vs.Lattice(edge=25 * kPa, bulk=100 * kPa))
-    with pytest.raises(DesignError, match="objects: is not known to exported pages of the lattice"):
+    with pytest.raises(DesignError, match="objects: is not known to exported pages"):
         page_of_body(StudioBody.of(pressed(parts=[lattice]), 1, 1))
 
 

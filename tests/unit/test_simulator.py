@@ -216,7 +216,7 @@ def test_settings_that_cannot_be(settings, words):
 def test_loads_with_histories_are_refused():
     history = vs.History(time=("0 s", "1 s"), factor=(0.0, 1.0))
     loads = [vs.Pressure(value="1 kPa", history=history)]
-    with pytest.raises(DesignError, match=r"loads\[0\].history: is not used by a simulator"):
+    with pytest.raises(DesignError, match=r"loads\[0\].history: is not used by the simulator"):
         vs.Simulator(RUBBER.replace(loads=loads))
 
 

@@ -343,12 +343,12 @@ def test_two_tendons_have_two_names():
 
 @pytest.mark.parametrize("settings", [{"method": "xpbd"}, {"method": "relaxation"}])
 def test_explicit_ways_are_refused(settings):
-    with pytest.raises(SimulationError, match="tendons are pulled by statics"):
+    with pytest.raises(SimulationError, match="is pulled by statics"):
         simulate(bar([along(tension=0.01)], solver={}), **settings)
 
 
 def test_planes_of_symmetry_and_outside_codes_are_not_given_tendons():
-    with pytest.raises(DesignError, match="not known to planes of symmetry yet"):
+    with pytest.raises(DesignError, match="not known together with planes of symmetry yet"):
         simulate(bar([along(tension=0.01)], symmetry=[{"plane": "y", "at": SIDE / 2}]))
     with pytest.raises(SimulationError, match="cannot be given to an outside code"):
         BrickModel.of(Setup.of(bar([along(tension=0.01)])))

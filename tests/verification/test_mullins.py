@@ -142,7 +142,7 @@ def test_solvers_without_memory_refuse(change, message):
 
 def test_what_knows_nothing_of_softening_refuses():
     soft = block(RUBBERS["yeoh"])
-    with pytest.raises(VoxSoftError, match="is not known to derivatives"):
+    with pytest.raises(VoxSoftError, match="is not known to gradients"):
         vs.gradient(vs.simulate(soft), "elastic_energy", "clamps.3.motion.displacement.0")
 
 

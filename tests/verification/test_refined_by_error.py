@@ -117,17 +117,19 @@ def test_a_share_is_a_part(run, share):
         refined(run, share)
 
 
-def test_what_has_two_sizes_or_cannot_have_them_is_refused(run, tmp_path):
+def test_two_sizes_are_not_refined_again():
     twice = block(refine=[Refinement(region=vs.Region(z=(0, 8 * mm)))])
     with pytest.raises(DesignError, match="refine: is there already"):
         refined(vs.simulate(twice))
-    beam = families.paper_beam()
-    with pytest.raises(DesignError, match="spring lattice"):
-        refined(vs.simulate(beam))
-    vs.save(twice, tmp_path / "twice.toml")
+
+
+def test_the_command_adds_to_what_is_refined_already(run, tmp_path):
+    first = Refinement(region=vs.Region(z=(0, 8 * mm)))
+    vs.save(block(refine=[first]), tmp_path / "twice.toml")
     outcome = CliRunner().invoke(app, ["refine", str(tmp_path / "twice.toml")])
-    assert outcome.exit_code == 3
-    assert not (tmp_path / "twice-refined.toml").exists()
+    assert outcome.exit_code == 0, outcome.output
+    written = vs.load(tmp_path / "twice-refined.toml")
+    assert written.refine == (first, *refined(run).refine)
 
 
 def test_the_command_keeps_the_text_and_adds_boxes(tmp_path):

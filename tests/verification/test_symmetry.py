@@ -234,8 +234,8 @@ LEFT = vs.Region(y=("-inf", 6 * mm))
                     )
                 ]
             },
-            "springs",
-            "is not known to planes of symmetry yet",
+            "springs[0]",
+            "is not known together with planes of symmetry yet",
         ),
     ],
 )

@@ -18,9 +18,10 @@ from voxsoft.geometry import mean_displacement
 from voxsoft.materials import Material
 from voxsoft.records import closest
 from voxsoft.simulation import Place, Setup
+from voxsoft.simulation.compatibility import refuse
+from voxsoft.simulation.large_voxels import evenly_small
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.places import place_of, voxel_size
-from voxsoft.simulation.touching import refuse_bodies
 from voxsoft.units import format_quantity
 
 # Limit of stretch and travel of a real body, in its own lengths at rest.
@@ -85,8 +86,8 @@ class Experiment(Shown):
     @cached_property
     def setup(self) -> Setup:
         """Design prepared for the solver."""
-        refuse_bodies(self.design, "calibrations")
-        return Setup.of(self.design)
+        refuse(self.design, "calibration")
+        return Setup.of(evenly_small(self.design, self.design.solver.refine))
 
     @cached_property
     def material(self) -> Material:

@@ -10,8 +10,8 @@ from voxsoft.calibration.space import Space
 from voxsoft.materials import Material
 from voxsoft.materials.constants import with_constants
 from voxsoft.simulation.adjoint import adjoint_states
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.differences import derivative
-from voxsoft.simulation.touching import refuse_contact
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ def seen_slopes(
     positions
         Equilibrium with that material, (v, 3), m.
     """
-    refuse_contact(experiment.design, "calibration along gradients")
+    refuse(experiment.design, "calibration along gradients")
     setup, parts = experiment.setup, len(experiment.design.parts)
     problem = setup.problem_with([material] * parts)
     axes, places = experiment.measurement.axes, experiment.places

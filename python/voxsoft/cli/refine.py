@@ -34,12 +34,13 @@ def refine(
 ) -> None:
     """Solve a design, and halve its voxels where most of the error is.
 
-    The file that is written has the voxels as boxes under [[refine]], and all else as it was.
+    The file that is written has the voxels as boxes under [[refine]], after those that are there,
+    and all else as it was.
     """
     from voxsoft import files
     from voxsoft.cli.progress import ProgressBar
     from voxsoft.comparison import refined
-    from voxsoft.comparison.refining import check_refinable
+    from voxsoft.comparison.refining import check_share
     from voxsoft.design.documents import with_paths_from
     from voxsoft.errors import FileError
     from voxsoft.files.atomic import write_atomically
@@ -51,14 +52,14 @@ def refine(
     with errors_in_words(json=json):
         part = si_value(share, "number", "--share")
         loaded = files.load(design, assignments=sets or [])
-        check_refinable(loaded, part)
+        check_share(part)
         target = out or design.with_name(f"{design.stem}-refined.toml")
         if out is None and target.exists():
             what = "is there already, and its boxes may have been changed by hand"
             raise FileError(str(target), what, f"remove it, or write --out {target.name}")
         with ProgressBar("refining", 3, transient=True) as bar:
             bar.advance_to(1, "solving on the design's own voxels")
-            result = simulate(loaded)
+            result = simulate(loaded.replace(refine=()))
             if result.status != "ok":
                 if json:
                     print_json({"status": result.status, "message": result.message})
@@ -67,11 +68,12 @@ def refine(
                 raise typer.Exit(NOT_AT_REST)
             bar.advance_to(2, "looking where the error is")
             found = refined(result, part)
+            found = found.replace(refine=[*loaded.refine, *found.refine])
             report = check(found)
             bar.advance_to(3)
         text = with_document(read_text(design), with_paths_from(found.document, target.parent))
         write_atomically(target, text)
-        before = Setup.of(loaded).elements
+        before = Setup(result.design, result.mesh).elements
         summary: dict[str, Any] = {
             "file": str(target),
             "boxes": len(found.refine),

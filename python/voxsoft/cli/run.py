@@ -182,7 +182,7 @@ def _voxels(result: Result) -> str:
     from voxsoft.simulation import Setup
 
     setup = Setup(result.design, result.mesh)
-    return f"{setup.elements:,} voxels, {len(setup.large_voxels):,} of them large,"
+    return f"{setup.elements:,} voxels, {setup.large_count:,} of them large,"
 
 
 def _probe_rows(result: Result, bars: ErrorBars | None) -> Iterator[list[str]]:

@@ -72,28 +72,6 @@ class BrickContact:
     tools: tuple[RigidTool, ...]
 
 
-def check_contact(setup: Setup) -> None:
-    """Raise where a design has contact that no outside code is given.
-
-    Raises
-    ------
-    SimulationError
-        An object that is free or turns, or a bond.
-    """
-    for index, each in enumerate(setup.design.objects):
-        where = f"objects[{index}].motion"
-        if each.is_free:
-            what = "is free, and outside codes are given objects that are fixed or moved"
-            raise SimulationError(where, what, "fix it, or give it a displacement")
-        if each.way is not None and each.way.rotation is not None:
-            what = "turns the object, and outside codes are given objects that move without turning"
-            raise SimulationError(where, what, "leave the rotation out")
-    if setup.touching is not None and setup.touching.bonds:
-        where = setup.touching.bonds[0].where
-        what = "is a bond, which outside codes are not given"
-        raise SimulationError(where, what, "let the two touch, or make them parts of one body")
-
-
 def tools_of(touching: Touching) -> tuple[RigidTool, ...]:
     """List the objects that the body touches."""
     found = []

@@ -17,16 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.cavity import MeshCavity
-from voxsoft.comparison.brick_contact import BrickContact, check_contact, facing_walls, tools_of
+from voxsoft.comparison.brick_contact import BrickContact, facing_walls, tools_of
 from voxsoft.design import Clamp
-from voxsoft.design.attachment import attachments_of
 from voxsoft.errors import SimulationError
 from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Setup
-from voxsoft.simulation.fluids import refuse_supplies
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.loads import LoadReceiver
-from voxsoft.simulation.touching import refuse_bodies
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -156,42 +154,7 @@ class BrickModel:
         >>> BrickModel.of(Setup.of(families.beam()), split=2).bricks.shape
         (640, 20)
         """
-        if setup.design.floor is not None:
-            raise SimulationError(
-                "floor", "cannot be given to an outside code", "clamp the foot instead"
-            )
-        refuse_bodies(setup.design, "outside codes")
-        check_contact(setup)
-        refuse_supplies(setup.design, "outside codes")
-        if setup.design.layers:
-            raise SimulationError(
-                "layers", "cannot be given to an outside code", "compare the design without them"
-            )
-        tendons = [f"tendons[{index}]" for index in range(len(setup.design.tendons))]
-        for where in [*(where for where, _ in attachments_of(setup.design)), *tendons]:
-            raise SimulationError(
-                where, "cannot be given to an outside code", "compare the design without it"
-            )
-        if setup.design.refine:
-            what, hint = "cannot be given to an outside code", "compare the design without it"
-            raise SimulationError("refine", what, hint)
-        if setup.design.activations:
-            raise SimulationError(
-                "activations", "cannot be given to an outside code", "compare without them"
-            )
-        for index, part in enumerate(setup.design.parts):
-            if part.fibers:
-                raise SimulationError(
-                    f"parts[{index}].fibers",
-                    "cannot be given to an outside code",
-                    "compare the design without them",
-                )
-        if setup.mesh.fractions is not None:
-            raise SimulationError(
-                "fill",
-                "outside codes are given full voxels, and these are partly filled",
-                'compare with fill = "binary"',
-            )
+        refuse(setup.design, "outside codes")
         grid = _Lattice.of(setup)
         cells = _split_cells(grid.cells, split)
         keys = 2 * cells[:, None, :] + _HALVES[:nodes]

@@ -12,11 +12,10 @@ from typing import Any, Final
 
 from voxsoft.comparison.richardson import Estimate, discretization_error
 from voxsoft.design import Design
-from voxsoft.design.file_mesh import refuse_file_mesh
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import card_names
 from voxsoft.simulation import Result, simulate
-from voxsoft.simulation.touching import refuse_bodies
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.study import StudyResult, Trial
 
 #: Suffix of a card of the paper's material; the name without it is the rubber of the same silicone.
@@ -200,8 +199,7 @@ def confirm(
     >>> again.sentence
     'the ranking is the same'
     """
-    refuse_bodies(design, "the confirmation of a study")
-    refuse_file_mesh(design, "confirmations")
+    refuse(design, "confirmation")
     rubber, materials = as_rubber(design)
     first = next(iter(study.objectives))
     trials = [trial for trial in study.ranking if trial.same_as is None][:count]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.materials import Hyperelastic
+from voxsoft.materials import Rigid
 from voxsoft.simulation import Result
 from voxsoft.simulation.places import voxel_size
 
@@ -26,7 +26,7 @@ def local_errors(result: Result) -> Floats:
     Parameters
     ----------
     result
-        Run of a design of rubber on voxels of one size.
+        Run of a design without ``refine``.
 
     Returns
     -------
@@ -46,7 +46,9 @@ def local_errors(result: Result) -> Floats:
     True
     """
     mesh, design = result.mesh, result.design
-    size = voxel_size(mesh)
+    size = np.concatenate(
+        [np.full(len(body.mesh.tets) // 5, voxel_size(body.mesh)) for body in mesh.each_body]
+    )
     corners = mesh.voxel_corners(np.arange(len(mesh.tets) // 5))
     strains = _strains(result.positions[corners], size)
     parts = mesh.tet_part[::5]
@@ -54,19 +56,23 @@ def local_errors(result: Result) -> Floats:
     for number, part in enumerate(design.parts, start=1):
         own = np.flatnonzero(parts == number)
         material = design.material_of(part)
-        if not isinstance(material, Hyperelastic) or own.size == 0:
+        if isinstance(material, Rigid) or own.size == 0:
             continue
         smooth = _means_at_corners(strains[own], corners[own], len(mesh.vertices))
         off = smooth - strains[own][:, None]
-        found[own] = material.young() * size**3 * (off**2).sum(axis=(2, 3)).mean(axis=1)
+        stiffness = material.young(float(size[own[0]])) * size[own] ** 3
+        found[own] = stiffness * (off**2).sum(axis=(2, 3)).mean(axis=1)
     if mesh.fractions is not None:
         found *= np.abs(mesh.fractions)
     return found
 
 
-def _strains(positions: Floats, size: float) -> Floats:
-    """Green's strain in the middle of voxels, (n, 3, 3), whose corners are at `positions` in m."""
-    gradients = np.einsum("nci,cj->nij", positions, _ENDS / (4.0 * size))
+def _strains(positions: Floats, size: Floats) -> Floats:
+    """Green's strain in the middle of voxels, (n, 3, 3), whose corners are at `positions` in m.
+
+    It is in the frame of the body, however that is turned.
+    """
+    gradients = np.einsum("nci,cj->nij", positions, _ENDS) / (4.0 * size[:, None, None])
     strains: Floats = 0.5 * (np.einsum("nki,nkj->nij", gradients, gradients) - np.eye(3))
     return strains
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Final
 
@@ -12,8 +11,8 @@ from numpy.typing import NDArray
 from voxsoft.comparison.local_error import local_errors
 from voxsoft.design import Design, Refinement, Region
 from voxsoft.errors import DesignError
+from voxsoft.mesh import BodyMesh
 from voxsoft.simulation import Result
-from voxsoft.simulation.large_voxels import check_refinement
 from voxsoft.simulation.places import voxel_size
 
 Ints = NDArray[np.int64]
@@ -36,7 +35,7 @@ def refined(result: Result, share: float = SHARE) -> Design:
     Parameters
     ----------
     result
-        An equilibrium of a design of rubber without ``refine``.
+        An equilibrium of a design without ``refine``.
     share
         Share of the estimated error that small voxels are to hold, between 0 and 1. Default: 0.9.
 
@@ -48,8 +47,8 @@ def refined(result: Result, share: float = SHARE) -> Design:
     Raises
     ------
     DesignError
-        The run is no equilibrium, its voxels have two sizes already, the share is not between 0
-        and 1, or the design has a feature without local refinement, such as contact.
+        The run is no equilibrium, its voxels have two sizes already, or the share is not between 0
+        and 1.
 
     Examples
     --------
@@ -62,10 +61,13 @@ def refined(result: Result, share: float = SHARE) -> Design:
     True
     """
     design = result.design
-    check_refinable(design, share)
+    check_share(share)
+    if design.refine:
+        what = "is there already, and two sizes of voxels are the most there can be"
+        raise DesignError("refine", what, "solve the design without it, and add to what is found")
     if result.status != "ok":
         raise DesignError("", f"has no equilibrium: {result.message}", "solve that first")
-    if result.mesh.voxel_size is None:
+    if any(body.mesh.voxel_size is None for body in result.mesh.each_body):
         raise DesignError("", "has a mesh that is not made of voxels", "give it shapes and parts")
     errors = local_errors(result)
     if not errors.any():
@@ -75,35 +77,38 @@ def refined(result: Result, share: float = SHARE) -> Design:
     least = falling[int(np.searchsorted(held, share * held[-1]))]
     # Images of each other, which differ by rounding, are taken together.
     worst = np.flatnonzero(errors >= (1.0 - _ALIKE) * least)
-    return design.replace(refine=[Refinement(region=region) for region in _boxes(result, worst)])
+    bodies = result.mesh.each_body
+    found = [
+        Refinement(region=region)
+        for body in bodies
+        for region in _boxes(body, worst, _MOST_BOXES // len(bodies))
+    ]
+    return design.replace(refine=found)
 
 
-def check_refinable(design: Design, share: float) -> None:
-    """Raise the errors of :func:`refined` that are known before there is a run.
+def check_share(share: float) -> None:
+    """Raise an error unless a share is between 0 and 1.
 
     Raises
     ------
     DesignError
-        Lists each reason.
+        It is not.
     """
     if not 0.0 < share < 1.0:
         what = f"is {share:g}, and stands for a part of the error"
         raise DesignError("share", what, "take a number between 0 and 1, such as 0.9")
-    if design.refine:
-        what = "is there already, and two sizes of voxels are the most there can be"
-        raise DesignError("refine", what, "leave it out, and where it belongs is found anew")
-    anywhere = Refinement(region=Region(x=(-math.inf, math.inf)))
-    check_refinement(design.replace(refine=[anywhere]))
 
 
-def _boxes(result: Result, voxels: Ints) -> Iterator[Region]:
-    """Yield regions that catch some voxels, and few others."""
-    mesh = result.mesh
+def _boxes(body: BodyMesh, voxels: Ints, most: int) -> Iterator[Region]:
+    """Yield regions that catch some voxels of a body, and few others."""
+    mesh = body.mesh
+    voxels = voxels - body.first_tet // 5
+    voxels = voxels[(voxels >= 0) & (voxels < len(mesh.tets) // 5)]
     size, low = voxel_size(mesh), mesh.vertices.min(axis=0)
     first = mesh.vertices[mesh.voxel_corners(voxels)[:, 0]]
     cells = np.rint((first - low) / size).astype(np.int64)
     coarse = 1
-    while len(found := _merged(np.unique(cells // coarse, axis=0))) > _MOST_BOXES:
+    while len(found := _merged(np.unique(cells // coarse, axis=0))) > most:
         coarse *= 2
     for begin, end in found:
         # From the middle of the first voxel to that of the last: a region catches vertices within
@@ -111,7 +116,7 @@ def _boxes(result: Result, voxels: Ints) -> Iterator[Region]:
         sides = np.stack([begin * coarse + 0.5, (end + 1) * coarse - 0.5], axis=1)
         ranges = np.round(low[:, None] + size * sides, 9)
         x, y, z = ((float(a), float(b)) for a, b in ranges)
-        yield Region(x=x, y=y, z=z)
+        yield Region(x=x, y=y, z=z, body=body.name or None)
 
 
 def _merged(cells: Ints) -> list[tuple[Ints, Ints]]:

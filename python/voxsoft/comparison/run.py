@@ -19,17 +19,16 @@ from voxsoft.comparison.defaults import (
     DEFAULT_TIME_LIMIT,
     Outside,
 )
+from voxsoft.comparison.other_voxels import on_voxels
 from voxsoft.comparison.outside import OutsideAnswer
 from voxsoft.comparison.quantities import of_answer, of_result
 from voxsoft.comparison.scikit_fem import run_scikit_fem, scikit_fem_version
 from voxsoft.design import Design, Solver, require_design
-from voxsoft.design.file_mesh import refuse_file_mesh
 from voxsoft.errors import MissingPackageError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Diagnostic, Result, Setup, simulate
 from voxsoft.simulation.choice import given_settings
-from voxsoft.simulation.fluids import refuse_supplies
-from voxsoft.simulation.touching import refuse_bodies
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.units import format_quantity, si_value
 
 OUTSIDE: Final[tuple[Outside, ...]] = get_args(Outside)
@@ -104,9 +103,7 @@ def compare(
     >>> found.estimates[0].runs
     ('xpbd, 10 mm', 'xpbd, 5 mm')
     """
-    refuse_bodies(require_design(design), "comparisons")
-    refuse_file_mesh(design, "comparisons")
-    refuse_supplies(design, "comparisons")
+    refuse(require_design(design), "comparison")
     limit = si_value(time_limit, "time", "time_limit", positive=True)
     splits = [int(split) for split in splits]
     if not solvers:
@@ -217,7 +214,7 @@ def _tasks(
             yield _Task(finer, last, design.voxel_size, split, solving(last, setup))
     for size in sizes:
         if size != design.voxel_size:
-            other = design.replace(voxel_size=size)
+            other = on_voxels(design, size / design.voxel_size)
             setup = partial(Setup.of, other, allow_loose=False, refine=refine)
             yield _Task(f"{last}, {_length(size)}", last, size, 1, solving(last, setup))
     for split in splits if code else ():

@@ -25,6 +25,7 @@ from voxsoft.comparison.bricks import CORNERS, FACES, BrickModel
 from voxsoft.comparison.outside import OutsideAnswer, rubber, support_forces
 from voxsoft.comparison.stretch_energy import Term, stretch_derivatives, terms_of
 from voxsoft.errors import MissingPackageError, OutsideCodeError, SimulationError
+from voxsoft.simulation.compatibility import REASONS
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -66,8 +67,7 @@ def run_scikit_fem(model: BrickModel, *, time_limit: float = 600.0) -> OutsideAn
     """
     release = scikit_fem_version()
     if model.contact is not None:
-        what = "is not known to the code with scikit-fem"
-        raise SimulationError("contact", what, "compare with CalculiX: apt install calculix-ccx")
+        raise SimulationError("contact", *REASONS["contact", "scikit-fem"])
     started = time.perf_counter()
     bricks = _Bricks(model)
     reached, moved = _follow(bricks, started + time_limit, time_limit)

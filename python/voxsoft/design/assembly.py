@@ -428,7 +428,7 @@ class _Included:
             yield ErrorDetail(name, what, hint)
         if self.inner.refine:
             what = f'the local refinement of "{self.inner.name}" is left out'
-            hint = "give the body a voxel_size: designs of several bodies do not know refine yet"
+            hint = "write [[refine]] in this design, with the body in its region"
             yield ErrorDetail(name, what, hint)
         if self.inner.objects:
             what = f'the objects of "{self.inner.name}" are left out'

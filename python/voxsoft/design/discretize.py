@@ -101,12 +101,13 @@ def filled(design: Design, refine: int = 1) -> Filled:
     >>> cells.voxels.count, cells.count, len(cells.mesh().tets)
     (80, 640, 3200)
     """
-    if require_design(design).bodies:
-        return _filled_bodies(design.assembled, refine)
+    require_design(design)
     if design.mesh is not None:
         return _filled_by_file(design, design.mesh, refine)
     if design.refine:
         refine *= TIMES_AS_SMALL
+    if design.bodies:
+        return _filled_bodies(design.assembled, refine)
     if design.fill == "fraction":
         cut = CutVoxels.of(design, refine)
         return Filled(cut.voxels, cut.voxels.count, cut.lost, cut.mesh)

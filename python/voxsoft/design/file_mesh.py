@@ -166,19 +166,6 @@ def _sizes(vertices: NDArray[np.float64]) -> tuple[str, str]:
     )
 
 
-def refuse_file_mesh(design: Design, who: str) -> None:
-    """Raise where the body of a design is the mesh of a file and someone needs voxels.
-
-    Raises
-    ------
-    DesignError
-        Naming who.
-    """
-    if design.mesh is not None:
-        hint = 'fill voxels with it: a shape of the kind "mesh", and voxel_size'
-        raise DesignError("mesh", f"is not known to {who}, which need voxels", hint)
-
-
 def with_element_size(document: Mapping[str, Any]) -> tuple[dict[str, Any], list[ErrorDetail]]:
     """Complete the document of a design whose body is a mesh by the size of its elements.
 

@@ -47,7 +47,7 @@ from voxsoft.design.operands import MaterialName, Name, ParameterName
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
 from voxsoft.design.references import Included, dangling_references
-from voxsoft.design.refinement import Refinement, refinement_problems
+from voxsoft.design.refinement import Refinement
 from voxsoft.design.region import Probe
 from voxsoft.design.resolution import Document, Resolution, formulas, with_parameter_values
 from voxsoft.design.schema import with_formulas
@@ -304,7 +304,6 @@ class Design(Record):
             return []  # what contact and references lack is found in the whole
         floor = self.floor is not None
         wrong += symmetry_problems(self.symmetry)
-        wrong += refinement_problems(self.refine, self.bodies)
         wrong += contact_problems(self.objects, self.contact, floor, self.body_names)
         return wrong
 

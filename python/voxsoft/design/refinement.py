@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-
 from pydantic import ConfigDict, model_validator
 
 from voxsoft.design.operands import Name
 from voxsoft.design.region import Region
-from voxsoft.errors import DesignError, ErrorDetail
+from voxsoft.errors import DesignError
 from voxsoft.records import Record
 
 
@@ -28,7 +26,8 @@ class Refinement(Record):
     Notes
     -----
     Where large and small voxels meet, the vertices of the small ones move as the large ones do
-    there. Statics of rubber knows local refinement; it is refused where it is not known.
+    there. Voxels stay small where contact, tendons, gas or liquid act, and where the material
+    differs from voxel to voxel.
 
     Examples
     --------
@@ -54,12 +53,3 @@ class Refinement(Record):
 
 #: How many times as small voxels are where they are refined.
 TIMES_AS_SMALL = 2
-
-
-def refinement_problems(
-    refine: Iterable[Refinement], bodies: Iterable[object]
-) -> Iterator[ErrorDetail]:
-    """Find what local refinement is not known together with."""
-    if any(True for _ in refine) and any(True for _ in bodies):
-        what = "is not known together with several bodies yet"
-        yield ErrorDetail("refine", what, "give the bodies voxel_size of their own")

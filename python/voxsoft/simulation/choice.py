@@ -15,6 +15,11 @@ from voxsoft.design import Design, Solver
 from voxsoft.design.solver import OF_THE_ERROR
 from voxsoft.errors import ErrorDetail, SimulationError
 from voxsoft.materials import Hyperelastic, Rigid
+from voxsoft.simulation.compatibility import (
+    refusals,
+    refused_features,
+    refused_together,
+)
 from voxsoft.simulation.dynamics import Dynamics, DynamicsToEnd, DynamicsToRest
 from voxsoft.simulation.equilibrium import (
     ArcLengthControl,
@@ -23,10 +28,8 @@ from voxsoft.simulation.equilibrium import (
     VolumeControl,
 )
 from voxsoft.simulation.fluids import has_supplies
-from voxsoft.simulation.large_voxels import unknown_with_refinement
 from voxsoft.simulation.method import Method
 from voxsoft.simulation.rest import QuickestRest, Relaxation
-from voxsoft.simulation.softening import softening_parts, unknown_with_softening
 from voxsoft.simulation.touching import has_contact
 
 #: Every method.
@@ -67,6 +70,15 @@ def _users(name: str) -> Kinds:
 USERS: Final[Mapping[str, Kinds]] = MappingProxyType(
     {name: _users(name) for name in (*Solver.model_fields, *sorted(Dynamics.extra))}
 )
+
+#: Name of each control of statics in the table of features and uses.
+_USES: Final[Mapping[type[Method], str]] = {
+    LoadControl: "load control",
+    ArcLengthControl: "arc length",
+    VolumeControl: "volume control",
+}
+#: Settings of explicit dynamics alone, where the method is open.
+_EXPLICIT: Final = ("substeps", "iterations")
 
 #: Advice for each setting: the entry that chooses a method that uses it.
 _ASKING: Final[Mapping[str, str]] = {
@@ -124,7 +136,7 @@ def kind_of(design: Design, solver: Solver) -> type[Method]:
     if dynamic:
         return timed
     materials = [design.material_of(part) for part in design.parts]
-    if design.layers or any(isinstance(material, Rigid) for material in materials):
+    if design.layers or design.refine or any(isinstance(m, Rigid) for m in materials):
         return LoadControl
     # A body that only lies on a floor may slide: Newton's method needs a unique equilibrium.
     is_held = bool(design.clamps) or len(design.symmetry) == 3
@@ -167,29 +179,14 @@ def unused_settings(
         Other keys of :data:`USERS`, where they are given.
     """
     kind = kind_of(design, solver)
-    converges = kind in STATICS or (kind in DYNAMICS and solver.method != "xpbd")
-    for index in softening_parts(design):
-        where = f"parts[{index}].material.mullins"
-        if not converges:
-            what = f"is known to statics and implicit dynamics; here is {_explicit(kind)}"
-            hint = 'write method = "statics" or method = "dynamics", or leave mullins out'
-            yield ErrorDetail(where, what, hint)
-        yield from _only_explicit(solver, kind, "softening")
-        break
-    yield from unknown_with_softening(design)
-    if design.refine:
-        if not converges:
-            what = f"is known to statics and implicit dynamics; here is {_explicit(kind)}"
-            hint = 'write method = "statics", or refine = 2 under [solver] in its place'
-            yield ErrorDetail("refine", what, hint)
-        yield from _only_explicit(solver, kind, "local refinement")
-    yield from unknown_with_refinement(design)
-    if has_contact(design):
-        yield from _without_contact(design, solver, kind)
-    elif design.assembled.tendons:
-        yield from _without_tendons(solver, kind)
-    if has_supplies(design):
-        yield from _without_supplies(solver, kind)
+    yield from refusals(design, _use_of(kind, solver))
+    yield from refused_together(design)
+    if kind in DYNAMICS and solver.method != "xpbd":
+        for feature in refused_features(design, "explicit dynamics"):
+            for name in _EXPLICIT:
+                if getattr(solver, name) is not None:
+                    what = f"is a setting of explicit dynamics, which knows no {feature}"
+                    yield ErrorDetail(f"solver.{name}", what, f"leave {name} out")
     given = given_settings(solver)
     for name in [*given, *(key for key, value in (extra or {}).items() if value)]:
         users = USERS[name]
@@ -203,49 +200,11 @@ def unused_settings(
         yield ErrorDetail(where, what, f"{instead}, or leave {name} out")
 
 
-def _without_supplies(solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
-    """Find settings and materials that are not supported with supplies."""
-    known = kind is LoadControl or (kind in DYNAMICS and solver.method != "xpbd")
-    if not known:
-        title = f"{kind.title} by xpbd" if kind in DYNAMICS else kind.title
-        what = f"means {title}, and supplies are known to load control and implicit dynamics"
-        yield ErrorDetail("solver", what, 'write method = "statics", or method = "dynamics"')
-    yield from _only_explicit(solver, kind, "supplies")
-
-
-def _without_contact(design: Design, solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
-    """Find settings, free objects and materials that are not supported with contact."""
-    if kind not in {*STATICS, *DYNAMICS} or solver.method == "xpbd":
-        what = f"means {_explicit(kind)}, and contact is found by statics and by implicit dynamics"
-        hint = 'write method = "statics", or method = "dynamics"'
-        yield ErrorDetail("solver", what, f"{hint}, or leave contact and objects out")
-    if kind is ArcLengthControl:
-        for index, each in enumerate(design.objects):
-            if each.is_free:
-                what = "is free, and past a limit of the load nothing holds what arc length follows"
-                hint = 'fix it or move it, or write control = "load" or control = "volume"'
-                yield ErrorDetail(f"objects[{index}].motion", what, hint)
-    yield from _only_explicit(solver, kind, "contact")
-
-
-def _without_tendons(solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
-    """Find settings that are not supported with tendons: substeps would be too short."""
-    if kind not in {*STATICS, *DYNAMICS} or solver.method == "xpbd":
-        what = f"means {_explicit(kind)}, and tendons are pulled by statics and implicit dynamics"
-        hint = 'write method = "statics", or method = "dynamics"'
-        yield ErrorDetail("solver", what, f"{hint}, or leave tendons out")
-    yield from _only_explicit(solver, kind, "tendons")
-
-
-def _explicit(kind: type[Method]) -> str:
-    return f"{kind.title} by xpbd" if kind in DYNAMICS else kind.title
-
-
-def _only_explicit(solver: Solver, kind: type[Method], what: str) -> Iterator[ErrorDetail]:
-    for name in ("substeps", "iterations"):
-        if kind in DYNAMICS and getattr(solver, name) is not None:
-            problem = f"is a setting of explicit dynamics, which knows no {what}"
-            yield ErrorDetail(f"solver.{name}", problem, f"leave {name} out")
+def _use_of(kind: type[Method], solver: Solver) -> str:
+    """Return the name of a kind of method in the table of features and uses."""
+    if kind in DYNAMICS:
+        return "explicit dynamics" if solver.method == "xpbd" else "dynamics"
+    return _USES.get(kind, "relaxation")
 
 
 def check_solver(

@@ -54,16 +54,6 @@ class LoadCommands:
 
     def __init__(self, design: Design) -> None:
         self._readings = readings(design)
-        for index, reading in enumerate(self._readings):
-            if reading.history is not None:
-                where = f"loads[{index}].history"
-                what = "is not used by a simulator, whose commands are the history"
-                raise DesignError(where, what, "leave it out, or use vs.simulate")
-        for index, activation in enumerate(design.activations):
-            if activation.history is not None:
-                where = f"activations[{index}].history"
-                what = "is not used by a simulator, which keeps activations as they are"
-                raise DesignError(where, what, "leave it out, or use vs.simulate")
         self._tendons = [tendon.name for tendon in design.tendons]
         self._loads: tuple[AnyLoad, ...] = tuple(design.loads)
         self.names = _names(self._readings)

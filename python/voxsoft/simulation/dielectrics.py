@@ -77,8 +77,7 @@ def dielectrics_of(design: Design, mesh: Mesh) -> tuple[ResolvedDielectric, ...]
     Raises
     ------
     DesignError
-        There is no such part, it is no rubber or has no voxels, or the design has planes of
-        symmetry.
+        There is no such part, it is no rubber or has no voxels.
 
     Examples
     --------
@@ -102,9 +101,6 @@ def dielectrics_of(design: Design, mesh: Mesh) -> tuple[ResolvedDielectric, ...]
 
 def _sheet(design: Design, mesh: Mesh, number: int, activation: Dielectric) -> ResolvedDielectric:
     where = f"activations[{number}]"
-    if design.symmetry:
-        what = "is dielectric, which is not known across planes of symmetry"
-        raise DesignError(where, what, "leave out the planes, and draw the whole body")
     corners, gradients, volumes = [], [], []
     axes = activation.axes
     for index in parts_of(design, activation, f"{where}.part"):

@@ -14,13 +14,11 @@ from voxsoft.design import Design
 from voxsoft.design.solver import Count, Damping, Tolerance
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.equilibrium import too_large_a_tangent
-from voxsoft.simulation.fluids import has_supplies
+from voxsoft.simulation.features import has_feature
 from voxsoft.simulation.growth import grows_over_time
 from voxsoft.simulation.materials import core_materials
 from voxsoft.simulation.method import Answer, Method, Report, Watch
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.softening import softening_parts
-from voxsoft.simulation.touching import has_contact
 from voxsoft.units import NonNegativeTime, PositiveTime, format_quantity
 
 #: Residual at rest of runs over time.
@@ -32,8 +30,7 @@ DEFAULT_RECORD_INTERVAL: Final = 0.02
 
 def converges_each_step(design: Design) -> bool:
     """Return True if every step of a motion has to converge: states depend on the way to them."""
-    softens = next(softening_parts(design), None) is not None
-    return has_contact(design) or has_supplies(design) or softens or bool(design.refine)
+    return any(has_feature(design, name) for name in ("contact", "supplies", "softening"))
 
 
 class Dynamics(Method):

@@ -47,21 +47,6 @@ def has_supplies(design: Design) -> bool:
     return bool(design.supplies or design.connections)
 
 
-def refuse_supplies(design: Design, who: str) -> None:
-    """Raise an error where a design has supplies, which `who` does not support.
-
-    Raises
-    ------
-    DesignError
-        The design has supplies or connections.
-    """
-    if has_supplies(design):
-        where = "supplies" if design.supplies else "connections"
-        what = f"are not known to {who} yet"
-        hint = "give the chambers pressure loads instead, or leave the supplies out"
-        raise DesignError(where, what, hint)
-
-
 @dataclass(frozen=True)
 class ChamberState:
     """State of a volume of gas or liquid.

@@ -19,6 +19,7 @@ from voxsoft.mesh import Mesh
 from voxsoft.metrics import METRICS, Target, metric_named
 from voxsoft.records import closest
 from voxsoft.simulation.adjoint import adjoint_states, readable_errors
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.differences import STENCIL, STEP
 from voxsoft.simulation.loaded_state import LoadedState
 from voxsoft.simulation.motion import held_axes, held_positions
@@ -26,8 +27,7 @@ from voxsoft.simulation.path_gradient import check_residual, path_gradient
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.softening import refuse_softening
-from voxsoft.simulation.touching import has_contact, refuse_bodies
+from voxsoft.simulation.touching import has_contact
 
 Floats = NDArray[np.float64]
 
@@ -102,12 +102,11 @@ def gradient(
     True
     """
     _check_state(result)
-    refuse_bodies(result.design, "gradients")
+    refuse(result.design, "gradient")
     chosen = _targets(result.design, targets)
     for target in chosen.values():
         _check_slope(target)
     names = [parameters] if isinstance(parameters, str) else list(parameters)
-    refuse_softening(result.design, "derivatives, which depend on the way then")
     setup = Setup(result.design, result.mesh)
     taut = tuple(result.tendons[each.name].tension > 0.0 for each in setup.tendons)
     base = _State(setup, result.positions, taut=taut)

@@ -16,6 +16,7 @@ from voxsoft.design.growth import Growth
 from voxsoft.errors import DesignError
 from voxsoft.materials import Hyperelastic
 from voxsoft.records import closest
+from voxsoft.simulation.compatibility import REASONS
 
 #: Growth factor for the core: times in s, stretches, their power, the share of each voxel.
 _Factor = tuple[tuple[float, ...], tuple[float, ...], float, NDArray[np.float64] | None]
@@ -118,41 +119,6 @@ def has_profiles(design: Design) -> bool:
     return any(growth is not None and growth.profile is not None for growth in growths)
 
 
-def refuse_profiles(design: Design, who: str) -> None:
-    """Raise an error where an activation has a profile, which `who` does not support.
-
-    Raises
-    ------
-    DesignError
-        An activation has a profile.
-    """
-    for index, activation in enumerate(design.activations):
-        growth = activation.growth
-        if growth is not None and growth.profile is not None:
-            raise DesignError(
-                f"activations[{index}].profile",
-                f"is not known to {who} yet",
-                "leave it out, or give several parts values of their own",
-            )
-
-
-def refuse_growth_over_time(design: Design, who: str) -> None:
-    """Raise an error where growth has a history, which `who` does not follow.
-
-    Raises
-    ------
-    DesignError
-        An activation that makes a part grow has a history.
-    """
-    for index, activation in enumerate(design.activations):
-        if activation.history is not None and activation.growth is not None:
-            raise DesignError(
-                f"activations[{index}].history",
-                f"is not followed by {who}",
-                "leave it out, or run the design over time",
-            )
-
-
 def at_time(design: Design, time: float) -> Design:
     """Return the design with activations frozen at a time in s."""
 
@@ -191,11 +157,8 @@ def parts_of(design: Design, activation: AnyActivation, where: str) -> list[int]
     for index in named:
         material = design.material_of(design.parts[index])
         if not isinstance(material, Hyperelastic):
-            raise DesignError(
-                where,
-                f'acts on hyperelastic parts, and "{activation.part}" is "{material.model}"',
-                "use the neo-Hookean material of the same Young's modulus",
-            )
+            what, hint = REASONS["spring lattice", "path of activations"]
+            raise DesignError(where, f'{what}, and "{activation.part}" is "{material.model}"', hint)
         if activation.of_fibers and not design.parts[index].fibers:
             what = f'is for the fibers of a part, and "{activation.part}" has none'
             raise DesignError(where, what, 'give the part fibers, or take kind = "strain"')

@@ -1,18 +1,23 @@
-"""Voxels that stay large beside local refinement, and features that do not support it."""
+"""Voxels that stay large beside local refinement."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design import Design, Dielectric, Probe
+from voxsoft.design import Design, Probe
 from voxsoft.design.attachment import attachments_of
-from voxsoft.errors import DesignError, ErrorDetail
+from voxsoft.design.refinement import TIMES_AS_SMALL
+from voxsoft.errors import DesignError
 from voxsoft.materials import Hyperelastic, Rigid
+from voxsoft.simulation.features import has_feature
+from voxsoft.simulation.fluids import has_supplies
+from voxsoft.simulation.growth import parts_of
 from voxsoft.simulation.places import voxel_size
+from voxsoft.simulation.sector import Sector
+from voxsoft.simulation.touching import has_contact
 
 if TYPE_CHECKING:
     from voxsoft.simulation.setup import Setup
@@ -32,10 +37,19 @@ _CORNERS: Final = np.flatnonzero((_NODES != 1).all(axis=1))
 def large_voxels(setup: Setup) -> NDArray[np.uint32]:
     """Find the voxels that stay large: groups of eight voxels of the mesh, (g, 8).
 
+    Voxels stay small where something other than their rubber acts: at surfaces that may touch, at
+    chambers with gas or liquid of their own, on the way of tendons, in parts that are wound, swell
+    unevenly or are dielectric, and in all of a body that softens.
+
     Parameters
     ----------
     setup
         A setup of a design with local refinement; its mesh has small voxels everywhere.
+
+    Returns
+    -------
+    numpy.ndarray
+        With planes of symmetry, those of the solved sector alone.
 
     Raises
     ------
@@ -43,25 +57,76 @@ def large_voxels(setup: Setup) -> NDArray[np.uint32]:
         A refinement that catches nothing.
     """
     design, mesh = setup.design, setup.mesh
+    if has_feature(design, "softening"):
+        return np.zeros((0, 8), np.uint32)
     count = len(mesh.tets) // 5
     corners, parts = mesh.voxel_corners(np.arange(count)), mesh.tet_part[::5]
-    small = _asked_for(setup, corners, parts) | ~_may_be_large(design, mesh.fractions, parts)
-    low = mesh.vertices.min(axis=0)
-    keys = np.rint((mesh.vertices - low) / voxel_size(mesh)).astype(np.int64)
-    groups, nodes = _cubes(keys, corners, parts)
-    large = ~small[groups].any(axis=1) & ~_met(setup)[nodes].any(axis=1)
+    full = _may_be_large(design, mesh.fractions, parts)
+    groups, nodes = _cubes(_keys(setup), corners, parts)
+    small = _asked_for(setup, corners, parts) | ~full
+    if setup.sector is not None:
+        small = _folded(setup.sector, small, corners)
+    large = ~small[groups].any(axis=1) & ~_met(setup, corners, parts)[nodes].any(axis=1)
     for held in setup.clamped:
         large &= ~_held_in_part(held, nodes, len(mesh.vertices))
+    if setup.sector is not None:
+        large &= setup.sector.inside(nodes)
     return groups[large].astype(np.uint32)
+
+
+def _keys(setup: Setup) -> Ints:
+    """Number the vertices along the grid of small voxels, that of each body apart, (n, 3).
+
+    Planes of symmetry through a single body have even numbers, so that no large voxel crosses them.
+    """
+    mesh = setup.mesh
+    keys = np.empty(mesh.vertices.shape, dtype=np.int64)
+    first = np.zeros(3, dtype=np.int64)
+    for body in mesh.each_body:
+        own, size = body.mesh.vertices, voxel_size(body.mesh)
+        low = own.min(axis=0)
+        steps = np.rint((own - low) / size).astype(np.int64)
+        if not mesh.bodies:
+            for plane in setup.design.symmetry:
+                first[plane.axis] = round((plane.at - low[plane.axis]) / size) % 2
+        keys[body.vertices] = steps + first
+        first[0] += 2 * (int(steps[:, 0].max()) // 2 + 1)
+    return keys
+
+
+def _folded(sector: Sector, small: Marks, corners: NDArray[np.int32]) -> Marks:
+    """Mark the voxels with an image among marked ones as well."""
+    images = np.sort(sector.source[corners], axis=1)
+    _, same = np.unique(images, axis=0, return_inverse=True)
+    found: Marks = np.isin(same, same[small])
+    return found
 
 
 def _may_be_large(
     design: Design, fractions: NDArray[np.float64] | None, parts: NDArray[np.uint8]
 ) -> Marks:
-    """Mark the voxels that are full of rubber."""
-    rubber = [isinstance(design.material_of(part), Hyperelastic) for part in design.parts]
+    """Mark the voxels that are full of rubber, the same everywhere in its part."""
+    other = _uneven_parts(design)
+    rubber = [
+        isinstance(design.material_of(part), Hyperelastic) and index not in other
+        for index, part in enumerate(design.parts)
+    ]
     found = np.array([False, *rubber])[parts]
     return found if fractions is None else found & (np.abs(fractions - 1.0) < _FULL)
+
+
+def _uneven_parts(design: Design) -> set[int]:
+    """Find the parts that differ from voxel to voxel: wound, grown unevenly, or in a field."""
+    found = {
+        index
+        for index, part in enumerate(design.parts)
+        if any(fiber.is_wound for fiber in part.fibers)
+    }
+    for number, activation in enumerate(design.activations):
+        growth = activation.growth
+        if growth is None or growth.profile is not None:
+            found.update(parts_of(design, activation, f"activations[{number}].part"))
+    return found
 
 
 def _asked_for(setup: Setup, corners: NDArray[np.int32], parts: NDArray[np.uint8]) -> Marks:
@@ -85,15 +150,30 @@ def _asked_for(setup: Setup, corners: NDArray[np.int32], parts: NDArray[np.uint8
     return found
 
 
-def _met(setup: Setup) -> Marks:
-    """Mark the vertices of layers and springs, which must not be hanging nodes."""
-    found = np.zeros(len(setup.mesh.vertices), dtype=bool)
+def _met(setup: Setup, corners: NDArray[np.int32], parts: NDArray[np.uint8]) -> Marks:
+    """Mark the vertices that must not be hanging nodes: something other than rubber acts there."""
+    design, mesh = setup.design, setup.mesh
+    found = np.zeros(len(mesh.vertices), dtype=bool)
     for layer in setup.layers:
         found[layer.all] = True
-    for where, attachment in attachments_of(setup.design):
+    for where, attachment in attachments_of(design):
         for place in attachment.places:
             if isinstance(place, Probe):
                 found[setup.place(place, where).vertices] = True
+    for tendon in setup.tendons:
+        for point in tendon.places:
+            found[np.array(point.get("vertices", ()), dtype=np.int64)] = True
+    for sheet in setup.dielectrics:
+        found[sheet.corners] = True
+    springs = [not isinstance(design.material_of(p), (Hyperelastic, Rigid)) for p in design.parts]
+    found[corners[np.array([False, *springs])[parts]]] = True
+    if design.floor is not None or has_contact(design):
+        at_surface = np.zeros(len(mesh.vertices), dtype=bool)
+        at_surface[mesh.triangles] = True
+        found[corners[at_surface[corners].any(axis=1)]] = True
+    if has_supplies(design):
+        for cavity in mesh.cavities:
+            found[cavity.triangles] = True
     return found
 
 
@@ -134,69 +214,17 @@ def _held_in_part(held: NDArray[np.uint32], nodes: NDArray[np.int32], vertices: 
     return found
 
 
-#: Entries of a design that local refinement does not support, and the reasons in words.
-_UNKNOWN: Final = (
-    ("symmetry", "solves a part of the body"),
-    ("floor", "is a kind of contact"),
-    ("objects", "are touched by surfaces"),
-    ("contact", "is between surfaces"),
-    ("supplies", "join all of a chamber's wall"),
-    ("tendons", "pull at vertices on their way"),
-)
+def evenly_small(design: Design, refine: int) -> Design:
+    """Return a design with small voxels everywhere, for uses that take voxels of one size.
 
-
-def unknown_with_refinement(design: Design) -> Iterator[ErrorDetail]:
-    """Find entries of a design that local refinement does not support."""
+    Parameters
+    ----------
+    design
+        The design; itself without local refinement.
+    refine
+        Number of parts that its voxels are cut into along each axis, where they stay large.
+    """
     if not design.refine:
-        return
-    hint = "leave it out, or write refine = 2 under [solver] for smaller voxels everywhere"
-    for name, why in _UNKNOWN:
-        if getattr(design, name):
-            what = f"{why}, and local refinement (refine) is not known with that yet"
-            yield ErrorDetail(name, what, hint)
-    for index, part in enumerate(design.parts):
-        material, where = design.material_of(part), f"parts[{index}].material"
-        if not isinstance(material, (Hyperelastic, Rigid)):
-            what = "is a spring lattice, and local refinement (refine) is known for rubber"
-            yield ErrorDetail(where, what, "take a hyperelastic material, or leave refine out")
-        elif isinstance(material, Hyperelastic) and material.mullins is not None:
-            what = "softens, and local refinement (refine) is not known with that yet"
-            yield ErrorDetail(f"{where}.mullins", what, hint)
-        if any(fiber.is_wound for fiber in part.fibers):
-            what = "are wound, and local refinement (refine) is not known with that yet"
-            yield ErrorDetail(f"parts[{index}].fibers", what, hint)
-    for index, activation in enumerate(design.activations):
-        if isinstance(activation, Dielectric):
-            what = "acts by a field, and local refinement (refine) is not known with that yet"
-            yield ErrorDetail(f"activations[{index}]", what, hint)
-        elif activation.growth is not None and activation.growth.profile is not None:
-            what = (
-                "differs within the part, and local refinement (refine) is not known with that yet"
-            )
-            yield ErrorDetail(f"activations[{index}].profile", what, hint)
-
-
-def check_refinement(design: Design) -> None:
-    """Raise an error where a design has entries that local refinement does not support.
-
-    Raises
-    ------
-    DesignError
-        Entries that are not supported, each by its name.
-    """
-    if found := list(unknown_with_refinement(design)):
-        raise DesignError.listing(found)
-
-
-def refuse_refinement(design: Design, who: str) -> None:
-    """Raise an error where voxels are refined locally, which `who` does not support.
-
-    Raises
-    ------
-    DesignError
-        The design has local refinement.
-    """
-    if design.refine:
-        what = f"local refinement is not known to {who} yet"
-        hint = "solve the design by statics, or write refine = 2 under [solver]"
-        raise DesignError("refine", what, hint)
+        return design
+    solver = design.solver.replace(refine=TIMES_AS_SMALL * refine)
+    return design.replace(refine=(), solver=solver)

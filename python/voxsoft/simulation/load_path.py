@@ -30,6 +30,7 @@ from voxsoft.design.tendon import Tendon
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation.choice import method_of
+from voxsoft.simulation.compatibility import refuse, refused_together
 from voxsoft.simulation.equilibrium import LoadControl, Stretch, find_equilibrium
 from voxsoft.simulation.fluid_path import FluidPath, SetupAlong
 from voxsoft.simulation.materials import core_materials
@@ -38,10 +39,8 @@ from voxsoft.simulation.result import Result
 from voxsoft.simulation.run import ProgressCallback, result_of
 from voxsoft.simulation.sector_setup import SectorSetup
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.softening import check_softening
 from voxsoft.simulation.solved_state import SolvedState, is_given_by_positions
 from voxsoft.simulation.start import Start
-from voxsoft.simulation.touching import refuse_contact
 
 #: Longest step where the answer depends on the path, as a part of all of it.
 _LONGEST: Final = 0.05
@@ -213,7 +212,8 @@ def follow(
     solver = given.solver if not settings else given.solver.replace(**settings)
     given = given.replace(solver=solver)
     _check(given, solver)
-    check_softening(given)
+    if refused := list(refused_together(given)):
+        raise DesignError.listing(refused)
     if asked.key == TIME:
         _check_supplies(given, over_time=True)
     designs = [_with_value(given, asked, number) for number in range(len(asked.values))]
@@ -235,7 +235,7 @@ def follow(
     solved = setup if part is None else part
     swells = any(_sizes(each) != _sizes(given) for each in designs)
     if swells:
-        refuse_contact(given, "a path of activations")
+        refuse(given, "path of activations")
     method = method_of(given, solver)
     tolerance = {"tolerance": method.tolerance} if isinstance(method, LoadControl) else {}
     statics = LoadControl(**tolerance)

@@ -86,12 +86,9 @@ def path_gradient(
     DesignError
         A number that changes which triangles a surface has.
     """
-    if any(each.is_free for each in setup.design.objects) or setup.loose_piece is not None:
+    if setup.loose_piece is not None:
         what = "something moves freely, and derivatives of where it ends are not known yet"
         raise SimulationError("gradient", what, "hold it, or give it a motion")
-    if setup.touching is not None and setup.touching.bonds:
-        what = "something is bonded, and derivatives of what bonds carry are not known yet"
-        raise SimulationError("gradient", what, "use a sampler without gradients")
     if any(each.of == (BODY, BODY) and each.pressed > 0.0 for each in result.contacts):
         what = "the body presses itself, and multipliers of its surfaces do not settle well enough"
         hint = "keep it apart from itself, or use a sampler without gradients"

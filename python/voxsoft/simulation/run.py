@@ -14,22 +14,19 @@ from voxsoft.design import Design, Solver, require_design
 from voxsoft.design.refinement import TIMES_AS_SMALL
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.choice import check_solver, method_of
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.contact_field import ContactField
-from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
+from voxsoft.simulation.equilibrium import LoadControl, Statics, find_equilibrium, sentence
 from voxsoft.simulation.falling import falls, flies
-from voxsoft.simulation.fluids import refuse_supplies
 from voxsoft.simulation.freedom import free_motion
 from voxsoft.simulation.growth import at_time
-from voxsoft.simulation.large_voxels import refuse_refinement
+from voxsoft.simulation.large_voxels import evenly_small
 from voxsoft.simulation.method import Report, Watch
 from voxsoft.simulation.nested import nested
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.sector_setup import SectorSetup
-from voxsoft.simulation.sector_touching import refuse_control
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.softening import refuse_softening
-from voxsoft.simulation.touching import refuse_contact
 from voxsoft.units import format_percent, si_value
 
 #: Called now and then with (steps, time in s, residual).
@@ -104,12 +101,13 @@ def simulate(
     solver = _settings(given.solver, settings)
     check_solver(given, solver, {"record_interval": record_interval, "frames": frames})
     method = method_of(given, solver)
-    refuse_control(given, getattr(method, "control", None))
     if isinstance(design, Setup):
         setup = design
         _check_refinement(setup, settings)
     else:
         setup = Setup.of(given, allow_loose=not method.to_rest, refine=solver.refine)
+    if setup.design.refine and not isinstance(method, Statics):
+        setup = Setup(evenly_small(setup.design, refinement(setup)), setup.mesh)
     started = time.perf_counter()
     part = SectorSetup.part_of(setup)
     solved = setup if part is None else part
@@ -137,10 +135,7 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
     max_steps
         Steps after which the run counts as not at rest.
     """
-    refuse_contact(setup.design, "relaxation")
-    refuse_supplies(setup.design, "relaxation")
-    refuse_softening(setup.design, "relaxation")
-    refuse_refinement(setup.design, "relaxation")
+    refuse(setup.design, "relaxation")
     started = time.perf_counter()
     used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance, "max_steps": max_steps}
     answer = problem.relax(tolerance=tolerance, max_steps=max_steps)

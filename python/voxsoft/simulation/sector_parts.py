@@ -12,6 +12,7 @@ from voxsoft import _core
 from voxsoft.design.symmetry import Symmetry
 from voxsoft.errors import DesignError
 from voxsoft.geometry import rotation_matrix
+from voxsoft.simulation.compatibility import REASONS
 from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.touching import CoreHistory
 
@@ -227,6 +228,10 @@ class SectorParts:
         found = sector.numbers[vertices[inside]].astype(np.uint32)
         self.kept.forces(found, mine[inside], history)
 
+    def coarse(self, groups: Indices) -> None:
+        """Take large voxels, each a group of eight of the whole that are in the sector."""
+        self.kept.coarse(np.searchsorted(self._sector.voxels, groups).astype(np.uint32))
+
     def floor(self, z: float) -> None:
         """Take a floor."""
         self._check_along_planes(np.array([0.0, 0.0, 1.0]), "it")
@@ -234,11 +239,11 @@ class SectorParts:
 
     def attach(self, _term: str, _elements: str) -> None:
         """Refuse an attachment of the body."""
-        self._refuse("is not known to planes of symmetry yet", "leave it out, or the planes")
+        self._refuse(*REASONS["springs and the like", "symmetry"])
 
     def tendon(self, _tendon: str, _history: CoreHistory) -> None:
         """Refuse a tendon."""
-        self._refuse("is not known to planes of symmetry yet", "leave it out, or the planes")
+        self._refuse(*REASONS["tendons", "symmetry"])
 
     def _check_along_planes(self, vector: Floats, what: str) -> None:
         for plane in self._sector.planes:

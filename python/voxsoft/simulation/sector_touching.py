@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
-from voxsoft.design import Contact, Design, Motion, Object
+from voxsoft.design import Motion, Object
 from voxsoft.design.symmetry import Symmetry
 from voxsoft.errors import DesignError
 from voxsoft.simulation.apart import Surface, distances_to
@@ -22,7 +22,7 @@ from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.sharing import Sharing
 from voxsoft.simulation.symmetric_contacts import with_images
 from voxsoft.simulation.symmetric_surface import image_of, symmetric
-from voxsoft.simulation.touching import ContactState, Touching, has_contact
+from voxsoft.simulation.touching import ContactState, Touching
 
 Floats = NDArray[np.float64]
 
@@ -224,10 +224,7 @@ class SectorTouching(Touching):
                 raise DesignError(f"{where}.motion", what, _HINT)
 
     def _check_table(self) -> None:
-        """Raise where there are bonds, or where friction differs from that of the images."""
-        for bond in self.bonds:
-            what = "is not known together with planes of symmetry yet"
-            raise DesignError(bond.where, what, "leave the planes out, or let it touch")
+        """Raise where friction differs from that of the images."""
         for plane, numbers in zip(self.sector.planes, self.all_images, strict=True):
             if plane.axis == 2 and self.floor is not None:
                 self._refuse("floor", "points across z")
@@ -241,28 +238,6 @@ class SectorTouching(Touching):
 
     def _refuse(self, where: str, what: str) -> NoReturn:
         raise DesignError(where, f"is not symmetric: {what}", _HINT)
-
-
-def refuse_control(design: Design, control: str | None) -> None:
-    """Raise an error where contact with planes of symmetry does not support a control.
-
-    Raises
-    ------
-    DesignError
-        Arc-length control, or volume control with friction.
-    """
-    if not design.symmetry or not has_contact(design):
-        return
-    contact = design.contact or Contact()
-    slips = any(value > 0.0 for value in (contact.friction, *_frictions(contact)))
-    if control == "arc-length" or (control == "volume" and slips):
-        with_friction = " and friction" if control == "volume" else ""
-        what = f'is not known together with contact{with_friction} and control = "{control}" yet'
-        raise DesignError("symmetry", what, 'leave the planes out, or write control = "load"')
-
-
-def _frictions(contact: Contact) -> list[float]:
-    return [pair.friction for pair in contact.pairs if pair.friction is not None]
 
 
 def _mirrored(points: Floats, plane: Symmetry) -> Floats:

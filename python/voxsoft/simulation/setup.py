@@ -34,10 +34,11 @@ from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.chambers import check_chambers, with_chamber_names
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.dielectrics import ResolvedDielectric, dielectrics_of
 from voxsoft.simulation.fiber_symmetry import check_fiber_symmetry
 from voxsoft.simulation.fluids import Fluids, has_supplies
-from voxsoft.simulation.large_voxels import check_refinement, large_voxels
+from voxsoft.simulation.large_voxels import large_voxels
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
 from voxsoft.simulation.materials import core_materials, solid_materials
@@ -151,7 +152,6 @@ class Setup:
         check_clamps(self.design.clamps)
         check_chambers(self.design, self.mesh)
         check_windings(self.design, self.mesh)
-        check_refinement(self.design)
         self._check_cavities()
         timed = self.design.solver.is_timed
         if not (timed if allow_loose is None else allow_loose):
@@ -175,6 +175,8 @@ class Setup:
     def large_voxels(self) -> NDArray[np.uint32]:
         """Groups of eight voxels of the mesh that are one, with local refinement, (g, 8).
 
+        With planes of symmetry, those of the solved sector.
+
         Raises
         ------
         DesignError
@@ -185,8 +187,14 @@ class Setup:
     @property
     def elements(self) -> int:
         """Number of voxels, large and small; five tetrahedra of another mesh count as one."""
-        joined = 7 * len(self.large_voxels) if self.design.refine else 0
-        return len(self.mesh.tets) // 5 - joined
+        return len(self.mesh.tets) // 5 - 7 * self.large_count
+
+    @property
+    def large_count(self) -> int:
+        """Number of voxels that stay large beside local refinement, in all of the body."""
+        if not self.design.refine:
+            return 0
+        return len(self.large_voxels) * (1 if self.sector is None else self.sector.count)
 
     @cached_property
     def other_split(self) -> OtherSplit:
@@ -217,28 +225,17 @@ class Setup:
         Raises
         ------
         DesignError
-            The voxels or the fibers are not symmetric.
+            The voxels or the fibers are not symmetric, or the design has a feature that is not
+            known with planes of symmetry.
         """
         planes = self.design.symmetry
-        if planes and has_supplies(self.design):
-            what = "is not known together with supplies yet"
-            raise DesignError("symmetry", what, "leave the planes out, or give pressure loads")
         if not planes:
             return None
-        if self.mesh.bodies:
-            self._refuse_with_bodies()
+        refuse(self.design, "symmetry")
         found = Sector.of(planes, self.mesh, kinds_of(self.design.parts))
         check_fiber_symmetry(self.design)
         check_profile_symmetry(self.design, self.mesh)
         return found
-
-    def _refuse_with_bodies(self) -> None:
-        """Refuse fibers and activations of several bodies, whose images are not supported."""
-        fibers = any(part.fibers for part in self.design.parts)
-        for what, there in (("fibers", fibers), ("activations", bool(self.design.activations))):
-            if there:
-                message = f"is not known together with several bodies that have {what} yet"
-                raise DesignError("symmetry", message, f"leave the planes out, or the {what}")
 
     @cached_property
     def sector_parts(self) -> _core.ProblemParts:
@@ -328,7 +325,7 @@ class Setup:
             receiver = _CoreLoads(self.other_split, parts, times_and_factors(load.reading.history))
             for action in load.actions:
                 action.give_to(receiver)
-        if self.design.refine and isinstance(parts, _core.ProblemParts):
+        if self.design.refine:
             parts.coarse(self.large_voxels)
         if self.fluids is not None and isinstance(parts, _core.ProblemParts):
             self.fluids.give_to(parts)

@@ -14,8 +14,10 @@ from voxsoft.design import Design, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.records import Record
 from voxsoft.simulation.commands import LoadCommands, LoadName, Value
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.dynamics import converges_each_step
 from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.large_voxels import evenly_small
 from voxsoft.simulation.observation import ChamberState, Moment, MotionStatus, Observation
 from voxsoft.simulation.setup import Setup
 from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
@@ -69,7 +71,7 @@ class Simulator:
     -----
     Identical commands give identical bits, for any number of threads and after a :meth:`reset`.
     The design's `solver` is for :func:`~voxsoft.simulate` and not used here. With contact,
-    supplies, softening or local refinement, every step converges by Newton's method, as in
+    supplies or softening, every step converges by Newton's method, as in
     :func:`~voxsoft.simulate` over time, which takes longer. Supplies act as the design says.
 
     Examples
@@ -94,6 +96,8 @@ class Simulator:
         tolerance: float = TOLERANCE,
     ) -> None:
         design = require_design(design, "design").assembled
+        refuse(design, "simulator")
+        design = evenly_small(design, design.solver.refine)
         given: dict[str, Any] = {"damping": damping, "retardation": retardation}
         self._settings = _Settings(time_step=time_step, tolerance=tolerance, **given)
         self._commands = LoadCommands(design)

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from voxsoft._core import __version__
 from voxsoft.design import Design
 from voxsoft.errors import SimulationError
+from voxsoft.simulation.features import has_feature
 from voxsoft.simulation.fields import remember
 from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.growth import at_time
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.softening import softening_parts
 from voxsoft.simulation.touching import Pose, has_contact
 
 #: Fields of a result that follow from the design, or are stored beside it.
@@ -36,7 +36,7 @@ def is_given_by_positions(design: Design) -> bool:
     They do not with objects, which have poses, contact, which depends on its slip, supplies, which
     depend on the amounts given, and softening, which depends on the largest stretch.
     """
-    softens = next(softening_parts(design), None) is not None
+    softens = has_feature(design, "softening")
     return not (has_contact(design) or has_supplies(design) or softens)
 
 

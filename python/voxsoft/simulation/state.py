@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.errors import SimulationError
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.method import Report
 from voxsoft.simulation.result import Result, Status
 from voxsoft.simulation.run import result_of
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.touching import refuse_contact
 
 #: Tolerance that every state meets: nothing is solved.
 _ANY: float = 1e300
@@ -62,7 +62,7 @@ def result_at(
     """
     if not np.isfinite(positions).all():
         raise SimulationError("state", "holds positions that are not finite", "go back before it")
-    refuse_contact(setup.design, "states that no solver ended in")
+    refuse(setup.design, "unsolved states")
     answer = setup.problem.relax(tolerance=_ANY, max_steps=0, start=positions)
     return measured_result(setup, answer, status=status, message=message, time=time)
 

@@ -122,36 +122,6 @@ def keeps_apart(design: Design) -> bool:
     return has_contact(design) and not any(math.isnan(entry) for entry in own)
 
 
-def refuse_contact(design: Design, who: str) -> None:
-    """Raise an error where a design has contact, which `who` does not support.
-
-    Raises
-    ------
-    DesignError
-        The design has contact.
-    """
-    if has_contact(design):
-        where = "contact" if design.contact is not None else "objects"
-        hint = 'find the equilibrium with "voxsoft run", or leave contact and objects out'
-        if where == "objects" and not design.objects:
-            where = "bodies"
-            hint = 'find the equilibrium with "voxsoft run", or take one body'
-        raise DesignError(where, f"is not known to {who} yet", hint)
-
-
-def refuse_bodies(design: Design, who: str) -> None:
-    """Raise an error where a design has bodies, and `who` supports only one, along the axes.
-
-    Raises
-    ------
-    DesignError
-        The design has bodies.
-    """
-    if design.bodies:
-        hint = "take the design of one of them, or solve it with `voxsoft run`"
-        raise DesignError("bodies", f"are not known to {who} yet", hint)
-
-
 @dataclass(frozen=True)
 class Bond:
     """Bond of two surfaces.

@@ -12,12 +12,11 @@ from voxsoft import _core
 from voxsoft._memory import memory_limit
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.choice import kind_of
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.equilibrium import too_large_a_tangent
 from voxsoft.simulation.fields import remember
-from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.touching import has_contact
 
 #: Default number of modes.
 DEFAULT_COUNT: Final = 6
@@ -85,13 +84,7 @@ def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
     if over_time and result.velocities.any():
         what = "are those of an equilibrium, and the run is motion over time"
         raise SimulationError("modes", what, "leave out end_time and other settings of motion")
-    if has_supplies(result.design):
-        hint = "give the chambers pressure loads of the same value instead"
-        raise SimulationError("modes", "are not known of bodies with supplies", hint)
-    if has_contact(result.design):
-        raise SimulationError(
-            "modes", "are not known of bodies in contact", "leave contact and objects out"
-        )
+    refuse(result.design, "modes")
     setup = Setup(result.design, result.mesh)
     remember(setup.problem, result.peaks)
     return modes_of(setup, result.positions, count)

@@ -25,6 +25,7 @@ from voxsoft.shapes.sampling import corners_of
 from voxsoft.simulation import Setup
 from voxsoft.simulation.check import CheckReport, examine
 from voxsoft.simulation.choice import method_of
+from voxsoft.simulation.large_voxels import evenly_small
 from voxsoft.simulation.loads import read
 from voxsoft.simulation.touching import has_contact
 from voxsoft.studio import events
@@ -146,7 +147,10 @@ class StudioBody:
     @property
     def played(self) -> _core.Problem:
         """The problem as it moves live: with what it touches, where that is found then."""
-        return self.setup.problem if touches_live(self.setup) else self.setup.problem_alone
+        setup = self.setup
+        if setup.design.refine:
+            setup = Setup(evenly_small(setup.design, setup.design.solver.refine), self.mesh)
+        return setup.problem if touches_live(setup) else setup.problem_alone
 
     def under(self, factors: Sequence[float]) -> Setup:
         """The same body with each load, and each tendon after them, so many times as large."""

@@ -9,13 +9,12 @@ from typing import Any, Final
 from voxsoft._memory import memory_limit
 from voxsoft.comparison.other_voxels import cost_on_voxels
 from voxsoft.comparison.refining import refined
-from voxsoft.design import Design, Refinement
+from voxsoft.design import Design
 from voxsoft.design.formula import is_formula
-from voxsoft.errors import DesignError, VoxSoftError
+from voxsoft.errors import DesignError
 from voxsoft.materials import Hyperelastic
 from voxsoft.simulation import Result, Setup
 from voxsoft.simulation.choice import STATICS, kind_of
-from voxsoft.simulation.large_voxels import unknown_with_refinement
 from voxsoft.studio import events
 from voxsoft.studio.body import BYTES_PER_VOXEL
 from voxsoft.studio.copies import Change
@@ -156,8 +155,6 @@ def _refinable(design: Design) -> tuple[list[str], str]:
     """Parts that local refinement can be asked for, by their names; or why there are none."""
     if kind_of(design, design.solver) not in STATICS:
         return [], "Local refinement is known to statics, and this design is solved otherwise."
-    if design.bodies:
-        return [], "Local refinement is not known for several bodies yet."
     if len(design.parts) < 2:
         return [], "The design has one part: local refinement takes a region of it, in the form."
     done = {refinement.part for refinement in design.refine if refinement.region is None}
@@ -168,9 +165,4 @@ def _refinable(design: Design) -> tuple[list[str], str]:
             found.append(part.label)
     if not found:
         return [], "No other part with a name is of rubber."
-    try:
-        trial = design.replace(refine=[*design.refine, Refinement(part=found[0])])
-        trouble = next(iter(unknown_with_refinement(trial)), None)
-    except VoxSoftError as error:
-        return [], str(error).partition("\n")[0]
-    return (found, "") if trouble is None else ([], f"{trouble.where} {trouble.what}.")
+    return found, ""

@@ -19,11 +19,7 @@ from voxsoft.errors import FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath, load
 from voxsoft.simulation import Result
-from voxsoft.simulation.fluids import refuse_supplies
-from voxsoft.simulation.growth import refuse_growth_over_time, refuse_profiles
-from voxsoft.simulation.large_voxels import refuse_refinement
-from voxsoft.simulation.softening import refuse_softening
-from voxsoft.simulation.touching import refuse_bodies, refuse_contact
+from voxsoft.simulation.compatibility import refuse
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import FIELDS
@@ -129,16 +125,7 @@ def page_of_body(
     """
     if body.refusal is not None:
         raise body.refusal
-    refuse_bodies(body.setup.design, "exported pages")
-    refuse_supplies(body.setup.design, "exported pages")
-    refuse_softening(body.setup.design, "exported pages")
-    refuse_refinement(body.setup.design, "exported pages")
-    refuse_growth_over_time(body.setup.design, "exported pages")
-    refuse_profiles(body.setup.design, "exported pages")
-    if body.not_live:
-        bonded = body.setup.touching is not None and body.setup.touching.bonds
-        what = "with bonds" if bonded else "of the lattice material"
-        refuse_contact(body.setup.design, f"exported pages {what}")
+    refuse(body.setup.design, "page")
     body = replace(body, setup=body.under(factors)) if factors else body
     design = body.setup.design
     notes = Notes(

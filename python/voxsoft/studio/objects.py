@@ -5,38 +5,20 @@ from __future__ import annotations
 import base64
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.design import Design
 from voxsoft.errors import VoxSoftError
-from voxsoft.materials import Lattice
 from voxsoft.plot.objects import Surroundings
 from voxsoft.simulation import Result, Setup
+from voxsoft.simulation.compatibility import refused_features
 from voxsoft.simulation.fluids import has_supplies
-from voxsoft.simulation.growth import grows_over_time, has_profiles
-from voxsoft.simulation.softening import softening_parts
 from voxsoft.simulation.touching import ContactState, Pose, has_contact
 from voxsoft.studio import events
 from voxsoft.studio.message import Triple
-
-#: Why time does not run for a body of the lattice material that may touch something.
-NOT_LIVE: Final = "Live motion knows contact of rubber alone, not of the lattice: press Solve."
-#: The same for several bodies.
-SEVERAL: Final = "Live motion does not know several bodies yet: press Solve."
-#: The same for what is bonded.
-BONDED: Final = "Live motion does not know bonds yet: press Solve."
-#: The same for volumes of gas and liquid.
-SUPPLIED: Final = "Live motion does not know supplies yet: press Solve."
-#: The same for rubber that softens.
-REFINED: Final = "Live motion does not know local refinement yet: press Solve."
-SOFTENS: Final = "Live motion does not know softening yet: press Solve."
-#: The same for parts that grow by a history.
-GROWING: Final = "Live motion does not know histories of activations yet: press Solve."
-#: The same for parts that grow differently from place to place, beside contact.
-PROFILED: Final = "Live motion does not know profiles beside contact yet: press Solve."
 
 
 def objects_of(setup: Setup) -> list[events.BodyObject]:
@@ -61,25 +43,10 @@ def objects_of(setup: Setup) -> list[events.BodyObject]:
 
 
 def not_live(setup: Setup) -> str:
-    """Why time does not run for a body, in a sentence; empty where it does."""
-    if has_supplies(setup.design):
-        return SUPPLIED
-    if next(softening_parts(setup.design), None) is not None:
-        return SOFTENS
-    if setup.design.refine:
-        return REFINED
-    if grows_over_time(setup.design):
-        return GROWING
-    if not has_contact(setup.design):
-        return ""
-    if has_profiles(setup.design):
-        return PROFILED
-    if setup.design.bodies:
-        return SEVERAL
-    if setup.touching is not None and setup.touching.bonds:
-        return BONDED
-    of_lattice = any(isinstance(material, Lattice) for material in setup.materials)
-    return NOT_LIVE if of_lattice else ""
+    """Return the reason why time does not run for a body; empty where it does."""
+    for feature in refused_features(setup.design, "live motion"):
+        return f"Live motion does not know {feature} yet: press Solve."
+    return ""
 
 
 def touches_live(setup: Setup) -> bool:

@@ -25,8 +25,8 @@ from voxsoft.files.designs import read_document, read_text
 from voxsoft.files.specimen import read_specimen
 from voxsoft.jobs import load
 from voxsoft.simulation import Setup, simulate
+from voxsoft.simulation.features import has_feature
 from voxsoft.simulation.fields import remember
-from voxsoft.simulation.softening import softening_parts
 from voxsoft.simulation.touching import Pose
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import DISPLACEMENT, FIELDS
@@ -219,7 +219,7 @@ def _of_run(folder: Path) -> Still:
         summary = {}
     status, poses = str(summary.get("status", "ok")), _poses_in(summary)
     setup = Setup(design, mesh)
-    if next(softening_parts(design), None) is not None:
+    if has_feature(design, "softening"):
         # The mesh file does not say what the voxels remember, and so not their stress.
         shown = (FIELDS[DISPLACEMENT].name,)
         return Still(setup, positions, status, shown, poses)

@@ -197,7 +197,7 @@ def test_a_small_page_says_that_time_does_not_run_and_shows_the_film_of_a_soluti
     tab.until("window.voxsoft !== undefined && voxsoft.objectPosition('plate') !== null")
     banner = tab.find("not-live")
     banner.wait_for()
-    assert "Live motion knows contact of rubber alone" in banner.inner_text()
+    assert "Live motion does not know spring lattice and contact" in banner.inner_text()
     assert tab.find("play").is_disabled()
     tab.shot("objects_not_live")
     # A press on the body turns the view: nothing answers to a pull.
