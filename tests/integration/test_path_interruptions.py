@@ -87,7 +87,9 @@ def solved(monkeypatch):
     return found
 
 
-@pytest.mark.parametrize("signal_name", ["SIGKILL", "SIGTERM"])
+@pytest.mark.parametrize(
+    "signal_name", ["SIGKILL", pytest.param("SIGTERM", marks=pytest.mark.slow)]
+)
 def test_a_path_that_is_killed_half_way_goes_on(tmp_path, solved, signal_name):
     folder, whole, over = tmp_path / "killed", tmp_path / "whole", OVER["beam"]
     file = killed(BEAM, folder, signal_name)

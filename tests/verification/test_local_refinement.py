@@ -130,6 +130,7 @@ def test_slopes_are_those_of_differences():
             assert found[key][name] == pytest.approx(slope, rel=1e-4), (key, name)
 
 
+@pytest.mark.slow
 def test_error_bars_come_from_two_sizes_of_both(both):
     bars = error_bars(both)
     assert bars.voxel_sizes == pytest.approx((4 * mm, 2 * mm))
