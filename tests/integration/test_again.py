@@ -72,7 +72,11 @@ def tampered(file, before, after):
             marks=pytest.mark.slow,
         ),
         pytest.param(["optimize", CYLINDER, *RANDOM, "--budget", 6], id="optimize"),
-        pytest.param(["calibrate", BEAM, DATA, *FIT, "--name", "job"], id="calibrate"),
+        pytest.param(
+            ["calibrate", BEAM, DATA, *FIT, "--name", "job"],
+            id="calibrate",
+            marks=pytest.mark.slow,  # test_a_parameter_that_was_changed_is_reported repeats one
+        ),
         pytest.param(
             ["compare", CYLINDER, *SMALL, *ONE_SPLIT],
             id="compare",

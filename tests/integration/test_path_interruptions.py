@@ -105,6 +105,7 @@ def test_a_path_that_is_killed_half_way_goes_on(tmp_path, solved, signal_name):
     assert (folder / "path.csv").read_bytes() == (whole / "path.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_another_path_in_the_same_folder_begins_anew(tmp_path, solved):
     folder = tmp_path / "killed"
     file = killed(BEAM, folder)

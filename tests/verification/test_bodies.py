@@ -209,7 +209,8 @@ def pair(friction=0.0, **entries):
     return Design(**{**given, **entries})
 
 
-@pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.slow), 0.3])
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_two_bodies_that_touch(friction):
     alone = pair(friction)
     nested = placed(alone.replace(contact=None), contact=alone.contact)

@@ -102,6 +102,7 @@ def test_tied_vertices_are_where_they_belong(both):
     assert np.allclose(outer.mean(axis=1), middle, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_slopes_are_those_of_differences():
     """By the pressure and by Young's modulus, through the tied tangent and its transpose."""
     design = block(refine=[AROUND])
@@ -204,6 +205,7 @@ def test_a_bar_with_a_layer_and_a_spring_sags_alike():
     assert found.probes["end"][2] == pytest.approx(expected.probes["end"][2], rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_path_and_both_other_controls_meet_the_same_state(both):
     design = both.design
     path = vs.follow(design, "loads[0].value=0..10 kPa/2", error="off")

@@ -81,6 +81,7 @@ def test_a_ball_that_bounces_only_loses_energy(designs, step):
     assert 0.02 < kept < 0.9
 
 
+@pytest.mark.slow
 def test_two_balls_that_meet_keep_their_momentum(designs):
     result = vs.simulate(designs.meeting(), end_time=0.05, time_step=5e-3, record_interval=5e-3)
     recording = result.recording
