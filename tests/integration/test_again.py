@@ -29,7 +29,7 @@ FEW = ["--set", "parameters.radius.min=20 mm", "--set", "parameters.height.min=3
 RANDOM = ["--sampler", "random", "--seed", "3", "--workers", "2"]
 FIT = ["--method", "cma-es", "--generations", "2", "--population", "4", "--workers", "1"]
 SMALL = ["--set", "radius=15 mm", "--set", "height=20 mm"]
-ONE_SPLIT = ["--outside", "none", "--voxel-sizes", "none", "--splits", "1"]
+ONE_SPLIT = ["--outside", "none", "--voxel-sizes", "none", "--splits", "1", "--solvers", "xpbd"]
 SCRIPT = "from voxsoft.cli import main; main()"
 
 
