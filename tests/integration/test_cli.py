@@ -165,14 +165,14 @@ def test_sweep_ends_in_a_table_figures_and_a_folder_and_resumes():
 
 
 def test_optimize_finds_and_goes_further():
-    first = printed("optimize", CYLINDER, "--sampler", "random", "--budget", 4, "--workers", 2)
-    more = printed("optimize", CYLINDER, "--sampler", "random", "--budget", 6, "--workers", 2)
+    first = printed("optimize", CYLINDER, "--sampler", "random", "--budget", 4, "--workers", 1)
+    more = printed("optimize", CYLINDER, "--sampler", "random", "--budget", 6, "--workers", 1)
     assert (first["trials"], more["trials"]) == (4, 6)
     assert first["folder"] == more["folder"] == str(Path("runs", "cylinder-optimize"))
 
 
 def test_a_study_folder_of_another_study_is_refused():
-    small = [*FEW, "--set", "parameters.wall.max=5 mm", "--out", "s", "--workers", 2]
+    small = [*FEW, "--set", "parameters.wall.max=5 mm", "--out", "s", "--workers", 1]
     assert call("sweep", CYLINDER, *small).exit_code == 0
     outcome = call("sweep", CYLINDER, *small, "--set", "parts.0.material=ecoflex-00-50")
     assert outcome.exit_code == 2
@@ -180,7 +180,7 @@ def test_a_study_folder_of_another_study_is_refused():
 
 
 def test_calibrate_prints_the_object_and_writes_a_card():
-    quick = ["--method", "genetic", "--generations", 3, "--population", 6, "--workers", 2]
+    quick = ["--method", "genetic", "--generations", 3, "--population", 6, "--workers", 1]
     outcome = call("calibrate", BEAM, DATA, *quick, "--seed", 1, "--out", "c", "--json")
     assert outcome.exit_code == 0, outcome.stderr
     found = json.loads(outcome.stdout)

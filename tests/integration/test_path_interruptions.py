@@ -87,7 +87,9 @@ def solved(monkeypatch):
     return found
 
 
-@pytest.mark.parametrize("signal_name", ["SIGKILL", "SIGTERM"])
+@pytest.mark.parametrize(
+    "signal_name", ["SIGKILL", pytest.param("SIGTERM", marks=pytest.mark.slow)]
+)
 def test_a_path_that_is_killed_half_way_goes_on(tmp_path, solved, signal_name):
     folder, whole, over = tmp_path / "killed", tmp_path / "whole", OVER["beam"]
     file = killed(BEAM, folder, signal_name)
@@ -103,6 +105,7 @@ def test_a_path_that_is_killed_half_way_goes_on(tmp_path, solved, signal_name):
     assert (folder / "path.csv").read_bytes() == (whole / "path.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_another_path_in_the_same_folder_begins_anew(tmp_path, solved):
     folder = tmp_path / "killed"
     file = killed(BEAM, folder)

@@ -71,7 +71,9 @@ def voxels_of(specimen, cells):
 
 
 @needs_data
-@pytest.mark.parametrize("cells", CELLS_ALONG)
+@pytest.mark.parametrize(
+    "cells", [pytest.param(n, marks=[pytest.mark.slow] * (n != 20)) for n in CELLS_ALONG]
+)
 @pytest.mark.parametrize("specimen", SOLIDS, ids=lambda each: each.file)
 def test_a_real_mesh_becomes_a_sound_body(specimen, cells):
     try:

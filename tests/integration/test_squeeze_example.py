@@ -20,6 +20,7 @@ def forces(result):
     return abs(plate.force[2]), pressed.get(("body", "body"), 0.0)
 
 
+@pytest.mark.slow
 def test_leaves_that_meet_bear_on_each_other():
     result = squeezed(8 * mm)
     force, between = forces(result)

@@ -4,6 +4,9 @@ On a page, ``toml`` and ``csv`` blocks with a title are written as files, ``pyth
 one namespace, the ``$`` lines of ``console`` blocks run in a shell. A ``text`` block, and the other
 lines of a ``console`` block, is the expected output; ``...`` stands for anything. ``sh`` blocks are
 for the reader alone: they need a network, another program or another machine.
+
+A line that only calls ``voxsoft`` is run in this process, without the seconds that Python takes to
+start.
 """
 
 import contextlib
@@ -11,6 +14,7 @@ import doctest
 import io
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -18,7 +22,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from voxsoft.cli.app import app
+from voxsoft.cli.output import console
 from voxsoft.metrics import registry
 
 ROOT = Path(__file__).parents[2]
@@ -29,18 +36,27 @@ SCRIPTS = {DOCS / "start.md", *DOCS.glob("tutorials/*.md"), DOCS / "how-to" / "d
 #: Pages that take ten seconds or more; the way of a new user is always run.
 LONG = {
     "calibrate-a-beam.md",
+    "activate.md",
     "compare.md",
+    "crawl.md",
     "dask.md",
     "design-and-study.md",
     "error-bars.md",
     "export.md",
+    "fluids.md",
     "grip.md",
     "gripper.md",
     "layers-and-fibers.md",
+    "load-history.md",
+    "magnets.md",
     "material-card.md",
     "paths.md",
     "pneunet.md",
+    "refine.md",
     "repeat-a-job.md",
+    "softening.md",
+    "squeeze.md",
+    "tendons.md",
     "trunk.md",
     "wound-tubes.md",
 }
@@ -91,17 +107,41 @@ def run_console(block, where):
     assert not commands[0], f"{where}: a console block starts with '$ '"
     for command in commands[1:]:
         line, _, expected = command.partition("\n")
-        done = subprocess.run(
-            ["bash", "-c", line],
-            env=shell_environment(),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            check=False,
-        )
-        assert done.returncode == 0, f"{where}: {line}\n{done.stdout}"
+        code, printed = in_a_shell(line) if needs_a_shell(line) else in_process(line)
+        assert code == 0, f"{where}: {line}\n{printed}"
         if expected.strip():
-            assert_prints(expected, PROGRESS.sub("", done.stdout), f"{where}: {line}")
+            assert_prints(expected, PROGRESS.sub("", printed), f"{where}: {line}")
+
+
+def needs_a_shell(line):
+    """Whether a line does more than call the command with words."""
+    words = shlex.shlex(line, posix=True, punctuation_chars=True)
+    words.whitespace_split = True
+    first, *others = words
+    return first != "voxsoft" or any(word[0] in "|&;<>()" for word in others)
+
+
+def in_a_shell(line):
+    """The exit code of a line, and all that it printed."""
+    done = subprocess.run(
+        ["bash", "-c", line],
+        env=shell_environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+    return done.returncode, done.stdout
+
+
+def in_process(line):
+    """The same of a call of the command."""
+    console.cache_clear()  # it asks for the width of the terminal once
+    done = CliRunner().invoke(app, shlex.split(line)[1:], env=shell_environment())
+    console.cache_clear()
+    if done.exception and not isinstance(done.exception, SystemExit):
+        raise done.exception
+    return done.exit_code, done.output
 
 
 def shell_environment():

@@ -37,14 +37,28 @@ def test_tables(text):
     assert np.isfinite(curve.stress).all()
 
 
-@settings(max_examples=10, deadline=None)
-@given(
+CURVES = given(
     st.lists(st.floats(0.0, 3.0), min_size=5, max_size=12, unique=True),
     st.integers(0, 2**32 - 1),
     st.sampled_from(["uniaxial", "equibiaxial", "planar"]),
     st.floats(1e-3, 1e9),
 )
+
+
+@settings(max_examples=3, deadline=None)
+@CURVES
 def test_fits_of_any_curve(strains, seed, mode, size):
+    ends_in_numbers_or_words(strains, seed, mode, size)
+
+
+@pytest.mark.slow
+@settings(max_examples=30, deadline=None)
+@CURVES
+def test_fits_of_many_curves(strains, seed, mode, size):
+    ends_in_numbers_or_words(strains, seed, mode, size)
+
+
+def ends_in_numbers_or_words(strains, seed, mode, size):
     """Numbers come out, or words; never a crash, a NaN among the constants, or no ranking."""
     random = np.random.default_rng(seed)
     stress = size * (np.sort(strains) + random.standard_normal(len(strains)))

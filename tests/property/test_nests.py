@@ -72,7 +72,9 @@ def nest(rng: np.random.Generator) -> list[Shell]:
 
 
 @pytest.mark.parametrize("nested", [None, "void"])
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize(
+    "seed", [pytest.param(n, marks=[pytest.mark.slow] * (n >= 4)) for n in range(12)]
+)
 def test_the_innermost_shell_decides(seed: int, nested: Nested | None):
     import igl
 

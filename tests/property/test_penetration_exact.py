@@ -96,7 +96,7 @@ def test_two_cells_on_whole_numbers(seed):
     assert bool(found.overlaps) == overlaps(mesh, positions)
 
 
-@pytest.mark.parametrize("seed", some(12, 3))
+@pytest.mark.parametrize("seed", some(12, 2))
 def test_a_bent_strip_in_any_floats(seed):
     """A strip of 9 cells, rolled up and twisted by chance, meets itself or does not."""
     random = np.random.default_rng(100 + seed)

@@ -27,7 +27,7 @@ def assert_becomes_voxels(seed):
         assert voxels.count > 0
 
 
-@pytest.mark.parametrize("block", range(2))
+@pytest.mark.parametrize("block", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_random_shapes_become_voxels(block):
     for seed in range(100 * block, 100 * block + 100):
         assert_becomes_voxels(seed)
@@ -45,7 +45,9 @@ def test_the_grammar_covers_every_kind_that_needs_no_file_or_code():
     assert found == set(KINDS) - {"mesh", "function"}
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize(
+    "seed", [pytest.param(n, marks=[pytest.mark.slow] * (n >= 20)) for n in range(60)]
+)
 def test_cells_are_those_of_a_float64_evaluation(seed):
     shape = random_shape(seed)
     voxel_size, cells, origin = 0.1 / 34, (34, 35, 33), (-0.05, -0.05, -0.05)

@@ -317,6 +317,7 @@ def gripping(make_studio, tmp_path):
     return studio, design.with_parameters(**trial.parameters)
 
 
+@pytest.mark.slow
 def test_a_gripper_of_a_study_opens_with_all_its_numbers_and_is_not_solved_again(
     gripping, searches
 ):
@@ -358,6 +359,7 @@ def plain(value):
     return msgspec.json.decode(msgspec.json.encode(value))
 
 
+@pytest.mark.slow
 def test_a_gripper_of_a_study_is_pictured_with_its_ball(gripping):
     studio, _ = gripping
     answer = picture(studio, "trial/grips/0")

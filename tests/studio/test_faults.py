@@ -250,7 +250,14 @@ def test_a_runs_folder_that_cannot_be_written_is_reported(make_studio, tmp_path)
     assert answer.json()["what"]
 
 
-@pytest.mark.parametrize("doing", ["meshing", "solving", "exporting"])
+@pytest.mark.parametrize(
+    "doing",
+    [
+        pytest.param("meshing", marks=pytest.mark.slow),
+        "solving",
+        pytest.param("exporting", marks=pytest.mark.slow),
+    ],
+)
 def test_ctrl_c_ends_the_studio_whatever_it_does(in_own_process, tmp_path, doing):
     source = tmp_path / "cylinder.toml"
     source.write_text(CYLINDER)

@@ -15,8 +15,8 @@ FLOOR = Floor(z="-10.02 mm")
 WEIGHT = 0.045 * 9.81
 
 
-def pinched(**changes):
-    solver = PINCH.solver.model_copy(update={"end_time": 0.2})
+def pinched(end_time=0.2, **changes):
+    solver = PINCH.solver.model_copy(update={"end_time": end_time})
     return vs.simulate(PINCH.replace(solver=solver, **changes))
 
 
@@ -53,6 +53,7 @@ def test_what_nothing_presses_is_lost():
     assert lost.metric("hold_margin", object="plate") == 0.0
 
 
+@pytest.mark.slow
 def test_what_goes_up_with_its_clamps_is_held_above_where_it_began():
     clamps = []
     for clamp in PINCH.clamps:
@@ -68,4 +69,4 @@ def test_what_goes_up_with_its_clamps_is_held_above_where_it_began():
 
 def test_without_free_objects_there_is_nothing_to_say():
     fixed = [Object(name="plate", shape="plate")]
-    assert grips_of(pinched(objects=fixed)) == []
+    assert grips_of(pinched(0.02, objects=fixed)) == []

@@ -46,6 +46,7 @@ def below(pid):
     return found[1:]
 
 
+@pytest.mark.slow
 @linux
 def test_a_worker_of_a_study_that_is_killed_costs_time_only(fresh_studio):
     async def scenario():

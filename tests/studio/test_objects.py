@@ -333,6 +333,7 @@ def gray_in(png):
     return int(gray.sum())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("as_solved", [False, True])
 def test_an_exported_picture_of_a_moment_has_its_objects(tmp_path, pressed, as_solved):
     playback, design = Playback(), load(pressed)

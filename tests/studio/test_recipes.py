@@ -92,6 +92,7 @@ def test_a_calibration_is_done_again_with_the_same_constants(tmp_path):
     assert again(recipe, tmp_path / "out")["same"]
 
 
+@pytest.mark.slow
 def test_a_run_is_done_again_with_the_same_rise(tmp_path):
     folder = begun(tmp_path / "runs" / "one", commands.RunSpec(solver={"method": "xpbd"}))
     do(folder)

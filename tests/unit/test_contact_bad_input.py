@@ -24,7 +24,7 @@ def test_a_mesh_that_is_open_is_refused_with_the_place_of_its_hole(tmp_path):
         simulate(pressed(objects=[{"name": "lid", "shape": shape}]))
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("friction", [0.0, pytest.param(0.3, marks=pytest.mark.slow)])
 def test_a_plate_thinner_than_a_step_does_not_pass_through(friction):
     # A millimeter thick, and it moves by three: without friction in one step.
     thin = Object(

@@ -92,7 +92,9 @@ def test_a_design_without_contact_has_no_such_field(tmp_path):
 def test_the_command_line_tells_and_draws_it(dragged, tmp_path):
     file = tmp_path / "dragged.toml"
     save(dragged.design, file)
-    ran = CliRunner().invoke(app, ["run", str(file), "--figure", "--out", str(tmp_path / "run")])
+    ran = CliRunner().invoke(
+        app, ["run", str(file), "--error", "off", "--figure", "--out", str(tmp_path / "run")]
+    )
     assert ran.exit_code == 0, ran.stderr
     assert "body touches plate with" in ran.stderr + ran.stdout
     assert (tmp_path / "run" / "contact.png").stat().st_size > 10_000

@@ -126,7 +126,7 @@ def test_the_command_line_prints_them(result, tmp_path):
     file = tmp_path / "pressed.toml"
     save(result.design, file)
     assert load(file) == result.design
-    ran = CliRunner().invoke(app, ["run", str(file), "--json"])
+    ran = CliRunner().invoke(app, ["run", str(file), "--json", "--error", "off"])
     shown = json.loads(ran.stdout)["metrics"]
     assert shown["push"] == pytest.approx(result.metrics["push"], rel=1e-6)
     assert shown["grip"] == pytest.approx(result.metrics["grip"], abs=1e-6)

@@ -53,7 +53,7 @@ def test_free_objects_ask_for_motion_over_time():
     assert simulate(dropped(solver=Solver(time_step="20 ms"))).solver["method"] == "implicit"
 
 
-@pytest.mark.parametrize("step", [5e-3, 20e-3])
+@pytest.mark.parametrize("step", [pytest.param(5e-3, marks=pytest.mark.slow), 20e-3])
 def test_what_is_pinched_does_not_creep(step):
     result = simulate(pinched(0.7), end_time=0.6, time_step=step)
     times, heights = result.recording.times, result.recording.objects["capsule"][0][:, 2]
@@ -65,6 +65,7 @@ def test_what_is_pinched_does_not_creep(step):
     assert np.ptp(later) < 0.1e-6 / 300.0
 
 
+@pytest.mark.slow
 def test_what_is_pinched_slips_at_its_bound():
     # Faces wider than the pads: as it slides nothing changes but the friction.
     block = bar(40 * mm)

@@ -99,6 +99,7 @@ def test_constants_come_back_from_their_own_curves(name, material):
     assert found.rmse < 1e-4 * max(np.abs(curve.stress).max() for curve in fit.curves)
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_about_as_often_as_they_say():
     """95 of 100 with independent noise; at least 88 of 100 has a chance of 99.8 % (binomial)."""
     material = vs.Yeoh(c=[10e3, 300.0])

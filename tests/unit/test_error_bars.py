@@ -135,6 +135,7 @@ def test_without_bars_the_reason_stands_there(design, reason):
     assert "Try:" in found.sentence
 
 
+@pytest.mark.slow
 def test_motion_has_bars_of_its_end_where_they_are_asked_for():
     moving = {"end_time": "40 ms", "method": "dynamics", "time_step": "2 ms", "damping": "50 1/s"}
     found = vs.error_bars(vs.simulate(beam(error="finer", **moving)))

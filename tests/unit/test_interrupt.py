@@ -121,7 +121,10 @@ def many_candidates():
     return lambda: ensemble.settle(factors, 1e-6)
 
 
-@pytest.mark.parametrize("prepare", [checked_mesh, factorized_tangent, many_candidates])
+@pytest.mark.parametrize(
+    "prepare",
+    [checked_mesh, pytest.param(factorized_tangent, marks=pytest.mark.slow), many_candidates],
+)
 def test_long_work_that_cannot_be_stopped_is_left_behind(prepare):
     task = prepare()
 

@@ -106,9 +106,9 @@ material = "m"
 @pytest.mark.parametrize(
     ("verb", "voxel", "words"),
     [
-        ("mesh", "0.8 mm", "counting the quality of"),
+        pytest.param("mesh", "0.8 mm", "counting the quality of", marks=pytest.mark.slow),
         ("mesh", "0.4 mm", "needs about"),
-        ("run", "0.9 mm", "the problem of"),
+        pytest.param("run", "0.9 mm", "the problem of", marks=pytest.mark.slow),
         ("run", "0.05 mm", "a grid of"),
     ],
 )

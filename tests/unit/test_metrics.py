@@ -65,7 +65,7 @@ def test_keys_that_a_metric_does_not_use_are_refused(pressed, name):
     given = {"probe": "top", "axis": "z", "cavity": 0, "object": "plate", "tendon": "pull"}
     pull = {"name": "pull", "through": [[0, 0, 0], [0, 0, "1 mm"]], "tension": "1 N"}
     plate = {"name": "plate", "shape": {"kind": "sphere", "radius": "1 mm"}}
-    used = METRICS[name].needs | METRICS[name].takes
+    used, refused = METRICS[name].needs | METRICS[name].takes, None
     for option, value in given.items():
         objectives = {"aim": {"maximize": name, option: value}}
         changes = {
@@ -81,9 +81,10 @@ def test_keys_that_a_metric_does_not_use_are_refused(pressed, name):
             continue
         with pytest.raises(DesignError, match=rf"objectives.aim.{option}: {name} .*Try: leave"):
             check_targets(design)
-        assert not check(design).valid
+        refused = design
         with pytest.raises(DesignError, match=f"{option}: {name} "):
             pressed.metric(name, **{option: value})
+    assert not check(refused).valid  # as of any other error of a target
 
 
 def test_an_axis_gives_a_component_and_no_axis_the_magnitude(pressed):

@@ -101,6 +101,7 @@ def test_a_small_voxel_without_a_large_one_around_it_has_no_pressure_to_begin_wi
     )
 
 
+@pytest.mark.slow
 def test_others_begin_at_rest(coarse):
     """Cut voxels that do not fill the large ones, and what touches."""
     ball = vs.simulate(BALL)

@@ -39,8 +39,15 @@ def run(study):
         return study.grid(executor=threads)
 
 
-def test_a_trial_has_the_path_and_the_number_that_counts(tmp_path):
-    found = run(study_in(tmp_path))
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    """The folder of a study, and what was found: tests read it."""
+    folder = tmp_path_factory.mktemp("study")
+    return folder, run(study_in(folder))
+
+
+def test_a_trial_has_the_path_and_the_number_that_counts(stored):
+    folder, found = stored
     assert found.counts["ok"] == 2
     for trial in found.trials:
         path = vs.follow(families.pneunet(chambers=2).with_parameters(**trial.parameters), OVER)
@@ -51,13 +58,13 @@ def test_a_trial_has_the_path_and_the_number_that_counts(tmp_path):
         assert trial.objectives["deepest"] == min(trial.path["deepest"]) < trial.objectives["last"]
         assert trial.metrics["mean"] == pytest.approx(sum(tip) / len(tip), rel=1e-6)
     # Stored, and not solved again.
-    again = run(study_in(tmp_path))
+    again = run(study_in(folder))
     assert [each.path for each in again.trials] == [each.path for each in found.trials]
     assert [each.seconds for each in again.trials] == [each.seconds for each in found.trials]
 
 
-def test_its_folder_holds_the_paths_and_their_picture(tmp_path):
-    found = run(study_in(tmp_path))
+def test_its_folder_holds_the_paths_and_their_picture(stored, tmp_path):
+    _, found = stored
     names = {file.name for file in write_study(found, tmp_path)}
     assert {"paths.csv", "paths.png"} <= names
     table = found.paths()
@@ -79,10 +86,10 @@ def test_a_path_that_is_lost_is_not_ok(tmp_path):
     assert all("lost at loads[0].value" in trial.message for trial in found.trials)
 
 
-def test_another_path_is_another_study(tmp_path):
-    run(study_in(tmp_path))
+def test_another_path_is_another_study(stored):
+    folder, _ = stored
     with pytest.raises(StudyError, match="holds another study"):
-        run(study_in(tmp_path, over="loads[0].value=0..1 kPa/4"))
+        run(study_in(folder, over="loads[0].value=0..1 kPa/4"))
 
 
 def test_what_cannot_be_followed_is_refused_before_the_first_trial(tmp_path):

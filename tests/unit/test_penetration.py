@@ -20,7 +20,7 @@ from voxsoft.voxels import Voxels
 EXAMPLES = sorted(Path("examples").glob("*.toml"))
 
 #: Examples of many voxels.
-LARGE = {"bellows", "starfish"}
+LARGE = {"bellows", "starfish", "wound_tube"}
 PUSHED = Path(__file__).parents[1] / "data" / "pushed.toml"
 
 

@@ -45,7 +45,7 @@ def sharp(shape: Shape, size: float) -> Surface:
     return Surface(vertices, triangles.astype(np.uint32))
 
 
-@pytest.mark.parametrize("size", [0.002, 0.0013])
+@pytest.mark.parametrize("size", [0.002, pytest.param(0.0013, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", SOLIDS)
 def test_mass_and_inertia_are_those_of_the_shape(name: str, size: float):
     shape, volume, squares = SOLIDS[name]

@@ -14,9 +14,11 @@ from voxsoft.simulation import check, simulate
 EXAMPLES = Path(__file__).parents[2] / "examples"
 NAMES = [robot.name for robot in robots.ROBOTS]
 #: Those whose many voxels take seconds to look at alone.
-LARGE = {"bellows", "starfish"}
+LARGE = {"bellows", "starfish", "wound_bender"}
 #: Those that take more than some seconds; tests/integration drives the crawler and the gripper too.
-LONG = LARGE | {"pumped_gripper", "crawler", "wound_tube", "wound_bender"}
+LONG = LARGE | {"pumped_gripper", "crawler", "tendon_finger", "wound_tube"}
+#: Starts whose robot another start opens too, wound at another angle.
+ALIKE = {"pressure-cylinder-extend"}
 
 
 def started(start):
@@ -75,7 +77,11 @@ def test_each_combination_of_answers_leads_to_one_robot():
 @pytest.mark.parametrize(
     "start",
     [
-        pytest.param(each, marks=pytest.mark.slow if each.robot in LARGE else (), id=each.name)
+        pytest.param(
+            each,
+            marks=pytest.mark.slow if each.robot in LARGE or each.name in ALIKE else (),
+            id=each.name,
+        )
         for each in robots.STARTS
     ],
 )

@@ -230,7 +230,14 @@ def collected():
 
 
 @pytest.mark.skipif(not FOLDER.is_dir(), reason=f"no collected shapes in {FOLDER}")
-@pytest.mark.parametrize("row", collected(), ids=lambda row: row["name"])
+@pytest.mark.parametrize(
+    "row",
+    [
+        # The one of most triangles; tests/integration/test_shared_shapes.py has it at 20 cells.
+        pytest.param(row, id=row["name"], marks=[pytest.mark.slow] * (row["name"] == "cycloidal"))
+        for row in collected()
+    ],
+)
 def test_collected_shapes_keep_their_volume(row):
     shape = TriangleMesh(path=str(FOLDER / row["file"]), unit="mm")
     if row["name"] == "soup":

@@ -32,6 +32,7 @@ def test_known_constants_come_back():
     assert found.warnings == ()
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_about_as_often_as_they_say():
     """95 of 100 with independent noise; of 40, at least 33 have a chance of 99.9 % (binomial)."""
     held = dict.fromkeys(("r", "m", "beta"), 0)

@@ -93,11 +93,14 @@ def test_every_setting_has_its_users():
     assert {name for name, _ in VALUES} == set(USERS) - OF_THE_ERROR
 
 
-@pytest.mark.parametrize("material", MATERIALS)
-def test_each_of_two_settings_is_used_or_refused(material):
+@pytest.mark.parametrize(
+    ("material", "every"),
+    [("lattice", 1), ("rubber", 4), pytest.param("rubber", 1, marks=pytest.mark.slow)],
+)
+def test_each_of_two_settings_is_used_or_refused(material, every):
     design = box(material)
     refused = 0
-    for (one, first), (other, second) in itertools.combinations(VALUES, 2):
+    for (one, first), (other, second) in [*itertools.combinations(VALUES, 2)][::every]:
         if one == other:
             continue
         settings = {one: first, other: second}
@@ -116,7 +119,7 @@ def test_each_of_two_settings_is_used_or_refused(material):
             continue
         for name, value in settings.items():
             assert used(result, name, value), (settings, name, dict(result.solver))
-    assert refused > 50  # the walk met refusals at all
+    assert refused > 50 / every  # the walk met refusals at all
 
 
 REFUSALS = [

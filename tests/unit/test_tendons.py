@@ -369,13 +369,15 @@ def routed(**changes):
     ("changes", "name"),
     [
         ({"tension": 0.05}, "tendons.0.through.2.1"),
-        ({"tension": 0.05}, "tendons.0.through.2.2"),
-        ({"tension": 0.05}, "tendons.0.tension"),
+        pytest.param({"tension": 0.05}, "tendons.0.through.2.2", marks=pytest.mark.slow),
+        pytest.param({"tension": 0.05}, "tendons.0.tension", marks=pytest.mark.slow),
         ({"shortening": 1 * mm}, "tendons.0.through.1.2"),
-        ({"length": 26 * mm}, "tendons.0.through.0.fixed.2"),
+        pytest.param({"length": 26 * mm}, "tendons.0.through.0.fixed.2", marks=pytest.mark.slow),
         ({"length": 26 * mm}, "tendons.0.length"),
         ({"length": 26 * mm, "stiffness": 50.0}, "tendons.0.stiffness"),
-        ({"tension": 0.05, "friction": 0.3}, "tendons.0.through.2.2"),
+        pytest.param(
+            {"tension": 0.05, "friction": 0.3}, "tendons.0.through.2.2", marks=pytest.mark.slow
+        ),
         ({"tension": 0.05, "friction": 0.3}, "tendons.0.friction"),
         ({"shortening": 1 * mm, "friction": 0.3}, "tendons.0.through.3.point.0"),
     ],

@@ -65,7 +65,11 @@ def test_searches_go_on_with_what_is_not_known(
         assert result.best.metrics["safety"] == -1.0
 
 
-@pytest.mark.parametrize("sampler", ["tpe", "cma-es", "nsga-ii", "nsga-iii", "genetic"])
+#: Of the same kind as those that are quick, and as those of tests/unit/test_study_unknown.py.
+SLOWER = [pytest.param(name, marks=pytest.mark.slow) for name in ("tpe", "nsga-ii", "nsga-iii")]
+
+
+@pytest.mark.parametrize("sampler", ["cma-es", "genetic", *SLOWER])
 def test_samplers_learn_to_stay_out_of_what_cannot_be_solved(sampler: str):
     # One design in five can be solved. Random search has at most 0.2 + 3 sqrt(0.2 0.8 / 50) = 0.37
     # of the last 50, once in a thousand.

@@ -64,7 +64,14 @@ def drawn(figure):
     return np.asarray(figure.axes[0].images[0]._A)[..., :3]
 
 
-@pytest.mark.parametrize("field", ["displacement", "von_mises", "contact_pressure"])
+@pytest.mark.parametrize(
+    "field",
+    [
+        pytest.param("displacement", marks=pytest.mark.slow),
+        pytest.param("von_mises", marks=pytest.mark.slow),
+        "contact_pressure",
+    ],
+)
 def test_pictures_show_the_whole(result, field):
     picture = drawn(plot_body(result, field, view=(-90.0, 0.0), ghost=False, frame=None))
     shown = (picture < 0.99).any(axis=2)

@@ -91,6 +91,7 @@ def test_a_pressure_is_found_on_a_path(lift):
     assert lost.value.further == pytest.approx(1100.0 + 10.72 * 100.0)
 
 
+@pytest.mark.slow
 def test_a_force_is_of_first_degree_in_pressure_and_stiffness(lift):
     """Euler's theorem, which the part of the thickness rests on: all of it, and half of both."""
     import voxsoft as vs

@@ -317,6 +317,7 @@ def test_what_has_grown_comes_to_rest_as_statics_says(contact):
     assert moved.elastic_energy == pytest.approx(still.elastic_energy, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_bilayer_that_is_heated_slowly_follows_statics():
     # Its first mode has 1.6 Hz by E I and ρ A. With critical damping it is late by some 0.2 s, a
     # hundredth of the 20 s of heating.

@@ -209,6 +209,7 @@ def pair(friction=0.0, **entries):
     return Design(**{**given, **entries})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_two_bodies_that_touch(friction):
     alone = pair(friction)

@@ -87,8 +87,18 @@ CASES = {
 STEPS = {"a wall": 20, "itself": 20, "another body": 40}
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.5])
-@pytest.mark.parametrize("case", CASES)
+#: One of each case, and both of friction; the others are slow.
+QUICK = {("a wall", 0.0), ("itself", 0.5), ("another body", 0.0)}
+
+
+@pytest.mark.parametrize(
+    ("case", "friction"),
+    [
+        pytest.param(case, friction, marks=[pytest.mark.slow] * ((case, friction) not in QUICK))
+        for case in CASES
+        for friction in (0.0, 0.5)
+    ],
+)
 def test_a_volume_has_the_pressure_under_which_load_control_finds_it(case, friction):
     ratio, design = CASES[case]
     by_volume = simulate(
@@ -117,6 +127,7 @@ def past_the_limit():
     return simulate(balloon(7 * mm, 0.0, PAST, control="arc-length", steps=6))
 
 
+@pytest.mark.slow
 def test_past_the_limit_against_a_wall_arc_and_volume_find_one_state(past_the_limit):
     by_arc = past_the_limit
     assert by_arc.status == "not-at-rest"
@@ -190,6 +201,7 @@ def lifted(pressure, **settings):
     )
 
 
+@pytest.mark.slow
 def test_a_chamber_that_grows_lifts_what_lies_on_it():
     found = simulate(lifted(20 * kPa, control="volume", volume_ratio=1.6))
     assert found.status == "ok", found.message
@@ -213,7 +225,7 @@ def test_an_arc_with_a_free_object_is_refused():
         simulate(lifted(1 * kPa, control="arc-length"))
 
 
-@pytest.mark.parametrize("way", ["arc-length", "volume"])
+@pytest.mark.parametrize("way", ["arc-length", pytest.param("volume", marks=pytest.mark.slow)])
 def test_derivatives_follow_load_control_only(way):
     # To the full load: an ample number of steps, or what the volume takes of it.
     how = {"steps": 30} if way == "arc-length" else {"volume_ratio": 1.5}

@@ -170,7 +170,7 @@ def test_a_balloon_is_filled_through_its_limit_point(fluid):
     assert highest == pytest.approx(15 * kPa * expected.limit_factor, rel=0.01)
 
 
-@pytest.mark.parametrize("fluid", ["air", "water"])
+@pytest.mark.parametrize("fluid", [pytest.param("air", marks=pytest.mark.slow), "water"])
 def test_a_balloon_that_is_filled_presses_against_a_wall(fluid):
     """As under the pressure that it comes to: contact settles in rounds, and pressures with it."""
     wall = vs.Box(size=(80 * mm, 80 * mm, 5 * mm), center=(0, 0, 19.5 * mm))
@@ -260,8 +260,18 @@ def filling(flow, source, times):
     return np.concatenate([found, full])
 
 
-@pytest.mark.parametrize("source", [50 * kPa, 300 * kPa, -60 * kPa])
-@pytest.mark.parametrize("line", LINES)
+@pytest.mark.parametrize(
+    ("line", "source"),
+    [
+        # Each line, filled and emptied; the others are slow.
+        ("tube", 50 * kPa),
+        ("orifice", -60 * kPa),
+        pytest.param("orifice", 300 * kPa, marks=pytest.mark.slow),
+        pytest.param("tube", 300 * kPa, marks=pytest.mark.slow),
+        pytest.param("tube", -60 * kPa, marks=pytest.mark.slow),
+        pytest.param("orifice", 50 * kPa, marks=pytest.mark.slow),
+    ],
+)
 def test_a_vessel_fills_as_the_differential_equation_says(line, source):
     keys, flow, held = LINES[line]
     outside = FILLED - VESSEL**3 - held
@@ -360,6 +370,7 @@ def test_a_leak_takes_what_the_valve_lets_in():
     assert entering == pytest.approx(leaving, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_syringe_with_a_leak_is_empty_in_the_end():
     leak = {"conductance": "0.001 L/s/bar"}
     leaky = VolumeSupply(
@@ -375,6 +386,7 @@ def test_a_syringe_with_a_leak_is_empty_in_the_end():
     assert at_rest.pressure == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_water_flows_through_a_tube_into_rubber():
     """What came in is the integral of what flowed, and the pressure ends at that of the source."""
     feed = FlowSupply(
@@ -491,17 +503,19 @@ def test_multigrid_and_a_direct_factor_find_the_same(fluid):
             "value",
             "-0.2..0.4 mL/4",
         ),
-        (
+        pytest.param(
             PressureSupply(chamber="left", value="5 kPa"),
             VolumeSupply(chamber="right", value="0.1 mL", fluid="water"),
             "value",
             "8..-4 kPa/4",
+            marks=pytest.mark.slow,
         ),
-        (
+        pytest.param(
             MassSupply(chamber="left", temperature="300 K"),
             MassSupply(chamber="right"),
             "temperature",
             "280..340 K/4",
+            marks=pytest.mark.slow,
         ),
         (
             FlowSupply(chamber="left", source="5 kPa", valve={"conductance": "0.1 L/s/bar"}),
@@ -525,6 +539,7 @@ def test_along_a_path_of_supplies_each_state_is_that_of_a_single_run(varied, sti
         assert found.positions == pytest.approx(alone.positions, abs=1e-8)
 
 
+@pytest.mark.slow
 def test_work_goes_on_along_a_path_of_supplies_and_comes_back():
     design = pair(VolumeSupply(chamber="left", value="0.4 mL", fluid="water"))
     path = vs.follow(design, "supplies[0].value=0..0.4..0 mL/9")

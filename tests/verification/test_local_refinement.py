@@ -102,6 +102,7 @@ def test_tied_vertices_are_where_they_belong(both):
     assert np.allclose(outer.mean(axis=1), middle, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_slopes_are_those_of_differences():
     """By the pressure and by Young's modulus, through the tied tangent and its transpose."""
     design = block(refine=[AROUND])
@@ -130,6 +131,7 @@ def test_slopes_are_those_of_differences():
             assert found[key][name] == pytest.approx(slope, rel=1e-4), (key, name)
 
 
+@pytest.mark.slow
 def test_error_bars_come_from_two_sizes_of_both(both):
     bars = error_bars(both)
     assert bars.voxel_sizes == pytest.approx((4 * mm, 2 * mm))
@@ -203,6 +205,7 @@ def test_a_bar_with_a_layer_and_a_spring_sags_alike():
     assert found.probes["end"][2] == pytest.approx(expected.probes["end"][2], rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_path_and_both_other_controls_meet_the_same_state(both):
     design = both.design
     path = vs.follow(design, "loads[0].value=0..10 kPa/2", error="off")

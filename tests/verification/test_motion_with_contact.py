@@ -38,6 +38,7 @@ def accelerations(designs, friction, degrees=20.0, step=5e-3):
     return along, around, float(np.ptp(way - turned) / np.ptp(way))
 
 
+@pytest.mark.slow
 def test_a_ball_rolls_where_friction_is_enough(designs):
     # When a facet lands within a step is chance, which may cost a run some percent: the median.
     runs = [accelerations(designs, 0.5, step=step) for step in (5e-3, 4e-3, 2.5e-3)]
@@ -51,6 +52,7 @@ def test_a_ball_rolls_where_friction_is_enough(designs):
     assert slip < 0.02
 
 
+@pytest.mark.slow
 def test_a_ball_slips_where_friction_is_not(designs):
     angle, friction = math.radians(20.0), 0.08
     assert friction < 2.0 / 7.0 * math.tan(angle)
@@ -64,7 +66,7 @@ def test_a_ball_slips_where_friction_is_not(designs):
     assert slip > 0.3
 
 
-@pytest.mark.parametrize("step", [5e-3, 2e-3])
+@pytest.mark.parametrize("step", [5e-3, pytest.param(2e-3, marks=pytest.mark.slow)])
 def test_a_ball_that_bounces_only_loses_energy(designs, step):
     result = vs.simulate(designs.bouncing(), end_time=0.2, time_step=step, record_interval=step)
     total, grown = designs.energies(result.recording)
@@ -79,6 +81,7 @@ def test_a_ball_that_bounces_only_loses_energy(designs, step):
     assert 0.02 < kept < 0.9
 
 
+@pytest.mark.slow
 def test_two_balls_that_meet_keep_their_momentum(designs):
     result = vs.simulate(designs.meeting(), end_time=0.05, time_step=5e-3, record_interval=5e-3)
     recording = result.recording

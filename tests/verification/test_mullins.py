@@ -107,6 +107,7 @@ def test_preconditioned_rubber_begins_on_the_way_back():
     assert expected == pytest.approx(back, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_chamber_softens_on_its_first_inflation():
     finger = families.pneunet(chambers=2).with_values(
         'parts.0.material={model="yeoh", c=["12 kPa", "1 kPa", "0 kPa"]}'

@@ -97,6 +97,7 @@ def test_images_of_each_other_are_taken_together(run):
         assert size[round(SIDE / mm) - x, y, z] == is_large
 
 
+@pytest.mark.slow
 def test_more_of_the_error_takes_more_voxels(run):
     counts = [Setup.of(refined(run, share)).elements for share in (0.3, 0.6, 0.9)]
     assert counts == sorted(counts)

@@ -95,6 +95,9 @@ def require_same(
     return part
 
 
+#: A quarter cuts what half a body cuts, and once more; the half alone is slow.
+ONE_OR_TWO = pytest.mark.parametrize("planes", [pytest.param([X], marks=pytest.mark.slow), [X, Y]])
+
 PLATE = Object(
     name="plate",
     shape=vs.Box(size=(20 * mm, 20 * mm, 4 * mm), center=(0, 0, 14 * mm)),
@@ -102,7 +105,8 @@ PLATE = Object(
 )
 
 
-@pytest.mark.parametrize("planes", [[X], [X, Y]])
+@pytest.mark.slow
+@ONE_OR_TWO
 def test_a_plate_presses_a_block(planes: list[Symmetry]) -> None:
     part = require_same(block(objects=[PLATE]), planes, **TIGHT)
     [contact] = part.contacts
@@ -112,7 +116,8 @@ def test_a_plate_presses_a_block(planes: list[Symmetry]) -> None:
     assert part.message.endswith(f"solved for {half} of the body")
 
 
-@pytest.mark.parametrize("planes", [[X], [X, Y]])
+@pytest.mark.slow
+@ONE_OR_TWO
 def test_a_block_lies_on_a_floor(planes: list[Symmetry]) -> None:
     top = vs.Force(region=vs.Region(z=(9 * mm, "inf")), value=(0, 0, -0.5))
     design = block(9 * mm, clamps=[], floor=vs.Floor(), loads=[vs.Gravity(), top])
@@ -139,12 +144,13 @@ def pads(friction: float = 0.5, **left: object) -> vs.Design:
 DEFAULT = 5e-5
 
 
+@pytest.mark.slow
 def test_pads_that_are_images_pinch_a_block() -> None:
     require_same(pads(friction=0.0), [X], **TIGHT)
     require_same(pads(), [X], DEFAULT)
 
 
-@pytest.mark.parametrize("planes", [[X], [X, Y]])
+@ONE_OR_TWO
 def test_a_free_object_is_cut_by_planes(planes: list[Symmetry]) -> None:
     shape = vs.Box(size=(16 * mm, 16 * mm, 8 * mm), center=(0, 0, 10.01 * mm))
     weight = Object(name="weight", shape=shape, motion="free", mass=0.05)
@@ -169,7 +175,7 @@ def test_of_two_free_objects_one_is_solved_for() -> None:
     assert np.array_equal(np.array(left.rotation), flip @ np.array(right.rotation) @ flip)
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.5])
+@pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.slow), 0.5])
 def test_a_body_meets_its_own_image(friction: float) -> None:
     """Two legs that are pressed onto each other across the plane, with 1.5 mm between them."""
     legs = vs.Box(size=(12 * mm, 6 * mm, 12 * mm), center=(0, 0, 6 * mm)) - vs.Box(
@@ -237,7 +243,7 @@ def gripper(**changes: object) -> vs.Design:
     return vs.Design(**(given | changes))
 
 
-@pytest.mark.parametrize("planes", [[X], [X, Y]])
+@pytest.mark.parametrize("planes", [[X], pytest.param([X, Y], marks=pytest.mark.slow)])
 def test_two_fingers_that_are_images_grip(planes: list[Symmetry]) -> None:
     part = require_same(gripper(), planes, DEFAULT)
     right, left = (each for each in part.contacts if each.of[1] == "cube")
@@ -245,7 +251,7 @@ def test_two_fingers_that_are_images_grip(planes: list[Symmetry]) -> None:
     assert right.pressure == pytest.approx(left.pressure, rel=1e-12)
 
 
-@pytest.mark.parametrize("planes", [[X], [X, Y]])
+@ONE_OR_TWO
 def test_a_plate_presses_over_time(planes: list[Symmetry]) -> None:
     down = vs.Motion(
         displacement=(0, 0, -1 * mm), history=vs.History(time=(0, 0.05), factor=(0, 1))
@@ -266,7 +272,8 @@ def test_a_plate_presses_over_time(planes: list[Symmetry]) -> None:
         assert [each.of for each in some] == [each.of for each in other]
 
 
-@pytest.mark.parametrize("planes", [[X], [X, Y]])
+@pytest.mark.slow
+@ONE_OR_TWO
 def test_a_balloon_grows_against_a_wall(planes: list[Symmetry]) -> None:
     ball = vs.Sphere(radius=15 * mm) - vs.Sphere(radius=10 * mm)
     wall = vs.Box(size=(80 * mm, 80 * mm, 5 * mm), center=(0, 0, 18.5 * mm))

@@ -83,8 +83,18 @@ def test_half_a_bar_is_the_bar() -> None:
     require_same(vs.simulate(BAR.replace(symmetry=ALONG)), vs.simulate(BAR), SOLVED)
 
 
-@pytest.mark.parametrize("fill", ["binary", "fraction"])
-@pytest.mark.parametrize("control", [{}, {"control": "volume", "volume_ratio": 1.3, "steps": 3}])
+BY_VOLUME = {"control": "volume", "volume_ratio": 1.3, "steps": 3}
+
+
+@pytest.mark.parametrize(
+    ("fill", "control"),
+    [
+        ("binary", {}),
+        ("fraction", BY_VOLUME),
+        pytest.param("fraction", {}, marks=pytest.mark.slow),
+        pytest.param("binary", BY_VOLUME, marks=pytest.mark.slow),
+    ],
+)
 def test_a_quarter_of_a_chamber_is_the_chamber(fill: str, control: dict[str, object]) -> None:
     whole = ball(fill)
     quarter = whole.replace(symmetry=[Symmetry(plane="x"), Symmetry(plane="y")])

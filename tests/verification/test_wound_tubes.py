@@ -30,6 +30,7 @@ def neutral_angle(degrees, **tube):
     return np.interp(0.0, along, degrees)
 
 
+@pytest.mark.slow
 def test_a_braid_keeps_its_length_at_the_neutral_angle():
     # A thousand times as stiff as the rubber, fibers hardly stretch. The rubber carries pressure
     # through a wall t about the radius R: tan² θ = 2 to within (t/2R)² = 1 % of each side, which is
