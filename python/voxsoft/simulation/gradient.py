@@ -27,7 +27,7 @@ from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.softening import refuse_softening
-from voxsoft.simulation.touching import has_contact, refuse_bodies
+from voxsoft.simulation.touching import has_contact, refuse_adhesion, refuse_bodies
 
 Floats = NDArray[np.float64]
 
@@ -103,6 +103,7 @@ def gradient(
     """
     _check_state(result)
     refuse_bodies(result.design, "gradients")
+    refuse_adhesion(result.design, "gradients")
     chosen = _targets(result.design, targets)
     for target in chosen.values():
         _check_slope(target)

@@ -18,7 +18,7 @@ from voxsoft.simulation import Result, Setup
 from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.growth import grows_over_time, has_profiles
 from voxsoft.simulation.softening import softening_parts
-from voxsoft.simulation.touching import ContactState, Pose, has_contact
+from voxsoft.simulation.touching import ContactState, Pose, adhesive_entry, has_contact
 from voxsoft.studio import events
 from voxsoft.studio.message import Triple
 
@@ -28,6 +28,8 @@ NOT_LIVE: Final = "Live motion knows contact of rubber alone, not of the lattice
 SEVERAL: Final = "Live motion does not know several bodies yet: press Solve."
 #: The same for what is bonded.
 BONDED: Final = "Live motion does not know bonds yet: press Solve."
+#: Sentence for contact with adhesion.
+ADHERES: Final = "Live motion does not know adhesion yet: press Solve."
 #: The same for volumes of gas and liquid.
 SUPPLIED: Final = "Live motion does not know supplies yet: press Solve."
 #: The same for rubber that softens.
@@ -78,6 +80,8 @@ def not_live(setup: Setup) -> str:
         return SEVERAL
     if setup.touching is not None and setup.touching.bonds:
         return BONDED
+    if adhesive_entry(setup.design):
+        return ADHERES
     of_lattice = any(isinstance(material, Lattice) for material in setup.materials)
     return NOT_LIVE if of_lattice else ""
 
