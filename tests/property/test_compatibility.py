@@ -135,6 +135,7 @@ SAMPLES = {
             }
         ]
     },
+    "adhesion": {"contact": {"adhesion": {"strength": "1 kPa", "range": "1 mm"}}},
     "bonds": {
         "shapes": {
             **SHAPES,

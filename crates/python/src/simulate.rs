@@ -6,6 +6,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArra
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use voxsoft_contact::touch::Flip;
+use voxsoft_contact::touch::law::Adhesive;
 use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::fluid::{Network, Walls};
@@ -398,6 +399,14 @@ impl PyProblemParts {
             strength,
         };
         self.touch.get_or_insert_default().bonds.push(bond);
+    }
+
+    /// Sets a traction between two surfaces of up to `strength` (Pa) within a `range` (m) that draws them together.
+    fn adhesion(&mut self, a: u32, b: u32, strength: f64, range: f64) -> PyResult<()> {
+        let law = Adhesive::new(strength, range).map_err(to_python)?;
+        let parts = self.touch.get_or_insert_default();
+        parts.laws.set([a, b], Arc::new(law));
+        Ok(())
     }
 
     /// Adds a membrane on triangles.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use voxsoft_contact::skin::Skin;
 use voxsoft_contact::touch::bonds::{Bond, Side, Solid};
+use voxsoft_contact::touch::law::Laws;
 use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_contact::touch::{Carried, Description, Flip, Surface, Touch};
 use voxsoft_player::Placed;
@@ -128,6 +129,8 @@ pub(crate) struct TouchParts {
     pub objects: Vec<ObjectPart>,
     pub friction: Vec<Vec<f64>>,
     pub bonds: Vec<BondPart>,
+    /// Contact laws of pairs of surfaces that differ from hard contact.
+    pub laws: Laws,
     /// The whole body, if a symmetric part of it is solved for.
     pub whole: Option<Whole>,
 }
@@ -266,7 +269,7 @@ impl TouchParts {
             voxel: self.voxel(),
             young: mean_modulus(body),
         };
-        let touch = Touch::new(description, &rest)?;
+        let touch = Touch::new(description, &rest)?.with_laws(self.laws.clone(), &rest);
         let touch = touch.with_bodies(self.bodies.len() as u32, shares);
         let still = still(problem);
         Ok(match &images {

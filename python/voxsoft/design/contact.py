@@ -11,12 +11,37 @@ from voxsoft.design.object import Object
 from voxsoft.design.operands import Name
 from voxsoft.errors import DesignError, ErrorDetail
 from voxsoft.records import Record, closest
-from voxsoft.units import PositivePressure
+from voxsoft.units import PositiveLength, PositivePressure
 
 #: What a pair calls the body of the design.
 BODY: Final = "body"
 #: What it calls the floor.
 FLOOR: Final = "floor"
+
+
+class Adhesion(Record):
+    """Traction between two surfaces that are close to each other, which draws them together.
+
+    Parameters
+    ----------
+    strength
+        Largest traction, at a third of the range.
+    range
+        Gap beyond which there is none.
+
+    Notes
+    -----
+    The work of separation is 9/16 of strength times range, for each area. It comes back when the
+    surfaces close again.
+
+    Examples
+    --------
+    >>> Adhesion(strength="2 kPa", range="0.5 mm").strength
+    2000.0
+    """
+
+    strength: PositivePressure
+    range: PositiveLength
 
 
 class ContactPair(Record):
@@ -36,6 +61,8 @@ class ContactPair(Record):
     strength
         The traction at which a bond lets go, by its pull and by what acts along it,
         the root of the sum of their squares; then they touch. Default: it never does.
+    adhesion
+        Adhesion of the two, of two different things that touch; default: that of :class:`Contact`.
 
     Examples
     --------
@@ -54,12 +81,19 @@ write kind = "bonded", or leave strength out
     friction: float | None = Field(None, ge=0.0)
     kind: Literal["touching", "none", "bonded"] = "touching"
     strength: PositivePressure | None = None
+    adhesion: Adhesion | None = None
 
     @model_validator(mode="after")
     def _uses_all(self) -> Self:
         if self.strength is not None and self.kind != "bonded":
             what = f'is that of a bond, and the kind is "{self.kind}"'
             raise DesignError("strength", what, 'write kind = "bonded", or leave strength out')
+        if self.adhesion is not None and self.kind != "touching":
+            what = f'is that of a pair that touches, and the kind is "{self.kind}"'
+            raise DesignError("adhesion", what, 'write kind = "touching", or leave adhesion out')
+        if self.adhesion is not None and self.of[0] == self.of[1]:
+            what = f'acts between two things, and the pair is "{self.of[0]}" with itself'
+            raise DesignError("adhesion", what, "name two things, or leave adhesion out")
         slides = self.kind == "touching" or self.strength is not None
         if self.friction is not None and not slides:
             what = f'is not used by what does not slide, and the kind is "{self.kind}"'
@@ -77,6 +111,8 @@ class Contact(Record):
     ----------
     friction
         Coulomb's coefficient of all pairs; default 0.
+    adhesion
+        Adhesion of all pairs of two different things that touch; default: none.
     pairs
         Pairs that differ; of two entries for one pair the later one counts.
     separate
@@ -102,6 +138,7 @@ class Contact(Record):
     """
 
     friction: float = Field(0.0, ge=0.0)
+    adhesion: Adhesion | None = None
     pairs: tuple[ContactPair, ...] = ()
     separate: bool = False
     surface: Literal["smooth", "voxels"] = "smooth"

@@ -186,6 +186,11 @@ _REFUSED: Final[tuple[tuple[str, tuple[str, ...], Reason], ...]] = (
             "use a sampler without gradients",
         ),
     ),
+    (
+        "adhesion",
+        ("gradient", "page", "live motion", "outside codes", "symmetry"),
+        Reason("is not known to {who} yet", "leave adhesion out"),
+    ),
     ("several bodies", ("gradient", "page", "live motion"), _BODIES),
     (
         "several bodies",

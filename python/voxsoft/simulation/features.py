@@ -60,6 +60,16 @@ def _bonds(design: Design) -> Iterator[str]:
             yield f"contact.pairs[{index}]"
 
 
+def _adhesions(design: Design) -> Iterator[str]:
+    if design.contact is None:
+        return
+    if design.contact.adhesion is not None:
+        yield "contact.adhesion"
+    for index, pair in enumerate(design.contact.pairs):
+        if pair.adhesion is not None:
+            yield f"contact.pairs[{index}].adhesion"
+
+
 def _supplies(design: Design) -> Iterator[str]:
     if has_supplies(design):
         yield "supplies" if design.supplies else "connections"
@@ -182,6 +192,7 @@ FEATURES: Final[Mapping[str, _Places]] = MappingProxyType(
             lambda each: each.way is not None and each.way.rotation is not None
         ),
         "bonds": _bonds,
+        "adhesion": _adhesions,
         "several bodies": _key("bodies"),
         "tendons": _entries("tendons"),
         "springs and the like": _attachments,
@@ -218,6 +229,7 @@ IMPLIED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
         "free objects": ("contact",),
         "objects that turn": ("contact",),
         "bonds": ("contact",),
+        "adhesion": ("contact",),
         "several bodies": ("contact",),
         "wound fibers": ("fibers",),
         "activations over time": ("activations",),

@@ -1,4 +1,7 @@
-"""Contact of a design prepared for the core: surfaces, objects, friction."""
+"""Contact of a design prepared for the core: surfaces, objects, friction, adhesion.
+
+Long because surfaces are moved apart and checked where all that touches is known.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft._shown import rounded
 from voxsoft.design import Contact, Design, History, Motion
-from voxsoft.design.contact import names_of
+from voxsoft.design.contact import Adhesion, names_of
 from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.apart import TOUCH, Surface, overlap_of, way_out
@@ -323,6 +326,21 @@ class Touching:
         return tuple(bond for bond in found.values() if bond is not None)
 
     @cached_property
+    def adhesions(self) -> dict[tuple[int, int], Adhesion]:
+        """Adhesion by numbers of surfaces; of two entries for one pair the later one counts."""
+        count, common = len(self.names), self.contact.adhesion
+        found = {(a, b): common for a in range(count) for b in range(a + 1, count)}
+        for pair in self.contact.pairs:
+            a, b = sorted(self.names.index(name) for name in pair.of)
+            if a != b:
+                found[a, b] = pair.adhesion or (common if pair.kind == "touching" else None)
+        return {
+            of: adhesion
+            for of, adhesion in found.items()
+            if adhesion is not None and not math.isnan(self.friction[of])
+        }
+
+    @cached_property
     def solids(self) -> tuple[Solid | None, ...]:
         """Mass and inertia of each free object; None for those that are held."""
         rows = zip(self.design.objects, self.traced, self.surfaces, strict=True)
@@ -402,6 +420,8 @@ class Touching:
         parts.friction(self.friction)
         for bond in self.bonds:
             parts.bond(*bond.of, self.reach, bond.strength)
+        for of, adhesion in self.adhesions.items():
+            parts.adhesion(*of, adhesion.strength, adhesion.range)
 
     def contacts(self, found: Sequence[_core.Contact]) -> tuple[ContactState, ...]:
         """Convert the core's contacts."""

@@ -84,7 +84,9 @@ impl Touch {
         points: &[Vec3],
     ) -> bool {
         let meeting = facing.and_then(|facing| self.meeting(sample as u32, facing, points));
-        meeting.is_some_and(|meeting| self.pressure(&state.now[sample], &meeting) > 0.0)
+        meeting
+            .and_then(|meeting| self.normal(&state.now[sample], &meeting, points))
+            .is_some_and(|normal| normal.pressure > 0.0)
     }
 
     fn is_deep(&self, sample: usize, facing: Option<Facing>, points: &[Vec3]) -> bool {

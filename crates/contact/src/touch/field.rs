@@ -61,19 +61,19 @@ impl Touch {
         let mut pressed = vec![0.0; count];
         let mut direction = vec![[0.0; 3]; count];
         let mut friction = vec![[0.0; 3]; count];
-        self.each_contact(state, positions, |meeting, pressure, _| {
+        self.each_contact(state, positions, |meeting, normal, _| {
             self.each_share(meeting.spot(), |vertex, sign, share| {
-                pressed[vertex] += share * pressure;
+                pressed[vertex] += share * normal.force();
                 axpy(
                     &mut direction[vertex],
-                    sign * share * pressure,
+                    sign * share * normal.size(),
                     meeting.normal,
                 );
             });
         });
-        self.each_friction(state, positions, |sample, found| {
-            self.each_share(found.spot(sample), |vertex, sign, share| {
-                axpy(&mut friction[vertex], sign * share, found.force);
+        self.each_friction(state, positions, |sample, slid| {
+            self.each_share(slid.spot(sample), |vertex, sign, share| {
+                axpy(&mut friction[vertex], sign * share, slid.found.force);
             });
         });
         for flip in flips {

@@ -1,25 +1,20 @@
 //! Coulomb friction with the multipliers, bounds and anchors of samples.
 
-use voxsoft_solid::matrix::Mat3;
-use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
+use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
 
 use super::gap::unit;
+use super::law::{Along, Law, Tangential};
 use super::state::{Memory, State};
 use super::{Spot, Touch};
 
 /// Friction on one sample.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Friction {
-    /// Force, N.
-    pub force: Vec3,
-    /// Tangent stiffness: minus the derivative of the force with respect to the slip, N/m.
-    pub stiffness: Mat3,
-    /// Energy, J.
-    pub energy: f64,
+    /// Force, stiffness and energy by the contact law.
+    pub found: Tangential,
     pub anchor: (u32, [f64; 3]),
     /// Place on an edge where it acts, as a part of the way between its ends.
     pub along: f64,
-    pub slips: bool,
 }
 
 impl Touch {
@@ -30,9 +25,14 @@ impl Touch {
         let point = self.place(sample, memory.along, points);
         let k = state.stick * self.penalty(sample);
         let free = self.free_ways(sample, point, points);
-        Friction::new(memory, k, point, free, |triangle| {
-            self.corners(triangle, points)
-        })
+        Friction::new(
+            memory,
+            k,
+            point,
+            free,
+            |triangle| self.law(sample, triangle),
+            |triangle| self.corners(triangle, points),
+        )
     }
 }
 
@@ -47,13 +47,14 @@ impl Friction {
         }
     }
 
-    /// Return mapping of a sample at `point` with a slip penalty `k` (N/m), which moves along the axes that are `free`;
-    /// `None` without a bound or an anchor.
-    pub(super) fn new(
+    /// Friction of a sample at `point` with a slip penalty `k` (N/m), which moves along the axes that are `free`, by the
+    /// law and at the corners of the triangle of its anchor; `None` without a bound or an anchor.
+    pub(super) fn new<'a>(
         memory: &Memory,
         k: f64,
         point: Vec3,
         free: [bool; 3],
+        law_of: impl FnOnce(u32) -> &'a dyn Law,
         corners_of: impl FnOnce(u32) -> [Vec3; 3],
     ) -> Option<Self> {
         let anchor = memory.anchor.filter(|_| memory.bound > 0.0)?;
@@ -71,33 +72,18 @@ impl Friction {
         for (weight, corner) in anchor.1.iter().zip(corners_of(anchor.0)) {
             axpy(&mut slip, -weight, corner);
         }
-        let trial = sub(along(memory.friction), scale(k, along(slip)));
-        let size = norm(trial);
-        let slips = size > memory.bound;
-        let (force, energy) = if slips {
-            let energy = memory.bound * (size - memory.bound / 2.0) / k;
-            (scale(memory.bound / size, trial), energy)
-        } else {
-            (trial, size * size / (2.0 * k))
-        };
-        let stiffness = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                let plane = if i == j && free[i] { 1.0 } else { 0.0 } - n[i] * n[j];
-                if slips {
-                    let across = plane - trial[i] * trial[j] / (size * size);
-                    k * memory.bound / size * across
-                } else {
-                    k * plane
-                }
-            })
+        let found = law_of(anchor.0).tangential(Along {
+            multiplier: along(memory.friction),
+            penalty: k,
+            slip: along(slip),
+            normal: n,
+            free,
+            bound: memory.bound,
         });
         Some(Self {
-            force,
-            stiffness,
-            energy,
+            found,
             anchor,
             along: memory.along,
-            slips,
         })
     }
 }

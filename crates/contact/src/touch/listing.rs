@@ -35,7 +35,7 @@ impl Touch {
     /// Lists for every sample the triangles that come near it on the straight way from the last accepted state to
     /// `points`, and in front of which it was at that state.
     pub(super) fn list(&self, state: &mut State, points: Vec<Vec3>) {
-        let reach = REACH * self.description.voxel;
+        let reach = REACH * self.description.voxel + self.laws.range();
         let swept = |triangle: &[u32; 3]| {
             let each = triangle.iter().map(|p| *p as usize);
             let ends = each.flat_map(|p| [state.accepted_points[p], points[p]]);

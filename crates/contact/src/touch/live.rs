@@ -20,6 +20,7 @@ use voxsoft_solid::vector::{Vec3, scale};
 use voxsoft_solid::{Contact, ContactMemory, ProblemError, Term};
 
 use super::friction::Friction;
+use super::law::Normal;
 use super::state::{Memory, State};
 use super::{Description, LOOKS, Meeting, Touch, gap, listing};
 
@@ -113,13 +114,17 @@ impl LiveTouch {
         }
     }
 
-    /// Calls `take` with every pressed sample and its pressure in N.
-    fn each_pressed(&self, state: &State, positions: &[Vec3], mut take: impl FnMut(&Meeting, f64)) {
+    /// Calls `take` with every pressed sample and its forces along the normal.
+    fn each_pressed(
+        &self,
+        state: &State,
+        positions: &[Vec3],
+        mut take: impl FnMut(&Meeting, Normal),
+    ) {
         self.each_near(state, positions, |meeting| {
             let memory = &state.now[meeting.sample as usize];
-            let pressure = self.touch.pressure(memory, meeting);
-            if pressure > 0.0 {
-                take(meeting, pressure);
+            if let Some(normal) = self.touch.normal(memory, meeting, &[]) {
+                take(meeting, normal);
             }
         });
     }
@@ -131,9 +136,14 @@ impl LiveTouch {
         }
         let point = self.point(sample, positions);
         let k = state.stick * self.touch.penalty(sample);
-        Friction::new(memory, k, point, [true; 3], |triangle| {
-            self.corners(triangle, positions)
-        })
+        Friction::new(
+            memory,
+            k,
+            point,
+            [true; 3],
+            |triangle| self.touch.law(sample, triangle),
+            |triangle| self.corners(triangle, positions),
+        )
     }
 
     fn each_friction(
@@ -182,7 +192,7 @@ impl LiveTouch {
     ) -> Memory {
         let friction = self.friction(state, meeting.sample, positions);
         let before = &state.now[meeting.sample as usize];
-        let sticks = friction.is_some_and(|friction| !friction.slips);
+        let sticks = friction.is_some_and(|friction| !friction.found.slips);
         let anchor = match before.anchor {
             Some(anchor) if sticks => anchor,
             _ => {
@@ -191,12 +201,13 @@ impl LiveTouch {
                 (meeting.triangle, gap::affine(point, corners))
             }
         };
+        let law = self.touch.law(meeting.sample, meeting.triangle);
         let coefficient = self.touch.coefficient(meeting.sample, meeting.triangle);
         Memory {
             normal: pressure.min(borne),
-            friction: friction.map_or([0.0; 3], |friction| friction.force),
+            friction: friction.map_or([0.0; 3], |friction| friction.found.force),
             plane: meeting.normal,
-            bound: coefficient * pressure,
+            bound: law.bound(coefficient, pressure),
             anchor: Some(anchor),
             ..Memory::default()
         }
@@ -317,7 +328,8 @@ impl Contact for LiveTouch {
         let mut moved = vec![Memory::default(); self.touch.samples.len()];
         let mut pressures = vec![0.0; moved.len()];
         let state = &self.touch.state;
-        self.each_pressed(state, positions, |meeting, pressure| {
+        self.each_pressed(state, positions, |meeting, normal| {
+            let pressure = normal.pressure;
             let sample = meeting.sample as usize;
             if -meeting.gap > deepest {
                 return; // Released as too deep; see `excess_depth`.
@@ -371,22 +383,22 @@ impl Term for LiveTouch {
     fn energy(&self, positions: &[Vec3]) -> f64 {
         let state = &self.touch.state;
         let mut energy = 0.0;
-        self.each_pressed(state, positions, |meeting, pressure| {
-            energy += pressure * pressure / (2.0 * self.touch.penalty(meeting.sample));
+        self.each_pressed(state, positions, |_, normal| energy += normal.energy);
+        self.each_friction(state, positions, |_, friction| {
+            energy += friction.found.energy;
         });
-        self.each_friction(state, positions, |_, friction| energy += friction.energy);
         energy
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
         let state = &self.touch.state;
-        self.each_pressed(state, positions, |meeting, pressure| {
-            let force = scale(pressure, meeting.normal);
+        self.each_pressed(state, positions, |meeting, normal| {
+            let force = scale(normal.force(), meeting.normal);
             self.touch.add_force(force, meeting.spot(), forces);
         });
         self.each_friction(state, positions, |sample, friction| {
             self.touch
-                .add_force(friction.force, friction.spot(sample), forces);
+                .add_force(friction.found.force, friction.spot(sample), forces);
         });
     }
 
@@ -400,9 +412,10 @@ impl Term for LiveTouch {
     fn visit_tangent(&self, positions: &[Vec3], _: Tangent, visit: Visitor<'_>) {
         let state = &self.touch.state;
         let pattern = &self.run.pattern;
-        self.each_pressed(state, positions, |meeting, _| {
+        self.each_pressed(state, positions, |meeting, normal| {
             if pattern.contains(&(meeting.sample, meeting.triangle)) {
-                self.touch.visit_gap(meeting, 0.0, &[], visit);
+                self.touch
+                    .visit_gap(meeting, [normal.stiffness, 0.0], &[], visit);
             }
         });
         self.each_friction(state, positions, |sample, friction| {

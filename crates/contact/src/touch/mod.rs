@@ -22,12 +22,14 @@
 //! a potential; at the end they are those of the pressure itself. When a state is accepted, the anchors of slipping
 //! samples move along.
 
+mod across;
 pub mod bonds;
 mod edges;
 mod facing;
 mod field;
 mod friction;
 pub(crate) mod gap;
+pub mod law;
 mod listing;
 pub mod live;
 mod mortar;
@@ -47,8 +49,9 @@ use voxsoft_solid::{Contact, ProblemError};
 use bonds::Bond;
 pub use field::{ContactField, Flip};
 use gap::normal;
+use law::Laws;
 pub use report::PairReport;
-use state::{Facing, Memory, State};
+use state::{Facing, State};
 use surface::Sample;
 pub use surface::{Carried, Surface};
 
@@ -141,6 +144,8 @@ pub struct Touch {
     ties_at: Vec<Vec<(u32, u32)>>,
     /// Contact penalty in units of Young's modulus over the voxel size, which live contact changes.
     penalty: f64,
+    /// Contact laws of pairs of surfaces.
+    laws: Laws,
     state: State,
 }
 
@@ -289,6 +294,7 @@ impl Touch {
             around,
             ties_at: Vec::new(),
             penalty: PENALTY,
+            laws: Laws::default(),
             state: State::default(),
         };
         touch.ties_at = touch.ties_at(&first_sample, touch.points.len());
@@ -431,43 +437,6 @@ impl Touch {
     fn meeting(&self, sample: u32, facing: Facing, points: &[Vec3]) -> Option<Meeting> {
         let corners = self.corners(facing.triangle(), points);
         Meeting::new(sample, facing, self.ends(sample, points), corners)
-    }
-
-    /// Contact force on a sample along the normal, N.
-    ///
-    /// If a body touches in the unloaded design, the clearance goes to zero beside vertices that never move: their gaps
-    /// cannot change, and a multiplier that should open them would grow without bound.
-    fn pressure(&self, memory: &Memory, meeting: &Meeting) -> f64 {
-        let k = self.penalty(meeting.sample);
-        let clearance = self.clearance(meeting.sample);
-        if !(memory.normal - k * (meeting.gap - clearance) > 0.0) {
-            return 0.0;
-        }
-        let mobility = self.mobility(meeting);
-        if mobility <= ROUNDING {
-            return 0.0;
-        }
-        (memory.normal - k * (meeting.gap - mobility * clearance)).max(0.0)
-    }
-
-    /// Calls `take` with every contact pair under pressure, and its pressure in N.
-    fn each_contact(
-        &self,
-        state: &State,
-        positions: &[Vec3],
-        mut take: impl FnMut(&Meeting, f64, &[Vec3]),
-    ) {
-        let points = self.points_at(positions);
-        for (index, facing) in state.facing.iter().enumerate() {
-            let meeting = facing.and_then(|facing| self.meeting(index as u32, facing, &points));
-            let Some(meeting) = meeting else {
-                continue;
-            };
-            let pressure = self.pressure(&state.now[index], &meeting);
-            if pressure > 0.0 {
-                take(&meeting, pressure, &points);
-            }
-        }
     }
 
     /// Points that a spot moves with, each with its factor in the relative motion: those of the sample, one or two, and

@@ -256,10 +256,15 @@ impl Touch {
             ..Memory::default()
         };
         let mut now: Vec<Memory> = state.now.iter().map(anchor_of).collect();
-        self.each_contact(state, positions, |meeting, pressure, points| {
+        self.each_contact(state, positions, |meeting, normal, points| {
+            let pressure = normal.pressure;
+            if !(pressure > 0.0) {
+                return;
+            }
             let sample = meeting.sample as usize;
             let memory = &state.now[sample];
             let friction = self.friction(state, meeting.sample, points);
+            let law = self.law(meeting.sample, meeting.triangle);
             let coefficient = self.coefficient(meeting.sample, meeting.triangle);
             let (anchor, along, since) = memory.anchor.map_or_else(
                 || self.first_anchor(state, meeting, points),
@@ -267,9 +272,9 @@ impl Touch {
             );
             now[sample] = Memory {
                 normal: pressure,
-                friction: friction.map_or([0.0; 3], |friction| friction.force),
+                friction: friction.map_or([0.0; 3], |friction| friction.found.force),
                 plane: meeting.normal,
-                bound: coefficient * pressure,
+                bound: law.bound(coefficient, pressure),
                 anchor: Some(anchor),
                 along,
                 since,
@@ -281,12 +286,15 @@ impl Touch {
     /// Multipliers and anchors of samples from an accepted state on: the anchors of slipping samples move along.
     pub(super) fn carried_on(&self, state: &State, positions: &[Vec3]) -> Vec<Memory> {
         let mut moved = vec![Memory::default(); self.samples.len()];
-        self.each_contact(state, positions, |meeting, _, points| {
+        self.each_contact(state, positions, |meeting, normal, points| {
+            if !(normal.pressure > 0.0) {
+                return;
+            }
             let memory = &mut moved[meeting.sample as usize];
             *memory = state.now[meeting.sample as usize];
             let friction = self.friction(state, meeting.sample, points);
-            if friction.is_none_or(|friction| friction.slips) {
-                memory.friction = friction.map_or([0.0; 3], |friction| friction.force);
+            if friction.is_none_or(|friction| friction.found.slips) {
+                memory.friction = friction.map_or([0.0; 3], |friction| friction.found.force);
                 (memory.anchor, memory.along) = (Some(self.foot(meeting, points)), meeting.along);
             }
         });

@@ -15,16 +15,18 @@ use voxsoft_solid::vector::{Vec3, axpy, dot};
 use super::Touch;
 
 impl Touch {
-    /// Pressure of every sample in N, linearized, at the end of a step that `moves` (m) from `positions`.
+    /// Force of every sample along its normal in N, linearized, at the end of a step that `moves` (m) from `positions`.
     pub(super) fn predicted_pressures(&self, positions: &[Vec3], moves: &[Vec3]) -> Vec<f64> {
         let mut pressures = vec![0.0; self.samples.len()];
-        self.each_contact(&self.state, positions, |meeting, pressure, _| {
+        self.each_contact(&self.state, positions, |meeting, normal, _| {
             let mut relative = [0.0; 3];
             for (factor, point) in self.relative(meeting.spot()) {
                 axpy(&mut relative, factor, self.points[point as usize].at(moves));
             }
-            let closing = self.penalty(meeting.sample) * dot(meeting.normal, relative);
-            pressures[meeting.sample as usize] = (pressure - closing).max(0.0);
+            let law = self.law(meeting.sample, meeting.triangle);
+            let opening = dot(meeting.normal, relative);
+            pressures[meeting.sample as usize] =
+                law.predicted(normal, self.penalty(meeting.sample), opening);
         });
         pressures
     }

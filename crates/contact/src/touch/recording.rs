@@ -267,7 +267,7 @@ impl Touch {
             let away = dot(slip, memory.plane);
             axpy(&mut slip, -away, memory.plane);
             pressed += memory.normal;
-            if friction.slips && norm(slip) > CREEP * self.description.voxel {
+            if friction.found.slips && norm(slip) > CREEP * self.description.voxel {
                 slipping += memory.normal;
             }
         });

@@ -62,20 +62,21 @@ impl Touch {
         let state = &self.state;
         let mut found: BTreeMap<[u32; 2], (PairReport, [f64; 2])> = BTreeMap::new();
         let mut pressed_samples = vec![false; self.samples.len()];
-        self.each_contact(state, positions, |meeting, pressure, points| {
-            pressed_samples[meeting.sample as usize] = true;
+        self.each_contact(state, positions, |meeting, normal, points| {
+            let pressure = normal.pressure;
+            pressed_samples[meeting.sample as usize] = pressure > 0.0;
             let sample = &self.samples[meeting.sample as usize];
             let of = self.surfaces_of(meeting);
             let memory = &state.now[meeting.sample as usize];
             let friction = self.friction(state, meeting.sample, points);
-            let mut force = scale(pressure, meeting.normal);
+            let mut force = scale(normal.force(), meeting.normal);
             let mut tangential = [0.0; 3];
-            let (mut pressed, mut slipping) = (pressure, pressure);
+            let (mut pressed, mut slipping) = (normal.force().abs(), pressure);
             if let Some(friction) = friction {
-                tangential = friction.force;
+                tangential = friction.found.force;
                 force = add(force, tangential);
                 pressed = norm(force);
-                let sticks = !friction.slips && norm(friction.force) < NEARLY * memory.bound;
+                let sticks = !friction.found.slips && norm(tangential) < NEARLY * memory.bound;
                 if sticks {
                     slipping = 0.0;
                 }
@@ -88,9 +89,13 @@ impl Touch {
                 axpy(&mut report.friction, sign, tangential);
             }
             report.pressure += pressure;
-            report.bound += self.coefficient(meeting.sample, meeting.triangle) * pressure;
+            let coefficient = self.coefficient(meeting.sample, meeting.triangle);
+            let law = self.law(meeting.sample, meeting.triangle);
+            report.bound += law.bound(coefficient, pressure);
             report.pressed += pressed;
-            areas[self.side(meeting)] += self.area_toward(meeting, points);
+            if pressure > 0.0 {
+                areas[self.side(meeting)] += self.area_toward(meeting, points);
+            }
             report.gap = report.gap.min(meeting.gap);
             report.slipping += slipping;
         });

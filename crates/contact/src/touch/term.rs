@@ -8,6 +8,7 @@ use voxsoft_solid::{ProblemError, Strain, Term};
 
 use super::friction::Friction;
 use super::gap::{barycentric_gradients, crossing};
+use super::law::Normal;
 use super::state::{Facing, State};
 use super::{Meeting, Spot, Touch, edges};
 
@@ -40,10 +41,10 @@ impl Term for Touch {
     fn energy(&self, positions: &[Vec3]) -> f64 {
         let state = &self.state;
         let mut energy = 0.0;
-        self.each_contact(state, positions, |meeting, pressure, _| {
-            energy += pressure * pressure / (2.0 * self.penalty(meeting.sample));
+        self.each_contact(state, positions, |_, normal, _| energy += normal.energy);
+        self.each_friction(state, positions, |_, friction| {
+            energy += friction.found.energy;
         });
-        self.each_friction(state, positions, |_, friction| energy += friction.energy);
         self.each_tie(state, positions, |_, tie, force| {
             energy += dot(force, force) / (2.0 * self.tie_penalty(tie));
         });
@@ -52,12 +53,12 @@ impl Term for Touch {
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
         let state = &self.state;
-        self.each_contact(state, positions, |meeting, pressure, _| {
-            let force = scale(pressure, meeting.normal);
+        self.each_contact(state, positions, |meeting, normal, _| {
+            let force = scale(normal.force(), meeting.normal);
             self.add_force(force, meeting.spot(), forces);
         });
         self.each_friction(state, positions, |sample, friction| {
-            self.add_force(friction.force, friction.spot(sample), forces);
+            self.add_force(friction.found.force, friction.spot(sample), forces);
         });
         self.each_tie(state, positions, |_, tie, force| {
             tie.first.add_force(1.0, force, forces);
@@ -71,11 +72,11 @@ impl Term for Touch {
 
     fn visit_tangent(&self, positions: &[Vec3], tangent: Tangent, visit: Visitor<'_>) {
         let state = &self.state;
-        let believed = |sample: usize, pressure: f64| {
+        let believed = |sample: usize, normal: Normal| {
             let more = SPURIOUS * self.description.young * self.stiff_area(sample as u32);
             match tangent {
-                Tangent::Exact if state.retraces => pressure,
-                Tangent::Exact => pressure.min(state.now[sample].normal + more),
+                Tangent::Exact if state.retraces => normal.force(),
+                Tangent::Exact => normal.force().min(state.now[sample].normal + more),
                 Tangent::Stressless => 0.0,
             }
         };
@@ -94,18 +95,18 @@ impl Term for Touch {
 }
 
 impl Touch {
-    /// Contact stiffness; its geometric part uses the pressure (N) that `believed` returns for a sample and its
-    /// pressure.
+    /// Contact stiffness; its geometric part uses the force along the normal (N) that `believed` returns for a sample
+    /// and its forces.
     pub(super) fn visit_stiffness_under(
         &self,
         state: &State,
         positions: &[Vec3],
-        believed: impl Fn(usize, f64) -> f64,
+        believed: impl Fn(usize, Normal) -> f64,
         visit: Visitor<'_>,
     ) {
-        self.each_contact(state, positions, |meeting, pressure, points| {
-            let pressure = believed(meeting.sample as usize, pressure);
-            self.visit_gap(meeting, pressure, points, visit);
+        self.each_contact(state, positions, |meeting, normal, points| {
+            let force = believed(meeting.sample as usize, normal);
+            self.visit_gap(meeting, [normal.stiffness, force], points, visit);
         });
         self.each_friction(state, positions, |sample, friction| {
             self.visit_friction(sample, &friction, visit);
@@ -168,25 +169,25 @@ impl Touch {
         let (factors, points): (Vec<f64>, Vec<u32>) = self.relative(friction.spot(sample)).unzip();
         let block = |a: usize, b: usize| {
             friction
+                .found
                 .stiffness
                 .map(|row| scale(factors[a] * factors[b], row))
         };
         self.visit_points(&points, block, visit);
     }
 
-    /// Tangent stiffness of a contact pair: `k n nᵀ` and the geometric stiffness of the turning normal under the
-    /// pressure.
+    /// Tangent stiffness of a contact pair: `k n nᵀ` with the stiffness `k` of its law, and the geometric stiffness of
+    /// the turning normal under the force.
     pub(super) fn visit_gap(
         &self,
         meeting: &Meeting,
-        pressure: f64,
+        [k, force]: [f64; 2],
         points: &[Vec3],
         visit: Visitor<'_>,
     ) {
-        let k = self.penalty(meeting.sample);
         let n = meeting.normal;
         let (factors, own): (Vec<f64>, Vec<u32>) = self.relative(meeting.spot()).unzip();
-        let gradients = (pressure > 0.0)
+        let gradients = (force != 0.0)
             .then(|| self.turning(meeting, points))
             .flatten();
         let block = |a: usize, b: usize| {
@@ -194,14 +195,14 @@ impl Touch {
                 std::array::from_fn(|j| k * factors[a] * factors[b] * n[i] * n[j])
             });
             if let Some(gradients) = &gradients {
-                // Minus the pressure times the second derivative of the gap.
+                // Minus the force times the second derivative of the gap.
                 let together = meeting.gap * dot(gradients[a], gradients[b]);
                 for i in 0..3 {
                     for j in 0..3 {
                         let second = n[i] * gradients[a][j] * factors[b]
                             + factors[a] * gradients[b][i] * n[j]
                             + together * n[i] * n[j];
-                        block[i][j] += pressure * second;
+                        block[i][j] += force * second;
                     }
                 }
             }
