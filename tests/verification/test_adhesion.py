@@ -8,7 +8,7 @@ from voxsoft.design import Contact, Object
 from voxsoft.design.contact import Adhesion, ContactPair
 from voxsoft.errors import DesignError
 from voxsoft.simulation import gradient, simulate
-from voxsoft.studio.objects import ADHERES, not_live
+from voxsoft.studio.objects import not_live
 from voxsoft.units import MPa, kPa, mm
 
 SIDE = 8 * mm
@@ -115,4 +115,4 @@ def test_uses_that_do_not_know_adhesion_refuse_it():
         gradient(result, "contact_force", "parts[0].material.young")
     with pytest.raises(DesignError, match=r"contact\.adhesion: is not known to planes of symmetry"):
         simulate(pulled(0.1 * mm, symmetry=[{"plane": "x", "at": SIDE / 2}]))
-    assert not_live(vs.simulation.Setup(result.design, result.mesh)) == ADHERES
+    assert "adhesion" in not_live(vs.simulation.Setup(result.design, result.mesh))
