@@ -196,6 +196,7 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     **{(Tendon, name): {"tension": None} for name in ("length", "shortening")},
     (Tendon, "stiffness"): {"tension": None, "length": "50 mm"},
     (ContactPair, "kind"): {"of": ("body", "plain")},
+    (ContactPair, "adhesion"): {"of": ("body", "plain")},
     (ContactPair, "strength"): {"of": ("body", "plain"), "kind": "bonded"},
     (Object, "density"): {"motion": "free"},
     (Body, "design"): {"parts": None},

@@ -102,5 +102,6 @@ def test_a_body_in_contact_says_why_it_has_none(fresh_studio, tmp_path):
             return await page.until("vibration", lambda v: v.trouble)
 
     trouble = run(scenario())
-    assert "contact" in trouble.trouble
+    assert trouble.trouble == "objects: is not known to modes"
+    assert "contact" in trouble.hint
     assert trouble.frequencies == []

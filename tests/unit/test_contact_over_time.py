@@ -158,7 +158,7 @@ def test_what_cannot_be_is_refused_with_its_place(changes, message):
     ("settings", "message"),
     [
         ({"method": "dynamics", "substeps": 4}, "substeps: is a setting of explicit dynamics"),
-        ({"method": "xpbd", "end_time": 1}, "means dynamics to an end time by xpbd"),
+        ({"method": "xpbd", "end_time": 1}, "the settings mean dynamics by xpbd"),
     ],
 )
 def test_settings_that_know_no_free_objects_are_refused(settings, message):

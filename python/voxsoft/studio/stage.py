@@ -290,7 +290,7 @@ class Stage:
         def fail(error: VoxSoftError) -> None:
             if is_shown():
                 none = events.Vibration(topology=topology, frame=frame, frequencies=[])
-                none.trouble, none.hint = error.what, error.hint
+                none.trouble, none.hint = f"{error.where}: {error.what}", error.hint
                 self.bus.publish(none)
 
         ModesSearch(

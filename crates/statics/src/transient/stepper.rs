@@ -29,6 +29,8 @@ impl Motion {
             if self.stage != Stage::Second {
                 return Ok(());
             }
+            // Both stages count as one step.
+            self.steps -= 1;
         }
     }
 
