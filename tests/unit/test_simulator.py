@@ -43,6 +43,7 @@ def test_the_same_commands_give_the_same_bits(design):
     # And so they do after a reset, from the unloaded shape.
     fresh = simulator.reset()
     np.testing.assert_array_equal(fresh.positions, fresh.result.mesh.vertices)
+    assert np.isfinite(fresh.result.residual)
     assert_same_bits(first, [fresh, *drive(simulator)])
 
 

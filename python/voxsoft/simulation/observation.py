@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,14 +13,23 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft.simulation.commands import LoadCommands, Value
 from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.simulation.dynamics import converges_each_step
 from voxsoft.simulation.result import Result, Status
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.state import measured_result
+from voxsoft.simulation.state import measured_result, result_at
 from voxsoft.simulation.touching import ContactState, Pose
 
 Floats = NDArray[np.float64]
 #: ``inverted``: voxels are inside out, so that stress and volume mean nothing there.
 MotionStatus = Literal["moving", "at-rest", "inverted", "diverged"]
+
+
+class _Known(TypedDict):
+    """Facts of a state that its simulator knows."""
+
+    status: Status
+    message: str
+    time: float
 
 
 @dataclass(frozen=True)
@@ -128,13 +137,14 @@ class Observation:
         """Result of the state under its loads; made on demand."""
         statuses: dict[MotionStatus, Status] = {"at-rest": "ok", "diverged": "diverged"}
         setup = Setup(self._commands.under(self._setup.design, self._values), self._setup.mesh)
-        return measured_result(
-            setup,
-            self._moment.measured(setup.problem),
-            status=statuses.get(self.status, "not-at-rest"),
-            message=self.message,
-            time=self.time,
-        )
+        known: _Known = {
+            "status": statuses.get(self.status, "not-at-rest"),
+            "message": self.message,
+            "time": self.time,
+        }
+        if not converges_each_step(setup.design):
+            return result_at(setup, self.positions, **known)
+        return measured_result(setup, self._moment.measured(setup.problem), **known)
 
     @property
     def contacts(self) -> tuple[ContactState, ...]:
