@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.simulation import Setup
-from voxsoft.simulation.crossed_surfaces import are_apart
+from voxsoft.simulation.checks.crossed_surfaces import are_apart
 
 #: Faces nearer than this on the unloaded body, in voxels, are a fold of the surface or the two
 #: sides of a crease, which follow voxels that are crushed: contact does not look at neighbors.

@@ -20,7 +20,7 @@ import numpy as np
 
 import voxsoft as vs
 from voxsoft.design import Design, families
-from voxsoft.design.discretize import filled, mesh_of
+from voxsoft.design.discretization.discretize import filled, mesh_of
 from voxsoft.design.solver import Solver
 from voxsoft.simulation import simulate
 

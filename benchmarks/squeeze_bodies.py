@@ -23,11 +23,11 @@ from crossing_faces import Faces
 
 import voxsoft as vs
 from voxsoft.design import Contact, Object
-from voxsoft.design.discretize import mesh_of
+from voxsoft.design.discretization.discretize import mesh_of
 from voxsoft.errors import ShapeError, VoxSoftError
 from voxsoft.shapes import Shape, random_shape, voxelize
 from voxsoft.simulation import Setup
-from voxsoft.simulation.skin import skin_of
+from voxsoft.simulation.setup.skin import skin_of
 from voxsoft.units import kPa, mm
 
 #: Shapes lie in a cube of this half edge [m], divided into so many voxels along an edge.

@@ -74,7 +74,7 @@ if TYPE_CHECKING:
         Tendon,
         Traction,
     )
-    from voxsoft.design.discretize import mesh_of, voxels_of
+    from voxsoft.design.discretization.discretize import mesh_of, voxels_of
     from voxsoft.errors import VoxSoftError
     from voxsoft.files import load, save
     from voxsoft.materials import (
@@ -121,8 +121,8 @@ if TYPE_CHECKING:
         simulate_many,
         workspace,
     )
-    from voxsoft.simulation.check import check
-    from voxsoft.simulation.gradient import gradient
+    from voxsoft.simulation.checks.check import check
+    from voxsoft.simulation.derivatives.gradient import gradient
     from voxsoft.study import Study
     from voxsoft.voxels import Voxels
 
@@ -153,7 +153,7 @@ _HOMES = {
         "Tendon",
         "Traction",
     ),
-    "voxsoft.design.discretize": ("mesh_of", "voxels_of"),
+    "voxsoft.design.discretization.discretize": ("mesh_of", "voxels_of"),
     "voxsoft.errors": ("VoxSoftError",),
     "voxsoft.files": ("load", "save"),
     "voxsoft.materials": (

@@ -5,8 +5,8 @@ from typing import get_args
 
 import voxsoft
 from voxsoft import _core
-from voxsoft.simulation.result import Status
-from voxsoft.simulation.run import _STATUSES
+from voxsoft.simulation.results.result import Status
+from voxsoft.simulation.runs.run import _STATUSES
 
 PACKAGE = Path(voxsoft.__file__).parent
 

@@ -16,7 +16,7 @@ KIND_WORDS = {model.model_fields["kind"].default for model in MODELS}
 ACTIONS = {each.__name__ for each in actions.Action.__subclasses__()}
 NAMES = {model.__name__ for model in MODELS} | ACTIONS
 #: Sites that may ask, each with how often: pressure on an open surface has a volume to it.
-ALLOWED = {"simulation/loaded_state.py": 1}
+ALLOWED = {"simulation/derivatives/loaded_state.py": 1}
 
 
 def asks(node):

@@ -11,7 +11,7 @@ import voxsoft as vs
 from voxsoft.cli.app import app
 from voxsoft.design.contact import Contact
 from voxsoft.jobs.kept_path import FOLDER
-from voxsoft.simulation import load_path
+from voxsoft.simulation.runs import load_path
 from voxsoft.units import kPa, mm
 
 RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.45, density=1070.0)

@@ -22,7 +22,7 @@ from voxsoft.simulation.compatibility import (
     refused_together,
 )
 from voxsoft.simulation.features import FEATURES, IMPLIED, has_feature
-from voxsoft.simulation.state import result_at
+from voxsoft.simulation.runs.state import result_at
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.html import page_of
 

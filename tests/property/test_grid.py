@@ -12,7 +12,7 @@ import trimesh
 from numpy.typing import NDArray
 
 import voxsoft as vs
-from voxsoft.design.discretize import mesh_of, voxels_of
+from voxsoft.design.discretization.discretize import mesh_of, voxels_of
 from voxsoft.shapes import Box, Cylinder, Shape, TriangleMesh, voxelize
 
 #: Edges of voxels: a power of two in mm, one that is not, and thirds.

@@ -12,7 +12,7 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.simulation import Setup
-from voxsoft.simulation.crossed_surfaces import crossed_surfaces
+from voxsoft.simulation.checks.crossed_surfaces import crossed_surfaces
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 # So small that one takes a second or two.

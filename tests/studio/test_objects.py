@@ -16,8 +16,8 @@ from voxsoft.design import Contact, Object, families
 from voxsoft.errors import SimulationError
 from voxsoft.files.designs import load
 from voxsoft.simulation import simulate
-from voxsoft.simulation.contact_field import ContactField
-from voxsoft.simulation.posed import posed_surface
+from voxsoft.simulation.results.contact_field import ContactField
+from voxsoft.simulation.results.posed import posed_surface
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.exports import export_shown

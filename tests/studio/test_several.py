@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from voxsoft.design import families
-from voxsoft.design.discretize import mesh_of
+from voxsoft.design.discretization.discretize import mesh_of
 from voxsoft.design.isometry import Isometry
 from voxsoft.files.designs import load
 from voxsoft.studio import commands, events

@@ -7,7 +7,7 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.design import families
-from voxsoft.design.discretize import voxels_of
+from voxsoft.design.discretization.discretize import voxels_of
 from voxsoft.shapes.tracing import trace
 from voxsoft.studio.smooth import pack_smooth
 

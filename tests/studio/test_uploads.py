@@ -9,7 +9,7 @@ import trimesh
 
 from voxsoft import check
 from voxsoft.design import Design
-from voxsoft.design.discretize import voxels_of
+from voxsoft.design.discretization.discretize import voxels_of
 from voxsoft.errors import FileError, VoxelError
 from voxsoft.studio.uploads import design_of_array, design_of_mesh, safe_name, unpack_folder
 

@@ -8,12 +8,12 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.design import Body, Design, Motion, Region, Rotation, families
-from voxsoft.design.discretize import mesh_of, voxels_of
+from voxsoft.design.discretization.discretize import mesh_of, voxels_of
 from voxsoft.errors import DesignError, NoCavityError, VoxSoftError
 from voxsoft.files import load
 from voxsoft.jobs import RunSpec, again, run_job
 from voxsoft.jobs.source import DesignSource
-from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.setup.setup import Setup
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.smooth import pack_smooth
 from voxsoft.units import kPa, mm

@@ -11,7 +11,7 @@ from voxsoft.cli.app import app
 from voxsoft.design import Design
 from voxsoft.errors import DesignError, NoCavityError
 from voxsoft.simulation import Setup
-from voxsoft.simulation.chambers import center_of
+from voxsoft.simulation.setup.chambers import center_of
 
 #: An upright bar with two chambers side by side; the right one is as wide as `w` says.
 TWO = {

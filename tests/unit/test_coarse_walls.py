@@ -10,9 +10,9 @@ from voxsoft.cli.app import app
 from voxsoft.design import families
 from voxsoft.shapes import Box, Cylinder, Rotate
 from voxsoft.simulation import check
-from voxsoft.simulation.coarse_walls import coarse_walls
-from voxsoft.simulation.vanished import vanished_shapes
-from voxsoft.simulation.warnings import warnings_at
+from voxsoft.simulation.checks.coarse_walls import coarse_walls
+from voxsoft.simulation.checks.vanished import vanished_shapes
+from voxsoft.simulation.results.warnings import warnings_at
 
 MM = 1e-3
 

@@ -5,7 +5,7 @@ import pytest
 import voxsoft as vs
 from voxsoft.cli.compare import _show
 from voxsoft.comparison.cautions import cautions_of, steps_of_wall
-from voxsoft.design.discretize import mesh_of
+from voxsoft.design.discretization.discretize import mesh_of
 from voxsoft.files import write_comparison
 from voxsoft.units import kPa, mm
 

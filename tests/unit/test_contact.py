@@ -8,8 +8,8 @@ from voxsoft.design import Contact, ContactPair, Object, Solver
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.files import load, save
 from voxsoft.simulation import Setup, simulate
-from voxsoft.simulation.rigid import surface_of
-from voxsoft.simulation.state import result_at
+from voxsoft.simulation.runs.state import result_at
+from voxsoft.simulation.setup.rigid_objects import surface_of
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.html import page_of_body
 from voxsoft.units import kPa, mm

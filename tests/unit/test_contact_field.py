@@ -15,7 +15,7 @@ from voxsoft.files import save, write_run
 from voxsoft.files.meshes import read_mesh_file
 from voxsoft.plot import plot_body
 from voxsoft.simulation import simulate
-from voxsoft.simulation.contact_field import ContactField
+from voxsoft.simulation.results.contact_field import ContactField
 from voxsoft.units import kPa, mm
 
 

@@ -219,6 +219,6 @@ def test_what_overlaps_at_rest_is_refused(changes, message):
 
 
 def test_a_tangent_without_room_says_so(monkeypatch):
-    monkeypatch.setattr("voxsoft.simulation.dynamics.memory_limit", lambda: 1000)
+    monkeypatch.setattr("voxsoft.simulation.solving.dynamics.memory_limit", lambda: 1000)
     with pytest.raises(SimulationError, match="the tangent of 108 vertices"):
         simulate(dropped(), end_time=0.02)

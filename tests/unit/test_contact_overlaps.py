@@ -5,8 +5,8 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.design import Contact
-from voxsoft.design.discretize import mesh_of
-from voxsoft.simulation.overlaps import overlap_warnings, penetration_of
+from voxsoft.design.discretization.discretize import mesh_of
+from voxsoft.simulation.checks.overlaps import overlap_warnings, penetration_of
 from voxsoft.units import kPa, mm
 
 SIDE = 10 * mm

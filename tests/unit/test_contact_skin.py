@@ -8,11 +8,11 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.design import Contact, ContactPair, Object
-from voxsoft.design.discretize import mesh_of
+from voxsoft.design.discretization.discretize import mesh_of
 from voxsoft.errors import DesignError
 from voxsoft.files import load, save
 from voxsoft.simulation import Setup, simulate
-from voxsoft.simulation.skin import skin_of
+from voxsoft.simulation.setup.skin import skin_of
 from voxsoft.units import kPa, mm
 
 RADIUS, DEPTH = 20.0, 2.0

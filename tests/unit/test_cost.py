@@ -5,7 +5,7 @@ import pytest
 import voxsoft as vs
 from voxsoft.cli.check import _show_body
 from voxsoft.simulation import Setup, simulate
-from voxsoft.simulation.cost import Cost, cost_of, newton_iterations
+from voxsoft.simulation.solving.cost import Cost, cost_of, newton_iterations
 from voxsoft.units import kPa, mm
 
 RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.49)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.design.cut_voxels import LEAST_FILLED, CutVoxels, fractions_of
+from voxsoft.design.discretization.cut_voxels import LEAST_FILLED, CutVoxels, fractions_of
 from voxsoft.errors import DesignError, MeshError, ShapeError, SimulationError
 from voxsoft.files import read_mesh, write_mesh
 from voxsoft.materials import NeoHookean

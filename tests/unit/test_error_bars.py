@@ -12,7 +12,7 @@ from voxsoft.comparison.error_bar import share_of
 from voxsoft.design import Body, families
 from voxsoft.jobs import RunSpec, run_job
 from voxsoft.metrics import METRICS
-from voxsoft.simulation.choice import settings_at_rest
+from voxsoft.simulation.solving.choice import settings_at_rest
 from voxsoft.units import kPa, mm
 
 RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.45)

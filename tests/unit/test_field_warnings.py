@@ -11,10 +11,10 @@ from voxsoft.cli.app import app
 from voxsoft.design import Objective, families
 from voxsoft.metrics import METRICS
 from voxsoft.simulation import Setup, simulate
-from voxsoft.simulation.collapse import COLLAPSED, collapsed_voxels
-from voxsoft.simulation.fields import fields_of
-from voxsoft.simulation.loaded_state import LoadedState
-from voxsoft.simulation.tested_range import beyond_tests
+from voxsoft.simulation.checks.collapse import COLLAPSED, collapsed_voxels
+from voxsoft.simulation.checks.tested_range import beyond_tests
+from voxsoft.simulation.derivatives.loaded_state import LoadedState
+from voxsoft.simulation.results.fields import fields_of
 
 #: What makes the PneuNet the lattice that the studio's template once was.
 AS_LATTICE = (

@@ -11,10 +11,10 @@ from typer.testing import CliRunner
 import voxsoft as vs
 from voxsoft.cli.app import app
 from voxsoft.design import Body, FileMesh, families
-from voxsoft.design.discretize import mesh_of, voxels_of
+from voxsoft.design.discretization.discretize import mesh_of, voxels_of
 from voxsoft.errors import DesignError
 from voxsoft.files import load, read_mesh, save, write_mesh
-from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.setup.setup import Setup
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.smooth import pack_smooth
 from voxsoft.voxels import Voxels

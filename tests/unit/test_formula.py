@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from voxsoft.design.formula import DEEPEST_NESTING, LONGEST_FORMULA, evaluate, is_formula
+from voxsoft.design.document.formula import DEEPEST_NESTING, LONGEST_FORMULA, evaluate, is_formula
 from voxsoft.errors import DesignError, FormulaError
 from voxsoft.units import COMMON_UNITS, KINDS, Quantity
 

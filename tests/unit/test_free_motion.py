@@ -7,7 +7,7 @@ import pytest
 import voxsoft as vs
 from voxsoft.files.run_folder import write_run
 from voxsoft.simulation import Setup, check
-from voxsoft.simulation.freedom import free_motion
+from voxsoft.simulation.setup.freedom import free_motion
 from voxsoft.units import mm
 
 SOFT = vs.NeoHookean(young="60 kPa", poisson=0.45, density=1070.0)

@@ -7,7 +7,7 @@ import voxsoft as vs
 from voxsoft.errors import DesignError
 from voxsoft.geometry import enclosed_volume
 from voxsoft.simulation import Setup, check, simulate
-from voxsoft.simulation.volumes import volumes_of
+from voxsoft.simulation.setup.volumes import volumes_of
 from voxsoft.units import GPa, kPa, mm
 
 SOFT = vs.NeoHookean(young=60 * kPa, poisson=0.49)

@@ -9,8 +9,8 @@ from voxsoft.errors import DesignError
 from voxsoft.metrics import METRICS, Metric
 from voxsoft.metrics.registry import BUILT_IN
 from voxsoft.simulation import Setup
-from voxsoft.simulation.loaded_state import LoadedState
-from voxsoft.simulation.targets import check_targets
+from voxsoft.simulation.derivatives.loaded_state import LoadedState
+from voxsoft.simulation.setup.targets import check_targets
 from voxsoft.units import KINDS
 
 SOFT = 'parts.0.material={model="neo-hookean", young="60 kPa"}'

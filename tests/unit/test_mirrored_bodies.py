@@ -18,7 +18,7 @@ from voxsoft.design import (
     Rotation,
     Spring,
 )
-from voxsoft.design.discretize import mesh_of
+from voxsoft.design.discretization.discretize import mesh_of
 from voxsoft.design.isometry import Isometry
 from voxsoft.errors import DesignError
 from voxsoft.files import load

@@ -7,7 +7,7 @@ from voxsoft.design import families
 from voxsoft.errors import NoCavityError
 from voxsoft.shapes import Box, Cylinder
 from voxsoft.simulation import Setup, check
-from voxsoft.simulation.missing_cavity import why_no_cavity
+from voxsoft.simulation.setup.missing_cavity import why_no_cavity
 
 MM = 1e-3
 BLOCK = Box(size=(20 * MM,) * 3, corner=(0, 0, 0))

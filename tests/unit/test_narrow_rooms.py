@@ -5,7 +5,7 @@ import math
 import pytest
 
 from voxsoft.design import families
-from voxsoft.design.cut_voxels import CutVoxels
+from voxsoft.design.discretization.cut_voxels import CutVoxels
 from voxsoft.shapes import Box, Cylinder
 
 H = 0.002

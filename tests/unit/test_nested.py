@@ -8,8 +8,8 @@ import pytest
 import voxsoft as vs
 from voxsoft.design import Contact, Symmetry
 from voxsoft.simulation import Setup
-from voxsoft.simulation.nested import nested
-from voxsoft.simulation.sector_setup import SectorSetup
+from voxsoft.simulation.runs.nested import nested
+from voxsoft.simulation.runs.symmetric_body import SectorSetup
 from voxsoft.units import kPa, mm
 
 PNEUNET = vs.load(Path(__file__).parents[2] / "examples/pneunet.toml", chambers=2)

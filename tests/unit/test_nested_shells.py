@@ -13,7 +13,7 @@ from voxsoft.design import families
 from voxsoft.files.checks import check_mesh
 from voxsoft.shapes import TriangleMesh, voxelize
 from voxsoft.simulation import check
-from voxsoft.simulation.warnings import warnings_at
+from voxsoft.simulation.results.warnings import warnings_at
 
 
 def box(size, at=(0.0, 0.0, 0.0), *, inward=False):

@@ -11,8 +11,8 @@ from voxsoft.geometry import enclosed_volume
 from voxsoft.materials import Lattice, NeoHookean
 from voxsoft.metrics.chambers import CAVITY_VOLUME
 from voxsoft.simulation import Setup
-from voxsoft.simulation.loaded_state import LoadedState
-from voxsoft.simulation.other_split import OtherSplit
+from voxsoft.simulation.derivatives.loaded_state import LoadedState
+from voxsoft.simulation.setup.other_split import OtherSplit
 from voxsoft.units import mm
 
 SIZE = 2.5 * mm

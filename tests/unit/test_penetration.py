@@ -9,10 +9,10 @@ import pytest
 
 from voxsoft import files
 from voxsoft.design import Design, families
-from voxsoft.design.discretize import mesh_of
+from voxsoft.design.discretization.discretize import mesh_of
 from voxsoft.errors import MeshError
 from voxsoft.simulation import Setup, find_penetration, simulate
-from voxsoft.simulation.overlaps import overlap_warnings, penetration_of
+from voxsoft.simulation.checks.overlaps import overlap_warnings, penetration_of
 from voxsoft.study.outcome import Outcome, evaluate_design
 from voxsoft.study.trial import outcome_of, record_of
 from voxsoft.voxels import Voxels

@@ -13,8 +13,8 @@ import voxsoft as vs
 from voxsoft.design import Object, families
 from voxsoft.shapes import Shape
 from voxsoft.shapes.sharpening import sharpened
-from voxsoft.simulation.apart import Surface
-from voxsoft.simulation.rigid import Solid, surface_of
+from voxsoft.simulation.setup.distance import Surface
+from voxsoft.simulation.setup.rigid_objects import Solid, surface_of
 
 #: Volume in m³ and second moments over it in m², of each shape.
 SOLIDS: dict[str, tuple[Shape, float, tuple[float, float, float]]] = {

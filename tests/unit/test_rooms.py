@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.design.cut_cells import WHOLE, integrals, measures_of
-from voxsoft.design.cut_voxels import CutVoxels
-from voxsoft.design.rooms import ROOM_TETS, room_parts
+from voxsoft.design.discretization.cut_cells import WHOLE, integrals, measures_of
+from voxsoft.design.discretization.cut_voxels import CutVoxels
+from voxsoft.design.discretization.rooms import ROOM_TETS, room_parts
 from voxsoft.geometry import tet_volumes
 
 CORNERS = np.array([[c >> 2 & 1, c >> 1 & 1, c & 1] for c in range(8)], dtype=float)

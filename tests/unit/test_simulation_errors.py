@@ -139,7 +139,7 @@ def test_check_never_raises_and_names_leaks():
 
 
 def test_a_tangent_too_large_for_memory_is_refused_with_the_estimate(monkeypatch):
-    monkeypatch.setattr("voxsoft.simulation.equilibrium.memory_limit", lambda: 10_000)
+    monkeypatch.setattr("voxsoft.simulation.solving.equilibrium.memory_limit", lambda: 10_000)
     rubber = vs.NeoHookean(young=60 * kPa)
     box = design(parts=[vs.Part(shape=BOX, material=rubber)])
     with pytest.raises(SimulationError, match=r"takes about .* GB, and .* are free") as refused:
@@ -151,7 +151,7 @@ def test_so_is_the_tangent_of_a_gradient(monkeypatch):
     rubber = vs.NeoHookean(young=60 * kPa)
     box = design(parts=[vs.Part(shape=BOX, material=rubber)])
     result = simulate(box, method="statics")
-    module = sys.modules["voxsoft.simulation.adjoint"]
+    module = sys.modules["voxsoft.simulation.solving.adjoint"]
     monkeypatch.setattr(module, "memory_limit", lambda: 10_000)
     with pytest.raises(SimulationError, match=r"takes about .* GB, and .*larger voxels"):
         vs.gradient(result, "max_displacement", "parts.0.material.young")

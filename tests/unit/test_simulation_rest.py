@@ -9,8 +9,9 @@ import pytest
 import voxsoft as vs
 from voxsoft._core import Status
 from voxsoft.errors import SimulationError
-from voxsoft.simulation import Setup, rest
-from voxsoft.simulation.method import Report
+from voxsoft.simulation import Setup
+from voxsoft.simulation.solving import rest
+from voxsoft.simulation.solving.method import Report
 from voxsoft.units import kPa, mm
 
 LATTICE = vs.Lattice(edge=60 * kPa, bulk=400 * kPa, density=1070.0)

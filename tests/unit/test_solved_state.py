@@ -13,7 +13,7 @@ from voxsoft.design import Contact, Floor, Object, VolumeSupply, families
 from voxsoft.errors import SimulationError
 from voxsoft.materials import Mullins
 from voxsoft.simulation import Setup, simulate
-from voxsoft.simulation.solved_state import SolvedState, is_given_by_positions
+from voxsoft.simulation.runs.solved_state import SolvedState, is_given_by_positions
 from voxsoft.units import kPa, mm
 
 #: A ball of 8 mm between the plate and the block's upper face.

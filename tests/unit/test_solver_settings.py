@@ -15,9 +15,9 @@ from voxsoft.design import Solver, families
 from voxsoft.design.solver import OF_THE_ERROR
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Setup
-from voxsoft.simulation.choice import METHODS, USERS, kind_of, method_of, unused_settings
-from voxsoft.simulation.dynamics import DynamicsToRest
-from voxsoft.simulation.equilibrium import sentence
+from voxsoft.simulation.solving.choice import METHODS, USERS, kind_of, method_of, unused_settings
+from voxsoft.simulation.solving.dynamics import DynamicsToRest
+from voxsoft.simulation.solving.equilibrium import sentence
 from voxsoft.units import kPa, mm
 
 LATTICE = "parts.0.material=ecoflex-00-30-lattice"

@@ -10,7 +10,7 @@ from voxsoft.cli.app import app
 from voxsoft.design import Layer, families
 from voxsoft.shapes import Box
 from voxsoft.simulation import Setup
-from voxsoft.simulation.thin_seals import thin_seals
+from voxsoft.simulation.checks.thin_seals import thin_seals
 
 MM = 1e-3
 BLOCK = Box(size=(20 * MM,) * 3, corner=(0, 0, 0))

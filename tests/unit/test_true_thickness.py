@@ -16,7 +16,7 @@ from voxsoft.shapes import (
     Torus,
     Twist,
 )
-from voxsoft.simulation.thickness import doubtful_thickness
+from voxsoft.simulation.checks.thickness import doubtful_thickness
 
 mm = 1e-3
 BALL = Sphere(radius=10 * mm)

@@ -12,9 +12,9 @@ import trimesh
 
 import voxsoft as vs
 from voxsoft.design import families
-from voxsoft.design.discretize import mesh_of
+from voxsoft.design.discretization.discretize import mesh_of
 from voxsoft.files.checks import check_mesh
-from voxsoft.simulation.volumes import LARGE, QUICK, doubtful_volumes, volumes_of
+from voxsoft.simulation.setup.volumes import LARGE, QUICK, doubtful_volumes, volumes_of
 
 RUBBER = {"model": "neo-hookean", "young": "1 MPa", "poisson": 0.45, "density": "1070 kg/m^3"}
 

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import voxsoft as vs
 from voxsoft.cli.app import app
 from voxsoft.errors import SimulationError
-from voxsoft.simulation.reachable import size_of_net
+from voxsoft.simulation.runs.workspace import size_of_net
 
 
 @given(

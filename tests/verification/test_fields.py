@@ -7,7 +7,7 @@ import voxsoft as vs
 from voxsoft.design import Design, families
 from voxsoft.fields import Fields
 from voxsoft.simulation import simulate
-from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.results.fields import fields_of
 
 RUBBER = {"model": "neo-hookean", "young": "60 kPa", "poisson": 0.45}
 LATTICE = {"model": "lattice", "edge": "25 kPa", "bulk": "50 kPa"}

@@ -13,7 +13,7 @@ from voxsoft.errors import DesignError, SimulationError
 from voxsoft.metrics import METRICS
 from voxsoft.metrics.registry import BUILT_IN
 from voxsoft.simulation import Setup
-from voxsoft.simulation.loaded_state import LoadedState
+from voxsoft.simulation.derivatives.loaded_state import LoadedState
 
 # Residual of each solution: over a step of 1e-3 it leaves 1e-8 of a number in its difference.
 TOLERANCE = 1e-11

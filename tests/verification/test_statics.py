@@ -9,7 +9,7 @@ from voxsoft import _core
 from voxsoft.errors import DisconnectedError
 from voxsoft.materials.homogeneous import EXPONENTS, nominal_stress
 from voxsoft.simulation import Setup, simulate
-from voxsoft.simulation.freedom import free_motion
+from voxsoft.simulation.setup.freedom import free_motion
 from voxsoft.units import kPa, mm
 
 #: Poisson's ratio of the blocks: K/μ is 5000, and an incompressible closed form is off by about

@@ -8,7 +8,7 @@ import pytest
 import voxsoft as vs
 from voxsoft.design import Body, Contact, Object, Symmetry
 from voxsoft.simulation import Setup
-from voxsoft.simulation.touching import Touching
+from voxsoft.simulation.setup.contact import Touching
 from voxsoft.units import kPa, mm
 
 RUBBER = vs.NeoHookean(young=100 * kPa, poisson=0.45, density=1000)

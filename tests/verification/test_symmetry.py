@@ -9,11 +9,11 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.design import Layer, Symmetry
-from voxsoft.design.discretize import mesh_of
+from voxsoft.design.discretization.discretize import mesh_of
 from voxsoft.errors import DesignError
 from voxsoft.simulation import Setup
-from voxsoft.simulation.freedom import free_motion
-from voxsoft.simulation.sector_setup import SectorSetup
+from voxsoft.simulation.runs.symmetric_body import SectorSetup
+from voxsoft.simulation.setup.freedom import free_motion
 from voxsoft.units import kPa, mm
 
 #: Both systems are solved to a residual of 1e-8, which Newton's last step squares.

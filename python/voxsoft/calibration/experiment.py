@@ -19,9 +19,9 @@ from voxsoft.materials import Material
 from voxsoft.records import closest
 from voxsoft.simulation import Place, Setup
 from voxsoft.simulation.compatibility import refuse
-from voxsoft.simulation.large_voxels import evenly_small
 from voxsoft.simulation.loads import readings
-from voxsoft.simulation.places import place_of, voxel_size
+from voxsoft.simulation.setup.large_voxels import evenly_small
+from voxsoft.simulation.setup.places import place_of, voxel_size
 from voxsoft.units import format_quantity
 
 # Limit of stretch and travel of a real body, in its own lengths at rest.

@@ -9,9 +9,9 @@ from voxsoft.calibration.experiment import Experiment
 from voxsoft.calibration.space import Space
 from voxsoft.materials import Material
 from voxsoft.materials.constants import with_constants
-from voxsoft.simulation.adjoint import adjoint_states
 from voxsoft.simulation.compatibility import refuse
-from voxsoft.simulation.differences import derivative
+from voxsoft.simulation.derivatives.differences import derivative
+from voxsoft.simulation.solving.adjoint import adjoint_states
 
 Floats = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from voxsoft.calibration.space import Space
 from voxsoft.errors import MaterialError
 from voxsoft.materials import Material
 from voxsoft.simulation import Ensemble, Settled, Status, balance, relax
-from voxsoft.simulation.many import settled_of
+from voxsoft.simulation.runs.many import settled_of
 
 T = TypeVar("T")
 U = TypeVar("U")

@@ -20,7 +20,7 @@ from voxsoft.calibration.result import Calibration, Candidate, Fit, Generation
 from voxsoft.calibration.space import Bounds, Space
 from voxsoft.errors import MeasurementError, SimulationError, StudyError
 from voxsoft.materials import Hyperelastic, Material
-from voxsoft.simulation.choice import check_settings_of
+from voxsoft.simulation.solving.choice import check_settings_of
 
 #: Solver settings of an experiment that count, and why no others do.
 _USED: Final = frozenset({"refine"})

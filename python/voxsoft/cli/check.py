@@ -14,7 +14,7 @@ from voxsoft.cli.output import plain, print_json, quantity, say
 
 if TYPE_CHECKING:
     from voxsoft.simulation import CheckReport
-    from voxsoft.simulation.volumes import Volume
+    from voxsoft.simulation.setup.volumes import Volume
 
 
 def check(

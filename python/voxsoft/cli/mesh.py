@@ -26,7 +26,7 @@ def mesh(
 ) -> None:
     """Voxelize and mesh a design; print quality figures and write the mesh."""
     from voxsoft import files
-    from voxsoft.design.discretize import mesh_of
+    from voxsoft.design.discretization.discretize import mesh_of
 
     with errors_in_words(json=json):
         if out is not None:

@@ -41,7 +41,7 @@ def refine(
     from voxsoft.cli.progress import ProgressBar
     from voxsoft.comparison import refined
     from voxsoft.comparison.refining import check_share
-    from voxsoft.design.documents import with_paths_from
+    from voxsoft.design.document.documents import with_paths_from
     from voxsoft.errors import FileError
     from voxsoft.files.atomic import write_atomically
     from voxsoft.files.designs import read_text

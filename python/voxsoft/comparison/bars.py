@@ -21,13 +21,13 @@ from voxsoft.comparison.error_bar import ErrorBar, ErrorBars
 from voxsoft.comparison.other_voxels import TIMES_AS_LONG, cost_on_voxels, on_voxels
 from voxsoft.comparison.richardson import Estimate, discretization_error
 from voxsoft.design import Constraint, Design, Objective
-from voxsoft.design.discretize import voxels_of
+from voxsoft.design.discretization.discretize import voxels_of
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Lattice
 from voxsoft.metrics import METRICS
 from voxsoft.simulation import Result, Setup, simulate
-from voxsoft.simulation.choice import kind_of, settings_at_rest
-from voxsoft.simulation.touching import has_contact
+from voxsoft.simulation.setup.contact import has_contact
+from voxsoft.simulation.solving.choice import kind_of, settings_at_rest
 
 #: Most voxels of a finer run that was not asked for: some 10 s for a body of rubber.
 FINER_UP_TO: Final = 20_000

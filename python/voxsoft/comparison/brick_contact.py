@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from voxsoft.errors import SimulationError
-from voxsoft.simulation.apart import Surface, overlap_of
-from voxsoft.simulation.touching import Touching
+from voxsoft.simulation.setup.contact import Touching
+from voxsoft.simulation.setup.distance import Surface, overlap_of
 
 if TYPE_CHECKING:
     from voxsoft.simulation import Setup
@@ -166,7 +166,7 @@ def passed_through(setup: Setup, positions: Floats) -> str:
     touching = setup.touching
     if touching is None:
         return ""
-    from voxsoft.simulation.penetration import find_penetration
+    from voxsoft.simulation.checks.penetration import find_penetration
 
     allowed = 0.25 * touching.voxel_size
     if not np.isnan(touching.friction[0, 0]):

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design
 from voxsoft.design.chamber import chosen_cavities, name_of_cavity
-from voxsoft.design.cut_cells import built_parts
+from voxsoft.design.discretization.cut_cells import built_parts
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Setup
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.loads import readings
-from voxsoft.simulation.places import voxel_size
+from voxsoft.simulation.setup.places import voxel_size
 
 #: A face of a voxel that turns away from the surface it stands for by more than this is a step of
 #: a stair: those of a sphere turn by up to 55 degrees, those of a box by none.

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from voxsoft.materials import Rigid
 from voxsoft.simulation import Result
-from voxsoft.simulation.places import voxel_size
+from voxsoft.simulation.setup.places import voxel_size
 
 Floats = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 
 from voxsoft.design import Design
 
-#: Growth of the time of a run when voxels get half as large (:mod:`voxsoft.simulation.cost`).
+#: Growth of the time of a run when voxels are halved (:mod:`voxsoft.simulation.solving.cost`).
 TIMES_AS_LONG: Final = 12.0
 
 

@@ -13,7 +13,7 @@ from voxsoft.design import Design, Refinement, Region
 from voxsoft.errors import DesignError
 from voxsoft.mesh import BodyMesh
 from voxsoft.simulation import Result
-from voxsoft.simulation.places import voxel_size
+from voxsoft.simulation.setup.places import voxel_size
 
 Ints = NDArray[np.int64]
 

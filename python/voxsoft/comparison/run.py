@@ -27,8 +27,8 @@ from voxsoft.design import Design, Solver, require_design
 from voxsoft.errors import MissingPackageError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Diagnostic, Result, Setup, simulate
-from voxsoft.simulation.choice import given_settings
 from voxsoft.simulation.compatibility import refuse
+from voxsoft.simulation.solving.choice import given_settings
 from voxsoft.units import format_quantity, si_value
 
 OUTSIDE: Final[tuple[Outside, ...]] = get_args(Outside)

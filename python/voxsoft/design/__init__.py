@@ -1,12 +1,12 @@
 """Designs: typed models of what is built, held, loaded and measured."""
 
 from voxsoft.design.activation import FiberStrain, Strain, Swelling, Thermal
-from voxsoft.design.assignment import set_values
 from voxsoft.design.body import Body
 from voxsoft.design.chamber import Chamber
 from voxsoft.design.clamp import Clamp, Motion, Rotation
 from voxsoft.design.contact import Contact, ContactPair
 from voxsoft.design.dielectric import Dielectric
+from voxsoft.design.document.assignment import set_values
 from voxsoft.design.file_mesh import FileMesh
 from voxsoft.design.fluid import Gas, Liquid
 from voxsoft.design.history import History

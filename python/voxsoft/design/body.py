@@ -20,7 +20,7 @@ from pydantic import (
 )
 
 from voxsoft.design.clamp import Motion, Rotation
-from voxsoft.design.included import inner_design
+from voxsoft.design.document.included import inner_design
 from voxsoft.design.isometry import Isometry
 from voxsoft.design.mirrored import Axis, Triple
 from voxsoft.design.operands import Name, ParameterName

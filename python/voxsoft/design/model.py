@@ -29,17 +29,19 @@ from voxsoft.design.assembly import (
     is_assembled,
     nothing_built,
 )
-from voxsoft.design.assignment import set_values
 from voxsoft.design.body import Body
 from voxsoft.design.chamber import Chamber, ChamberName
 from voxsoft.design.clamp import Clamp
 from voxsoft.design.contact import BODY, Contact, contact_problems
-from voxsoft.design.documents import plain_document, with_absolute_paths, written_path
-from voxsoft.design.emptiness import with_stand_ins, without_empty_shapes
+from voxsoft.design.document.assignment import set_values
+from voxsoft.design.document.documents import plain_document, with_absolute_paths, written_path
+from voxsoft.design.document.emptiness import with_stand_ins, without_empty_shapes
+from voxsoft.design.document.identity import NOT_PHYSICS, hash_of
+from voxsoft.design.document.kept_formulas import with_kept_formulas
+from voxsoft.design.document.resolution import Document, Resolution, formulas, with_parameter_values
+from voxsoft.design.document.schema import with_formulas
 from voxsoft.design.file_mesh import FileMesh, mesh_problems, with_element_size
 from voxsoft.design.history import History, with_named
-from voxsoft.design.identity import NOT_PHYSICS, hash_of
-from voxsoft.design.kept_formulas import with_kept_formulas
 from voxsoft.design.layer import Layer
 from voxsoft.design.load import AnyLoad, Floor
 from voxsoft.design.object import Object
@@ -49,8 +51,6 @@ from voxsoft.design.part import Part
 from voxsoft.design.references import Included, dangling_references
 from voxsoft.design.refinement import Refinement
 from voxsoft.design.region import Probe
-from voxsoft.design.resolution import Document, Resolution, formulas, with_parameter_values
-from voxsoft.design.schema import with_formulas
 from voxsoft.design.solver import Solver
 from voxsoft.design.spring import Spring
 from voxsoft.design.supply import AnySupply, Connection

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from voxsoft.design.contact import BODY, FLOOR
-from voxsoft.design.resolution import is_inner_design
+from voxsoft.design.document.resolution import is_inner_design
 from voxsoft.errors import ErrorDetail, MaterialError, VoxSoftError
 from voxsoft.materials import card_names, is_card_path, load_card
 from voxsoft.records import Record, closest, place

@@ -30,10 +30,10 @@ Tolerance = Annotated[float, Field(gt=0, lt=1)]
 class Solver(Record):
     """How to solve; whatever is left out is chosen from the design and reported.
 
-    These flat settings choose one of the methods of :mod:`voxsoft.simulation.choice`, each a type
-    with its own settings: load, arc-length and volume control of statics, relaxation, dynamics to
-    rest or to an end time. A setting that the method has no field for is refused when the design
-    is checked or solved.
+    These flat settings choose one of the methods of :mod:`voxsoft.simulation.solving.choice`, each
+    a type with its own settings: load, arc-length and volume control of statics, relaxation,
+    dynamics to rest or to an end time. A setting that the method has no field for is refused when
+    the design is checked or solved.
 
     Parameters
     ----------

@@ -18,8 +18,8 @@ from voxsoft.shapes import TriangleMesh, voxelize
 from voxsoft.shapes.nesting import Nested
 from voxsoft.shapes.surface_files import Surface, read_surface
 from voxsoft.simulation import CheckReport, Diagnostic, check
-from voxsoft.simulation.surfaces import findings_of_surface
-from voxsoft.simulation.volumes import doubts, volumes_in
+from voxsoft.simulation.checks.surfaces import findings_of_surface
+from voxsoft.simulation.setup.volumes import doubts, volumes_in
 from voxsoft.units import format_quantity, parse
 
 #: Voxels along the longest side of a mesh whose voxel size is not given.

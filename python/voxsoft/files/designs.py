@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from voxsoft.design import Design, set_values
-from voxsoft.design.included import is_outside, placed_document
+from voxsoft.design.document.included import is_outside, placed_document
 from voxsoft.errors import DesignError, ErrorDetail, FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.toml_text import line_of, write_toml
@@ -18,7 +18,7 @@ from voxsoft.records import steps_of
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 
 if TYPE_CHECKING:
-    from voxsoft.design.resolution import Document
+    from voxsoft.design.document.resolution import Document
 
 LARGEST_FILE: Final = 10_000_000  # bytes; a design is a page of text
 

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from voxsoft.design import Design
-from voxsoft.design.discretize import mesh_of, voxels_of
+from voxsoft.design.discretization.discretize import mesh_of, voxels_of
 from voxsoft.errors import FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath, load, read_text, save

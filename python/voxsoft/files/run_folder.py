@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from voxsoft.design.documents import with_paths_from
+from voxsoft.design.document.documents import with_paths_from
 from voxsoft.errors import ErrorDetail, OutputError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.meshes import write_mesh

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Final, TypeVar
 
 from voxsoft._folders import folder_name
-from voxsoft.design.documents import file_references, with_path
-from voxsoft.design.included import refuse_outside
-from voxsoft.design.resolution import is_inner_design
+from voxsoft.design.document.documents import file_references, with_path
+from voxsoft.design.document.included import refuse_outside
+from voxsoft.design.document.resolution import is_inner_design
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
 from voxsoft.files.toml_text import write_toml

@@ -18,7 +18,7 @@ from voxsoft.files.atomic import replace_whole
 from voxsoft.files.run_folder import make_folder
 from voxsoft.files.toml_text import write_toml
 from voxsoft.simulation import Over, Result
-from voxsoft.simulation.solved_state import SolvedState
+from voxsoft.simulation.runs.solved_state import SolvedState
 
 #: Name of the folder beside the table that holds them until the path is finished.
 FOLDER: Final = "path-equilibria"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from voxsoft.design import Solver
-from voxsoft.simulation.rest import DEFAULT_TOLERANCE
+from voxsoft.simulation.solving.rest import DEFAULT_TOLERANCE
 
 
 def digits_lost(residual: float, largest: float, tolerance: float = DEFAULT_TOLERANCE) -> float:

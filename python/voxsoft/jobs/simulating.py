@@ -22,9 +22,9 @@ from voxsoft.jobs.nearness import Nearness
 from voxsoft.jobs.outcome import JobOutcome, path_summary
 from voxsoft.jobs.spec import RunSpec
 from voxsoft.simulation import Result, Setup
-from voxsoft.simulation.choice import check_solver, method_of
-from voxsoft.simulation.cost import cost_of
-from voxsoft.simulation.equilibrium import Statics
+from voxsoft.simulation.solving.choice import check_solver, method_of
+from voxsoft.simulation.solving.cost import cost_of
+from voxsoft.simulation.solving.equilibrium import Statics
 from voxsoft.units import format_percent, format_quantity
 
 #: Unit of progress while a further run for error bars is made.

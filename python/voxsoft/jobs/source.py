@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from voxsoft.design import Design, set_values
-from voxsoft.design.documents import Steps, file_references
-from voxsoft.design.included import placed_document, refuse_outside
+from voxsoft.design.document.documents import Steps, file_references
+from voxsoft.design.document.included import placed_document, refuse_outside
 from voxsoft.errors import DesignError, VoxSoftError
 from voxsoft.files.designs import FilePath, read_document, read_text
 from voxsoft.files.toml_edits import with_document, with_value

@@ -54,7 +54,7 @@ class Depth(Protocol):
 
 
 class Touch(Protocol):
-    """Contact of a pair of surfaces; see :class:`~voxsoft.simulation.touching.ContactState`."""
+    """Contact of two surfaces; see :class:`~voxsoft.simulation.setup.contact.ContactState`."""
 
     @property
     def of(self) -> tuple[str, str]:
@@ -90,7 +90,7 @@ class Touch(Protocol):
 
 
 class Supplied(Protocol):
-    """Volume of gas or liquid; see :class:`~voxsoft.simulation.fluids.ChamberState`."""
+    """Volume of gas or liquid; see :class:`~voxsoft.simulation.setup.fluids.ChamberState`."""
 
     @property
     def cavities(self) -> tuple[int, ...]:
@@ -106,7 +106,7 @@ class Supplied(Protocol):
 
 
 class Pulled(Protocol):
-    """Tendon under load; see :class:`~voxsoft.simulation.tendons.TendonState`."""
+    """Tendon under load; see :class:`~voxsoft.simulation.setup.tendons.TendonState`."""
 
     @property
     def tension(self) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from voxsoft.errors import MeshError
 from voxsoft.simulation import Result
-from voxsoft.simulation.touching import Pose
+from voxsoft.simulation.setup.contact import Pose
 
 
 def at_frame(result: Result, frame: int) -> Result:

@@ -14,9 +14,9 @@ from voxsoft.plot import shading
 from voxsoft.plot.boundary import Axis
 from voxsoft.plot.camera import Camera
 from voxsoft.plot.raster import Raster, rasterize
-from voxsoft.simulation.apart import Surface
-from voxsoft.simulation.posed import posed_surface
-from voxsoft.simulation.touching import Pose
+from voxsoft.simulation.results.posed import posed_surface
+from voxsoft.simulation.setup.contact import Pose
+from voxsoft.simulation.setup.distance import Surface
 
 Floats = NDArray[np.float64]
 

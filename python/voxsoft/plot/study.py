@@ -24,7 +24,7 @@ from voxsoft.plot.style import (
     plain_legend,
 )
 from voxsoft.records import closest
-from voxsoft.simulation.over import Over
+from voxsoft.simulation.runs.over import Over
 from voxsoft.study import StudyResult, Trial
 
 if TYPE_CHECKING:

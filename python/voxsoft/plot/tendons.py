@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from voxsoft.plot.camera import Camera
 from voxsoft.plot.style import SERIES
-from voxsoft.simulation.tendons import TendonState
+from voxsoft.simulation.setup.tendons import TendonState
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,8 +9,8 @@ from typing import Final
 from voxsoft.design import Contact, Design, Dielectric, Object
 from voxsoft.design.attachment import attachments_of
 from voxsoft.materials import Hyperelastic, Lattice, Material, Rigid
-from voxsoft.simulation.fluids import has_supplies
-from voxsoft.simulation.touching import has_contact
+from voxsoft.simulation.setup.contact import has_contact
+from voxsoft.simulation.setup.fluids import has_supplies
 
 #: Function that finds the entries of a design that are a feature, by their places.
 _Places = Callable[[Design], Iterator[str]]

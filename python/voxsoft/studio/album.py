@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from voxsoft.design import Design
-from voxsoft.design.included import placed_document
+from voxsoft.design.document.included import placed_document
 from voxsoft.errors import FileError, VoxSoftError
 from voxsoft.files.designs import read_document, read_text
 from voxsoft.simulation import Result

@@ -17,17 +17,17 @@ from voxsoft import _core
 from voxsoft._memory import gigabytes, memory_limit
 from voxsoft.design import Design, Probe
 from voxsoft.design.attachment import attachments_of
-from voxsoft.design.discretize import Filled, filled, voxels_of
+from voxsoft.design.discretization.discretize import Filled, filled, voxels_of
 from voxsoft.design.load import scaled
 from voxsoft.errors import MeshError, ShapeError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.shapes.sampling import corners_of
 from voxsoft.simulation import Setup
-from voxsoft.simulation.check import CheckReport, examine
-from voxsoft.simulation.choice import method_of
-from voxsoft.simulation.large_voxels import evenly_small
+from voxsoft.simulation.checks.check import CheckReport, examine
 from voxsoft.simulation.loads import read
-from voxsoft.simulation.touching import has_contact
+from voxsoft.simulation.setup.contact import has_contact
+from voxsoft.simulation.setup.large_voxels import evenly_small
+from voxsoft.simulation.solving.choice import method_of
 from voxsoft.studio import events
 from voxsoft.studio.bonds import bonds_of
 from voxsoft.studio.equilibrium import finding_of

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from voxsoft.errors import VoxSoftError
 from voxsoft.simulation import Setup
-from voxsoft.simulation.apart import Surface, distances_to
+from voxsoft.simulation.setup.distance import Surface, distances_to
 from voxsoft.studio import events
 
 #: How far before a triangle it is looked for what it looks at, in reaches of a bond.

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
-from voxsoft.simulation.contact_field import ContactField
+from voxsoft.simulation.results.contact_field import ContactField
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import DISPLACEMENT, FIELDS, contact_values

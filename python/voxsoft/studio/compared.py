@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any
 
 from voxsoft.design import Design
-from voxsoft.design.documents import with_absolute_paths
+from voxsoft.design.document.documents import with_absolute_paths
 from voxsoft.errors import VoxSoftError
 from voxsoft.files.designs import read_document, read_text
 from voxsoft.records import place

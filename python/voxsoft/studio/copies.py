@@ -14,7 +14,7 @@ import numpy as np
 
 from voxsoft.design import Body, Design, Motion, Object
 from voxsoft.design.contact import BODY, FLOOR
-from voxsoft.design.formula import is_formula
+from voxsoft.design.document.formula import is_formula
 from voxsoft.design.isometry import SAME, Isometry
 from voxsoft.errors import DesignError
 from voxsoft.studio import commands

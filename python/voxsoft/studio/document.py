@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from voxsoft.design import Design
-from voxsoft.design.formula import is_formula
-from voxsoft.design.included import placed_document
-from voxsoft.design.resolution import Document as PlainDocument
+from voxsoft.design.document.formula import is_formula
+from voxsoft.design.document.included import placed_document
+from voxsoft.design.document.resolution import Document as PlainDocument
 from voxsoft.errors import DesignError, FileError, VoxSoftError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import LARGEST_FILE, read_document, read_text

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from voxsoft.errors import SimulationError, VoxSoftError
 from voxsoft.simulation import Result
-from voxsoft.simulation.check import CheckReport
+from voxsoft.simulation.checks.check import CheckReport
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.event_bus import EventBus

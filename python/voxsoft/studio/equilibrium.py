@@ -15,7 +15,7 @@ from voxsoft.comparison.error_bar import ErrorBars, share_of, vector_in_words
 from voxsoft.errors import VoxSoftError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation import Diagnostic, Result
-from voxsoft.simulation.supports import Force
+from voxsoft.simulation.setup.supports import Force
 from voxsoft.studio import events
 from voxsoft.studio.grips import grips_of
 from voxsoft.studio.objects import is_filmed

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import files
-from voxsoft.design.discretize import voxels_of
+from voxsoft.design.discretization.discretize import voxels_of
 from voxsoft.errors import FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.simulation import Result, named_regions
-from voxsoft.simulation.result import Status
-from voxsoft.simulation.state import result_at
+from voxsoft.simulation.results.result import Status
+from voxsoft.simulation.runs.state import result_at
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.events import GrabState

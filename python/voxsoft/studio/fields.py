@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
-from voxsoft.simulation.contact_field import ContactField
+from voxsoft.simulation.results.contact_field import ContactField
 from voxsoft.studio import events
 
 #: Fields that color the body, by the number that frames carry.

@@ -10,11 +10,11 @@ from voxsoft._memory import memory_limit
 from voxsoft.comparison.other_voxels import cost_on_voxels
 from voxsoft.comparison.refining import refined
 from voxsoft.design import Design
-from voxsoft.design.formula import is_formula
+from voxsoft.design.document.formula import is_formula
 from voxsoft.errors import DesignError
 from voxsoft.materials import Hyperelastic
 from voxsoft.simulation import Result, Setup
-from voxsoft.simulation.choice import STATICS, kind_of
+from voxsoft.simulation.solving.choice import STATICS, kind_of
 from voxsoft.studio import events
 from voxsoft.studio.body import BYTES_PER_VOXEL
 from voxsoft.studio.copies import Change

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from voxsoft.design.contact import FLOOR
 from voxsoft.simulation import Result, Setup
 from voxsoft.simulation.loads import readings
-from voxsoft.simulation.touching import ContactState, Touching
+from voxsoft.simulation.setup.contact import ContactState, Touching
 from voxsoft.studio import events
 from voxsoft.units import format_quantity
 

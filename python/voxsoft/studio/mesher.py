@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 from voxsoft.design import Design
 from voxsoft.errors import VoxSoftError
-from voxsoft.simulation.check import CheckReport
+from voxsoft.simulation.checks.check import CheckReport
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.smooth import pack_smooth
 

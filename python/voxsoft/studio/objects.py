@@ -15,8 +15,8 @@ from voxsoft.errors import VoxSoftError
 from voxsoft.plot.objects import Surroundings
 from voxsoft.simulation import Result, Setup
 from voxsoft.simulation.compatibility import refused_features
-from voxsoft.simulation.fluids import has_supplies
-from voxsoft.simulation.touching import ContactState, Pose, has_contact
+from voxsoft.simulation.setup.contact import ContactState, Pose, has_contact
+from voxsoft.simulation.setup.fluids import has_supplies
 from voxsoft.studio import events
 from voxsoft.studio.message import Triple
 

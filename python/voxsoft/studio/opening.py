@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from voxsoft.design import Design, families, robots
-from voxsoft.design.resolution import Document as PlainDocument
+from voxsoft.design.document.resolution import Document as PlainDocument
 from voxsoft.errors import DesignError, FileError, VoxSoftError
 from voxsoft.files.toml_edits import with_value
 from voxsoft.jobs import load

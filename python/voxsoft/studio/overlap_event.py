@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from voxsoft.design import Design
 from voxsoft.mesh import Mesh
-from voxsoft.simulation.overlaps import NEGLIGIBLE, overlapping, penetration_of
-from voxsoft.simulation.places import voxel_size
-from voxsoft.simulation.touching import keeps_apart
+from voxsoft.simulation.checks.overlaps import NEGLIGIBLE, overlapping, penetration_of
+from voxsoft.simulation.setup.contact import keeps_apart
+from voxsoft.simulation.setup.places import voxel_size
 from voxsoft.studio import events
 
 #: Places that are marked in the picture.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from voxsoft.simulation.check import CheckReport
+from voxsoft.simulation.checks.check import CheckReport
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.event_bus import EventBus

@@ -9,10 +9,10 @@ from typing import Final, Literal
 from voxsoft import _core
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Result
-from voxsoft.simulation.contact_field import ContactField
-from voxsoft.simulation.fields import remember
-from voxsoft.simulation.fluids import has_supplies
-from voxsoft.simulation.result import Status
+from voxsoft.simulation.results.contact_field import ContactField
+from voxsoft.simulation.results.fields import remember
+from voxsoft.simulation.results.result import Status
+from voxsoft.simulation.setup.fluids import has_supplies
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.canvas import Canvas

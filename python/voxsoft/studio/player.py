@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.errors import SimulationError
-from voxsoft.simulation.touching import Pose
+from voxsoft.simulation.setup.contact import Pose
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.events import GrabState

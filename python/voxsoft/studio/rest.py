@@ -10,10 +10,10 @@ from typing import Any, Final, Protocol
 from voxsoft.errors import VoxSoftError
 from voxsoft.jobs.nearness import digits_lost
 from voxsoft.simulation import Result, Setup, simulate
-from voxsoft.simulation.choice import DYNAMICS, kind_of, settings_at_rest
-from voxsoft.simulation.dynamics import DEFAULT_MAX_TIME, DEFAULT_RECORD_INTERVAL
-from voxsoft.simulation.fluids import has_supplies
-from voxsoft.simulation.touching import has_contact
+from voxsoft.simulation.setup.contact import has_contact
+from voxsoft.simulation.setup.fluids import has_supplies
+from voxsoft.simulation.solving.choice import DYNAMICS, kind_of, settings_at_rest
+from voxsoft.simulation.solving.dynamics import DEFAULT_MAX_TIME, DEFAULT_RECORD_INTERVAL
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.sentences import time_text
 from voxsoft.units import format_percent

@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 from voxsoft._folders import folder_name
 from voxsoft.design import Design
 from voxsoft.design.contact import BODY
-from voxsoft.design.resolution import Document as PlainDocument
+from voxsoft.design.document.resolution import Document as PlainDocument
 from voxsoft.errors import DesignError, FileError, MeasurementError, StudyError, VoxSoftError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.cards import card_name, load_card_file, save_card
@@ -25,7 +25,7 @@ from voxsoft.files.designs import read_text
 from voxsoft.files.figures import save_thumbnail
 from voxsoft.files.run_folder import make_folder
 from voxsoft.jobs import CalibrateSpec, DesignSource, MeasuredTable, load
-from voxsoft.simulation.check import CheckReport
+from voxsoft.simulation.checks.check import CheckReport
 from voxsoft.studio import commands, events
 from voxsoft.studio.album import Album
 from voxsoft.studio.asked import spec_of

@@ -11,8 +11,8 @@ import numpy as np
 
 from voxsoft.design import Design, families
 from voxsoft.design.contact import BODY
-from voxsoft.design.formula import is_formula
-from voxsoft.design.included import inner_design, is_outside
+from voxsoft.design.document.formula import is_formula
+from voxsoft.design.document.included import inner_design, is_outside
 from voxsoft.errors import DesignError, FileError, VoxSoftError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import read_document, read_text

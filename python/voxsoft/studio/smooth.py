@@ -8,7 +8,7 @@ import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design
-from voxsoft.design.cut_cells import built_parts
+from voxsoft.design.discretization.cut_cells import built_parts
 from voxsoft.errors import VoxSoftError
 from voxsoft.shapes.tracing import trace
 from voxsoft.voxels import Voxels
@@ -35,7 +35,7 @@ def pack_smooth(design: Design, voxels: Mapping[str, Voxels], topology: int) -> 
     Examples
     --------
     >>> from voxsoft.design import families
-    >>> from voxsoft.design.discretize import voxels_of
+    >>> from voxsoft.design.discretization.discretize import voxels_of
     >>> ball = families.sphere()
     >>> packed = pack_smooth(ball, {"": voxels_of(ball)}, 1)
     >>> packed is not None and packed[4]

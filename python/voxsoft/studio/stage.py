@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft.errors import SimulationError, VoxSoftError
 from voxsoft.simulation import Modes, Result
-from voxsoft.simulation.check import CheckReport
+from voxsoft.simulation.checks.check import CheckReport
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.equilibrium import Measurement

@@ -19,15 +19,15 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.design import Design
-from voxsoft.design.documents import with_absolute_paths
+from voxsoft.design.document.documents import with_absolute_paths
 from voxsoft.errors import FileError, MeshError, SimulationError, VoxSoftError
 from voxsoft.files.designs import read_document, read_text
 from voxsoft.files.specimen import read_specimen
 from voxsoft.jobs import load
 from voxsoft.simulation import Setup, simulate
 from voxsoft.simulation.features import has_feature
-from voxsoft.simulation.fields import remember
-from voxsoft.simulation.touching import Pose
+from voxsoft.simulation.results.fields import remember
+from voxsoft.simulation.setup.contact import Pose
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import DISPLACEMENT, FIELDS
 from voxsoft.studio.objects import surroundings_of

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from voxsoft.design import Constraint, Design, Objective
-from voxsoft.design.documents import with_absolute_paths
+from voxsoft.design.document.documents import with_absolute_paths
 from voxsoft.errors import FileError, StudyError, VoxSoftError
 from voxsoft.files.toml_text import write_toml
 from voxsoft.metrics import METRICS

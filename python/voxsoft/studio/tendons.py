@@ -10,7 +10,7 @@ import numpy as np
 from voxsoft.design.tendon import Tendon
 from voxsoft.errors import VoxSoftError
 from voxsoft.simulation import Setup
-from voxsoft.simulation.tendons import ResolvedTendon
+from voxsoft.simulation.setup.tendons import ResolvedTendon
 from voxsoft.studio import events
 from voxsoft.studio.message import Triple
 from voxsoft.studio.surface import Surface

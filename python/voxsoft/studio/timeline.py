@@ -8,7 +8,7 @@ from pathlib import PurePath
 from typing import Any, Final
 
 from voxsoft.design import Design, History, Tendon
-from voxsoft.design.formula import is_formula
+from voxsoft.design.document.formula import is_formula
 from voxsoft.design.line import Valve
 from voxsoft.records import Record
 from voxsoft.simulation.loads import readings

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from voxsoft._core import __version__
 from voxsoft.design import Constraint, Design, Objective
-from voxsoft.design.documents import with_paths_from
+from voxsoft.design.document.documents import with_paths_from
 from voxsoft.errors import StudyError
 from voxsoft.metrics import METRICS
 from voxsoft.metrics.own import own_metrics

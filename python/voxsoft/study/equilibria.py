@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Result, Setup
-from voxsoft.simulation.result import LARGE_RESIDUAL
-from voxsoft.simulation.solved_state import SolvedState, is_given_by_positions
-from voxsoft.simulation.state import result_at
-from voxsoft.simulation.touching import Pose
+from voxsoft.simulation.results.result import LARGE_RESIDUAL
+from voxsoft.simulation.runs.solved_state import SolvedState, is_given_by_positions
+from voxsoft.simulation.runs.state import result_at
+from voxsoft.simulation.setup.contact import Pose
 
 Floats = NDArray[np.float64]
 

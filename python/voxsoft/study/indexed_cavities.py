@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from voxsoft.design import Design
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Diagnostic
-from voxsoft.simulation.chambers import center_of, indices_used
+from voxsoft.simulation.setup.chambers import center_of, indices_used
 
 if TYPE_CHECKING:
     from voxsoft.study.trial import Trial

@@ -19,7 +19,7 @@ from voxsoft.errors import StudyError
 from voxsoft.metrics.own import own_metrics
 from voxsoft.search.optuna_bridge import BaseStorage, FrozenTrial, StoredStudy
 from voxsoft.search.samplers import SINGLE_OBJECTIVE, grid_values
-from voxsoft.simulation.over import Over
+from voxsoft.simulation.runs.over import Over
 from voxsoft.study.definition import definition
 from voxsoft.study.equilibria import FOLDER, Equilibria
 from voxsoft.study.event import ProgressCallback

@@ -1,0 +1,1 @@
+"""Discretization of a design: its grid, cut voxels and mesh."""

@@ -1,0 +1,237 @@
+"""The filled part of every cell of a design, and the part that it is of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft._memory import memory_limit
+from voxsoft.design.discretization.grid import phase_of
+from voxsoft.design.model import Design
+from voxsoft.errors import ShapeError
+from voxsoft.shapes import Shape, inside
+from voxsoft.shapes.base import Triple
+from voxsoft.shapes.fractions import SUBCELLS, fill
+from voxsoft.shapes.sampling import Body
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+#: Sampled at once: small cubes of a slab, and cells that are cut into small cubes.
+_SLAB = 2**26
+_CHUNK = 4096
+
+#: What :func:`measures_of` gives for a full cell.
+WHOLE: Final[Floats] = np.array([1.0, 0.0, 0.0, 0.0, 1 / 3, 1 / 3, 1 / 3, 0.0, 0.0, 0.0])
+
+# A cell that is full or empty up to rounding is full or empty.
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class CutCells:
+    """How full the cells of a grid are.
+
+    Attributes
+    ----------
+    low
+        The lowest cell of the grid counted from the phase, (3,).
+    phase
+        Where the grid lies: a corner of a cell [m].
+    size
+        Edge of a cell [m].
+    filled
+        The filled part of each cell, (nx, ny, nz), between 0 and 1.
+    part
+        The part (from 0) with the largest share of each cell, (nx, ny, nz).
+    near
+        Array indices of the cells that the surface may touch, (k, 3), in C order.
+    """
+
+    low: Ints
+    phase: Triple
+    size: float
+    filled: Floats
+    part: NDArray[np.uint8]
+    near: Ints
+
+    @property
+    def origin(self) -> tuple[float, float, float]:
+        """The lowest corner of the grid [m]."""
+        x, y, z = (np.asarray(self.phase) + self.low * self.size).tolist()
+        return x, y, z
+
+
+def cut_cells(design: Design, size: float) -> CutCells:
+    """Measure how full the cells of a grid are.
+
+    Parameters
+    ----------
+    design
+        The design.
+    size
+        Edge of a cell [m].
+
+    Raises
+    ------
+    ShapeError
+        A shape without end or without value somewhere, a part of which nothing is inside, or a
+        grid that would not fit in memory.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> cells = cut_cells(families.sphere(), 0.005)
+    >>> bool(cells.filled.min() == 0.0), bool(cells.filled.max() == 1.0)
+    (True, True)
+    """
+    phase = phase_of(design)
+    shapes = [_shape(design, part.shape) for part in design.parts]
+    body = Body(shapes, size, design.shapes, phase)
+    bounds = [body.cells_of(index, phase) for index in range(len(shapes))]
+    low = np.min([corner for corner, _ in bounds], axis=0) - 1
+    high = np.max([corner for _, corner in bounds], axis=0) + 1
+    counts = high - low
+    needed = float(np.prod(counts.astype(np.float64))) * (len(shapes) + 16)
+    if needed > memory_limit():
+        what = f"{size:g} m would need {needed:.3g} bytes of memory"
+        raise ShapeError("voxel_size", what, "use larger voxels")
+    near = np.zeros(counts, dtype=bool)
+    filled = np.zeros(counts)
+    part = np.zeros(counts, dtype=np.uint8)
+    for index in range(len(shapes) - 1, -1, -1):
+        state = _state(shapes[index], design, size, np.asarray(phase) + low * size, counts)
+        if not state.any():
+            hint = "use a smaller voxel_size, or check its sizes and place"
+            raise ShapeError(f"parts[{index}]", "is empty: it fills no part of any voxel", hint)
+        near |= _mixed(state)
+        filled[state == 2] = 1.0
+        part[state == 2] = index
+    cells = np.argwhere(near)
+    for start in range(0, len(cells), _CHUNK):
+        chunk = cells[start : start + _CHUNK]
+        found, _, shares = filled_parts(design, chunk + low, size, phase)
+        filled[tuple(chunk.T)] = _whole(found.mean(axis=1))
+        part[tuple(chunk.T)] = np.argmax(shares > shares.max(axis=1, keepdims=True) - 1e-9, axis=1)
+    return CutCells(low, phase, size, filled, part, cells)
+
+
+def filled_parts(
+    design: Design, cells: Ints, size: float, phase: Triple
+) -> tuple[Floats, Floats, Floats]:
+    """Return the filled part of each small cube of some cells of the grid.
+
+    Parameters and results are those of :func:`voxsoft.shapes.fractions.fill`, for cells given by
+    their integers on the grid, (k, 3), and its phase [m].
+    """
+    corners: Floats = np.asarray(phase) + cells * np.float64(size)
+    return fill(built_parts(design), corners, size)
+
+
+def built_parts(design: Design) -> list[_core.Shape]:
+    """Return the shapes of a design's parts in the form that the core evaluates."""
+    return [_shape(design, part.shape).build(design.shapes) for part in design.parts]
+
+
+def measures_of(design: Design, cells: Ints, size: float, phase: Triple) -> Floats:
+    """Return integrals over the material of some cells, (k, 10).
+
+    Those of 1, ξ, η, ζ, ξ², η², ζ², ηζ, ζξ, ξη, in volumes of a cell. The coordinates count from
+    the center of a cell in halves of its edge. A full cell gives :data:`WHOLE`.
+
+    Parameters
+    ----------
+    design
+        The design.
+    cells
+        Their integers on the grid, (k, 3).
+    size
+        Edge of a cell [m].
+    phase
+        Where the grid lies: a corner of a cell [m].
+    """
+    found = np.zeros((len(cells), len(WHOLE)))
+    for start in range(0, len(cells), _CHUNK):
+        chunk = slice(start, start + _CHUNK)
+        filled, normals, _ = filled_parts(design, cells[chunk], size, phase)
+        found[chunk] = integrals(filled, normals)
+    found[found[:, 0] > 1.0 - _ROUNDING] = WHOLE
+    found[found[:, 0] < _ROUNDING] = 0.0
+    return found
+
+
+def integrals(filled: Floats, normals: Floats) -> Floats:
+    """Sum over the small cubes of cells, (k, 10), see :func:`measures_of`.
+
+    The filled part f of a cube of edge w cut by a plane with the unit normal n has its center
+    (1 - f)/2 w n away and the covariance (1 - (1 - f²) n ⊗ n) w²/12: right across the axes, and for
+    halves across a diagonal the center is 6 % off.
+
+    Parameters
+    ----------
+    filled, normals
+        Of each small cube, as :func:`voxsoft.shapes.fractions.fill` gives them.
+    """
+    lengths = np.linalg.norm(normals, axis=-1, keepdims=True)
+    unit = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+    part = filled[..., None]
+    edge = 2.0 / SUBCELLS
+    center = _MIDDLES - (0.5 * edge) * (1.0 - part) * unit
+    flat = edge**2 / 12.0 * (1.0 - part**2)
+    square = center**2 + edge**2 / 12.0 - flat * unit**2
+    one, other = [1, 2, 0], [2, 0, 1]
+    product = center[..., one] * center[..., other] - flat * unit[..., one] * unit[..., other]
+    rows = np.concatenate([part, part * center, part * square, part * product], axis=-1)
+    total: Floats = rows.mean(axis=1)
+    return total
+
+
+def _middles() -> Floats:
+    """Centers of the small cubes, from the center of the cell in halves of its edge."""
+    middle = (2.0 * np.arange(SUBCELLS) + 1.0) / SUBCELLS - 1.0
+    return np.stack(np.meshgrid(middle, middle, middle, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+_MIDDLES = _middles()
+
+
+def _shape(design: Design, shape: str | Shape) -> Shape:
+    return design.shapes[shape] if isinstance(shape, str) else shape
+
+
+def _whole(filled: Floats) -> Floats:
+    found: Floats = np.where(
+        filled > 1.0 - _ROUNDING, 1.0, np.where(filled < _ROUNDING, 0.0, filled)
+    )
+    return found
+
+
+def _state(
+    shape: Shape, design: Design, size: float, corner: Floats, counts: Ints
+) -> NDArray[np.uint8]:
+    """Of each cell: 0 no small cube has its center inside, 2 all have, 1 some have."""
+    n = SUBCELLS
+    state = np.zeros(counts, dtype=np.uint8)
+    step = max(1, _SLAB // int(counts[1] * counts[2] * n**3))
+    for start in range(0, int(counts[0]), step):
+        thick = min(step, int(counts[0]) - start)
+        x, y, z = (corner + np.array([start * size, 0.0, 0.0])).tolist()
+        fine = (thick * n, int(counts[1]) * n, int(counts[2]) * n)
+        found = inside(shape, size / n, fine, (x, y, z), design.shapes)
+        sums = found.reshape(thick, n, counts[1], n, counts[2], n).sum(axis=(1, 3, 5))
+        state[start : start + thick] = np.where(sums == n**3, 2, np.where(sums == 0, 0, 1))
+    return state
+
+
+def _mixed(state: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """Cells partly filled, or beside one in another state: the surface may touch them."""
+    from scipy.ndimage import maximum_filter, minimum_filter
+
+    lowest = minimum_filter(state, size=3, mode="constant", cval=0)
+    highest = maximum_filter(state, size=3, mode="constant", cval=0)
+    mixed: NDArray[np.bool_] = (lowest != highest) | (state == 1)
+    return mixed

@@ -1,0 +1,335 @@
+"""Voxels that the surface cuts: each carries the part of it that is filled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design.discretization.cut_cells import (
+    WHOLE,
+    CutCells,
+    Floats,
+    Ints,
+    cut_cells,
+    filled_parts,
+    integrals,
+    measures_of,
+)
+from voxsoft.design.discretization.narrow_rooms import with_narrow_rooms
+from voxsoft.design.discretization.rooms import ROOM_TETS, room_parts
+from voxsoft.design.model import Design
+from voxsoft.errors import DesignError, ShapeError
+from voxsoft.mesh import Mesh
+from voxsoft.shapes.base import Triple
+from voxsoft.shapes.fractions import SUBCELLS
+from voxsoft.voxels import Voxels
+
+#: A cell less full than this gives its material to its neighbors: a sliver would bound the load
+#: and the conditioning by its own strength. It lies between a fifth and a quarter, which round
+#: measures give and which should not stand at an edge.
+LEAST_FILLED = 0.22
+
+#: A void belongs to the nearest empty region no more cells away than this.
+_REACH = 2
+
+Void = tuple[Ints, Floats]
+
+
+@dataclass(frozen=True, eq=False)
+class _Topology:
+    """What stays while fractions vary: which cells are voxels, and where the rest belongs.
+
+    `places` are the cells near the surface on the grid at `phase`, (k, 3). `voxel` is the number
+    of each as a voxel, -1 for the others; `whole` is the number of voxels. `donors`, `receivers`
+    are pairs of such a cell and a neighboring one that takes its material. `region` tells for each
+    cell the cavity (from 0) around it or that its void belongs to, -1 for none, and -2 where
+    `zones`, by small cube, (z, n³), tell: those of the cells `torn`, (z,).
+    """
+
+    size: float
+    phase: Triple
+    whole: int
+    places: Ints = field(repr=False)
+    voxel: Ints = field(repr=False)
+    donors: Ints = field(repr=False)
+    receivers: Ints = field(repr=False)
+    region: Ints = field(repr=False)
+    torn: Ints = field(repr=False)
+    zones: NDArray[np.int16] = field(repr=False)
+    cavities: int
+
+
+@dataclass(frozen=True, eq=False)
+class CutVoxels:
+    """Voxels of a design with ``fill = "fraction"``.
+
+    Attributes
+    ----------
+    voxels
+        The cells that count: at least :data:`LEAST_FILLED` full.
+    fractions
+        The material of each, counted in C order, (n,), in volumes of a cell. It may exceed 1:
+        a cell less full gives its material to the voxels at its faces.
+    moments
+        Where the material of each voxel is, (n, 9): see :attr:`voxsoft.Mesh.moments`. What a
+        neighbor gave lies outside the voxel, and counts there.
+    voids
+        For each cavity the voxels (their numbers, and parts of the tetrahedra of
+        :data:`~voxsoft.design.discretization.rooms.ROOM_TETS`) by which it is larger than the
+        empty cells it is made of.
+    lost
+        Volume [m³] of material in walls too thin to hold a voxel.
+    """
+
+    voxels: Voxels
+    fractions: Floats = field(repr=False)
+    moments: Floats = field(repr=False)
+    voids: tuple[Void, ...] = field(repr=False)
+    lost: float
+    _topology: _Topology = field(repr=False)
+
+    @classmethod
+    def of(cls, design: Design, refine: int = 1) -> Self:
+        """Find the voxels of a design and how full they are.
+
+        Parameters
+        ----------
+        design
+            The design.
+        refine
+            Cells along the edge of one of the design's own.
+
+        Raises
+        ------
+        ShapeError
+            No cell is full enough, a shape has no end, or the grid would not fit in memory.
+
+        Examples
+        --------
+        >>> from voxsoft.design import families
+        >>> ball = CutVoxels.of(families.sphere())
+        >>> ball.voxels.count == len(ball.fractions)
+        True
+        """
+        cells = cut_cells(design, design.voxel_size / refine)
+        active = with_narrow_rooms(design, cells, cells.filled >= LEAST_FILLED)
+        if not active.any():
+            raise ShapeError(
+                "parts",
+                f"no cell is {LEAST_FILLED:.0%} full: every wall is much thinner than a voxel",
+                "use a smaller voxel_size, or check the sizes of the shapes",
+            )
+        numbers = np.where(active, cells.part + 1, 0).astype(np.uint8)
+        voxels = Voxels.from_array(numbers, cells.size, cells.origin)
+        topology = _topology(cells, active, voxels)
+        return cls(voxels, *_spread(design, topology), topology)
+
+    def resampled(self, design: Design) -> Self:
+        """Return the same voxels with the fractions of another design: its parameters changed.
+
+        As the set of voxels is kept, and so is who takes whose material, fractions and voids
+        depend continuously on the parameters: differences of them are the derivative of a shape.
+
+        Parameters
+        ----------
+        design
+            The same design with slightly other parameters; its surface must stay in the cells near
+            the surface of this one.
+
+        Raises
+        ------
+        DesignError
+            It has another voxel size.
+
+        Examples
+        --------
+        >>> from voxsoft.design import families
+        >>> beam = families.beam()
+        >>> cut = CutVoxels.of(beam)
+        >>> longer = cut.resampled(beam.with_parameters(length=0.101))
+        >>> round(float((longer.fractions - cut.fractions).sum()), 1)  # 1 mm of 5 mm, 4 cells
+        0.8
+        """
+        times = design.voxel_size / self.voxels.voxel_size
+        if abs(times - round(times)) > 1e-9:
+            what = "differs: the voxels of the first design cannot hold the second"
+            raise DesignError("voxel_size", what, "keep it, and vary other parameters")
+        return type(self)(self.voxels, *_spread(design, self._topology), self._topology)
+
+    def mesh(self) -> Mesh:
+        """Return the mesh: five tetrahedra for each voxel, with fractions and voids."""
+        mesh = self.voxels.mesh().with_fractions(self.fractions, self.moments)
+        return mesh.with_voids(ROOM_TETS, self.voids)
+
+
+def fractions_of(design: Design, cells: CutVoxels) -> Floats:
+    """Return the fractions of given voxels for a design with other parameters, (n,).
+
+    See :meth:`CutVoxels.resampled`, which gives the voids of the cavities as well.
+    """
+    return cells.resampled(design).fractions
+
+
+def _topology(cells: CutCells, active: NDArray[np.bool_], voxels: Voxels) -> _Topology:
+    count = np.cumsum(active).reshape(active.shape) - 1
+    near = cells.near
+    at = tuple(near.T)
+    voxel = np.where(active[at], count[at], -1)
+    labels = np.where(active, -2, -1).astype(np.int16)  # -2 is a voxel, -1 outside
+    for index, cavity in enumerate(voxels.cavities):
+        labels[tuple(cavity.cells.T)] = index
+    donors, receivers = _gifts(cells, active, voxel)
+    region, torn, zones = _zones(labels, near, voxel)
+    return _Topology(
+        size=cells.size,
+        phase=cells.phase,
+        whole=voxels.count,
+        places=near + cells.low,
+        voxel=voxel,
+        donors=donors,
+        receivers=receivers,
+        region=region,
+        torn=torn,
+        zones=zones,
+        cavities=len(voxels.cavities),
+    )
+
+
+def _gifts(cells: CutCells, active: NDArray[np.bool_], voxel: Ints) -> tuple[Ints, Ints]:
+    """Pairs (donor, receiver) of cells near the surface, by their numbers in ``cells.near``.
+
+    Receivers are the voxels at the donor's faces, of its own part if there are such; else those
+    at its edges and corners.
+    """
+    number = np.full(active.shape, -1)
+    number[tuple(cells.near.T)] = np.arange(len(cells.near))
+    number = np.pad(np.where(active, number, -1), 1, constant_values=-1)
+    parts = np.pad(cells.part, 1)
+    giving = np.flatnonzero(voxel < 0)
+    at = cells.near[giving] + 1
+    filled, own = cells.filled[tuple((at - 1).T)], cells.part[tuple((at - 1).T)]
+    neighbors = at[:, None, :] + _AROUND
+    found = number[tuple(np.moveaxis(neighbors, -1, 0))]
+    same = parts[tuple(np.moveaxis(neighbors, -1, 0))] == own[:, None]
+    face = (np.abs(_AROUND).sum(axis=1) == 1) & (found >= 0)
+    alike = face & same & (filled > 0.0)[:, None]
+    best = np.where(alike.any(axis=1)[:, None], alike, face)
+    best = np.where(best.any(axis=1)[:, None], best, found >= 0)
+    row, column = np.nonzero(best)
+    return giving[row], found[row, column]
+
+
+def _zones(
+    labels: NDArray[np.int16], near: Ints, voxel: Ints
+) -> tuple[Ints, Ints, NDArray[np.int16]]:
+    """The region of every cell near the surface; by small cube where two regions are in reach."""
+    padded = np.pad(labels, _REACH, constant_values=-1)
+    region = labels[tuple(near.T)].astype(np.intp)
+    torn, zones = [np.zeros(0, dtype=np.intp)], [np.zeros((0, SUBCELLS**3), dtype=np.int16)]
+    inner = np.flatnonzero(voxel >= 0)
+    for start in range(0, len(inner), 512):
+        chunk = inner[start : start + 512]
+        window = near[chunk][:, None, :] + _REACH + _WINDOW
+        seen = padded[tuple(np.moveaxis(window, -1, 0))]
+        first = seen.max(axis=1)
+        last = np.where(seen == -2, np.iinfo(np.int16).max, seen).min(axis=1)
+        region[chunk] = np.where(first == -2, -1, np.where(first == last, first, -2))
+        mixed = (first != -2) & (first != last)
+        torn.append(chunk[mixed])
+        zones.append(_nearest(seen[mixed]))
+    return region, np.concatenate(torn), np.concatenate(zones)
+
+
+def _nearest(seen: NDArray[np.int16]) -> NDArray[np.int16]:
+    """The region whose empty cell is nearest to each small cube, for windows of labels."""
+    zones = np.full((len(seen), SUBCELLS**3), -1, dtype=np.int16)
+    least = np.full(zones.shape, np.inf)
+    for label in np.unique(seen[seen > -2]):
+        distances = np.where((seen == label)[:, :, None], _DISTANCES, np.inf).min(axis=1)
+        # Equally far from the outside and a cavity: the outside, which comes first.
+        closer = distances < least - 1e-9
+        zones[closer] = label
+        least = np.where(closer, distances, least)
+    return zones
+
+
+def _spread(design: Design, t: _Topology) -> tuple[Floats, Floats, tuple[Void, ...], float]:
+    """Fractions and moments of the voxels, voids of the cavities, lost volume [m³]."""
+    measures = measures_of(design, t.places, t.size, t.phase)
+    filled = measures[:, 0]
+    own = t.voxel >= 0
+    held = np.tile(WHOLE, (t.whole, 1))
+    held[t.voxel[own]] = measures[own]
+    # Each donor's material goes to its receivers in proportion to how full they are.
+    weights = filled[t.receivers]
+    totals = np.bincount(t.donors, weights, len(filled))
+    shares = weights / np.maximum(totals[t.donors], 1e-300)
+    gifts = filled[t.donors] * shares
+    takers = t.voxel[t.receivers]
+    away = (2 * (t.places[t.donors] - t.places[t.receivers])).astype(np.float64)
+    given_to = _shifted(measures[t.donors], away) * shares[:, None]
+    np.add.at(held, takers, given_to)
+    given = np.bincount(t.donors, gifts, len(filled))
+    lost = float((filled - given)[~own].sum()) * t.size**3
+    fractions = held[:, 0]
+    center = held[:, 1:4] / fractions[:, None]
+    variance = held[:, 4:7] / fractions[:, None] - center**2
+    products = held[:, 7:] / fractions[:, None]
+    moments = np.hstack([center, np.sqrt(3.0 * variance), products])
+
+    if len(t.torn):
+        torn, normals, _ = filled_parts(design, t.places[t.torn], t.size, t.phase)
+    voids = []
+    for cavity in range(t.cavities):
+        room, over = np.zeros((t.whole, len(WHOLE))), np.zeros((t.whole, len(WHOLE)))
+        beside = own & (t.region == cavity)
+        room[t.voxel[beside]] = WHOLE - measures[beside]
+        if len(t.torn):
+            empty = np.where(t.zones == cavity, 1.0 - torn, 0.0)
+            room[t.voxel[t.torn]] += integrals(empty, -normals)
+        into = t.region[t.donors] == cavity
+        np.add.at(over, takers[into], given_to[into])
+        numbers = np.flatnonzero((room[:, 0] > 0.0) | (over[:, 0] > 0.0))
+        # What a voxel holds of its neighbors lies beyond its own space, and has a gradient there.
+        parts = _parts(room[numbers]) - _parts(over[numbers])
+        voids.append((numbers, parts))
+    return fractions, moments, tuple(voids), lost
+
+
+def _parts(measures: Floats) -> Floats:
+    volume = measures[:, 0]
+    filled = np.where(volume > 0.0, volume, 1.0)[:, None]
+    return room_parts(volume, measures[:, [1, 2, 3, 7, 8, 9]] / filled)
+
+
+def _shifted(measures: Floats, by: Floats) -> Floats:
+    """The measures of material counted from a point that lies `by` the other way."""
+    filled = measures[:, :1]
+    first = measures[:, 1:4] + by * filled
+    second = measures[:, 4:7] + 2.0 * by * measures[:, 1:4] + by**2 * filled
+    one, other = [1, 2, 0], [2, 0, 1]
+    product = measures[:, 7:] + by[:, one] * by[:, other] * filled
+    product += by[:, one] * measures[:, 1:4][:, other] + by[:, other] * measures[:, 1:4][:, one]
+    return np.hstack([filled, first, second, product])
+
+
+def _offsets(reach: int) -> Ints:
+    steps = np.arange(-reach, reach + 1)
+    return np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def _distances() -> Floats:
+    """Distance in cells from each small cube's center to each cell of the window."""
+    middle = (np.arange(SUBCELLS) + 0.5) / SUBCELLS
+    points = np.stack(np.meshgrid(middle, middle, middle, indexing="ij"), axis=-1).reshape(-1, 3)
+    gap = np.maximum(_WINDOW[:, None] - points, points - _WINDOW[:, None] - 1.0)
+    found: Floats = np.linalg.norm(np.maximum(gap, 0.0), axis=-1)
+    return found
+
+
+_AROUND = _offsets(1)
+_WINDOW = _offsets(_REACH)
+_DISTANCES = _distances()

@@ -1,0 +1,1 @@
+"""Design documents: text, formulas and included files resolved to values."""

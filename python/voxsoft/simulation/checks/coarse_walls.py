@@ -1,0 +1,220 @@
+"""Walls and chambers that whole voxels make thinner or thicker than the shapes say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft.design import Design
+from voxsoft.design.discretization.cut_cells import built_parts
+from voxsoft.errors import VoxSoftError
+from voxsoft.materials import Hyperelastic
+from voxsoft.mesh import Mesh
+from voxsoft.shapes import TriangleMesh
+from voxsoft.simulation.checks.unloaded import once_for_each_mesh
+from voxsoft.simulation.diagnostic import Diagnostic, near
+from voxsoft.simulation.setup.volumes import GridRegions, shapes_of
+from voxsoft.units import format_quantity
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+#: Relative difference from which a thickness is doubtful: bending stiffness goes with its cube.
+LARGE: Final = 0.15
+#: Thickest wall that is examined, in voxels: a thicker one is off by less than that, as each end is
+#: by half a voxel at most.
+_MOST_VOXELS: Final = 6
+#: Rows that are measured along each axis, fewer for surfaces from files, and points in a voxel.
+_ROWS, _ROWS_OF_A_FILE, _POINTS = 200, 40, 16
+#: Factor on the points in a voxel for the thickness that is printed.
+_FINER: Final = 32
+#: Offsets of parallel lines, in voxels: a wall is flat where it is as thick on all, to one point.
+_ASIDE: Final = ((0.0, 0.0), (0.45, 0.45), (0.45, -0.45), (-0.45, 0.45), (-0.45, -0.45))
+#: Smallest share of rows along an axis for a thickness to be judged.
+_SHARE: Final = 0.1
+#: Deviation from whole voxels up to which a voxel size fits; smallest such size over the present.
+_FITS, _SMALLEST = 0.05, 0.2
+
+
+class _Rows(NamedTuple):
+    """Cells in rows along an axis: walls, or the insides of chambers.
+
+    `first` is the first cell of each, (n, 3), `number` how many it has, (n,).
+    """
+
+    axis: int
+    is_wall: bool
+    first: Ints
+    number: Ints
+
+
+class _Measured(NamedTuple):
+    """Walls, or chambers, of one thickness [m] along an axis: as described and as simulated."""
+
+    is_wall: bool
+    described: float
+    simulated: float
+    at: Floats
+
+    @property
+    def difference(self) -> float:
+        """Relative difference of the simulated thickness from the described one."""
+        return abs(self.simulated / self.described - 1.0)
+
+
+@once_for_each_mesh
+def coarse_walls(design: Design, mesh: Mesh) -> Iterator[Diagnostic]:
+    """Find walls of chambers, and chambers, whose voxels have another thickness than their shapes.
+
+    Rows of voxels along the axes that begin or end at a chamber are measured in the shapes along
+    the same line. Flat walls along the grid are judged: voxels of inclined and curved ones are too
+    thick here and too thin there; :mod:`voxsoft.simulation.setup.volumes` compares their sum. Cut
+    voxels carry their share of material, and are not examined.
+
+    Examples
+    --------
+    >>> import voxsoft as vs
+    >>> from voxsoft.design import families
+    >>> box = vs.Box(size=(0.02, 0.02, 0.02), corner=(0, 0, 0))
+    >>> room = vs.Box(size=(0.013, 0.013, 0.013), corner=(0.0035, 0.0035, 0.0035))
+    >>> hollow = families.beam().replace(shapes={"body": box - room}, voxel_size=0.0025)
+    >>> found = list(coarse_walls(hollow, vs.mesh_of(hollow)))
+    >>> print(found[0])  # doctest: +ELLIPSIS
+    voxel_size: walls 3.5 mm thick are solved as 2.5 mm (1 voxel), near ...
+    """
+    for body in mesh.each_body:
+        own = design.alone(body.name) if body.name else design
+        size = body.mesh.voxel_size
+        if size is None or body.mesh.fractions is not None or not body.mesh.cavities:
+            continue
+        try:
+            found = _of_body(own, body.mesh, size)
+        except VoxSoftError:
+            continue  # a shape without a value somewhere is reported where it is sampled
+        where = f'body "{body.name}", voxel_size' if body.name else "voxel_size"
+        yield from _worded(found, size, where, may_cut=_may_cut(own))
+
+
+def _of_body(design: Design, mesh: Mesh, size: float) -> list[_Measured]:
+    cells = GridRegions.of(mesh, size)
+    shapes = built_parts(design)
+    slow = any(isinstance(each, TriangleMesh) for each in shapes_of(design))
+    found: list[_Measured] = []
+    for axis in range(3):
+        for rows in _rows(cells.rooms, axis):
+            some = _some(rows, _ROWS_OF_A_FILE if slow else _ROWS)
+            if len(some.number):
+                found += _flat(some, shapes, cells)
+    return found
+
+
+def _rows(rooms: NDArray[np.int16], axis: int) -> Iterator[_Rows]:
+    """Yield the rows of cells along an axis in walls beside a chamber, and in chambers."""
+    lines = np.moveaxis(rooms, axis, -1)
+    shape = lines.shape
+    flat = np.ascontiguousarray(lines).reshape(-1, shape[-1])
+    line, last = np.nonzero(flat[:, 1:] != flat[:, :-1])
+    # Between two changes of one line lies a row; the grid has empty cells around the body.
+    inner = np.flatnonzero(line[1:] == line[:-1])
+    line, first, count = line[inner], last[inner] + 1, last[inner + 1] - last[inner]
+    region, before = flat[line, first], flat[line, first - 1]
+    after = flat[line, first + count]
+    cell = np.stack([*np.unravel_index(line, shape[:-1]), first], axis=1)
+    cell = np.insert(cell[:, :2], axis, first, axis=1)
+    is_wall = (region == -2) & ((before >= 0) | (after >= 0))
+    for wanted, kind in ((is_wall, True), (region >= 0, False)):
+        wanted &= count <= _MOST_VOXELS
+        yield _Rows(axis, kind, cell[wanted], count[wanted])
+
+
+def _some(rows: _Rows, most: int) -> _Rows:
+    every = slice(None, None, max(1, -(-len(rows.number) // most)))
+    return rows._replace(first=rows.first[every], number=rows.number[every])
+
+
+def _described(
+    rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions, finer: int = 1
+) -> Floats:
+    """Measure the material, or void, of the shapes along each row [m]; 0 where it varies, (n,).
+
+    Half a voxel at both ends belongs to a row: no flat face is farther from the ends of its voxels.
+    """
+    points = finer * _POINTS
+    steps = (np.arange((_MOST_VOXELS + 1) * points) + 0.5) / points - 0.5
+    places = np.tile((rows.first + 0.5)[None, :, None, :], (len(_ASIDE), 1, len(steps), 1))
+    places[..., rows.axis] += steps - 0.5
+    places[..., np.arange(3) != rows.axis] += np.array(_ASIDE)[:, None, None, :]
+    spots = np.ascontiguousarray((cells.origin + cells.size * places).reshape(-1, 3))
+    inside = np.zeros(len(spots), dtype=bool)
+    for shape in shapes:
+        inside |= shape.evaluate(spots) < 0.0
+    wanted = inside.reshape(len(_ASIDE), len(rows.number), len(steps)) == rows.is_wall
+    wanted &= steps < rows.number[:, None] + 0.5
+    within = wanted.sum(axis=-1)
+    lengths: Floats = within[0] * (cells.size / points)
+    return np.where(np.ptp(within, axis=0) <= finer, lengths, 0.0)
+
+
+def _flat(rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions) -> Iterator[_Measured]:
+    """Yield the thicknesses that many rows share."""
+    measured = np.rint(_described(rows, shapes, cells) * (_POINTS / cells.size))
+    pairs = np.stack([measured, rows.number], axis=1)
+    kinds, first, count = np.unique(pairs, axis=0, return_index=True, return_counts=True)
+    kept = (count >= _SHARE * len(pairs)) & (kinds[:, 0] > 0.0)
+    few = rows._replace(first=rows.first[first[kept]], number=rows.number[first[kept]])
+    described = _described(few, shapes, cells, _FINER)
+    for cell, number, length in zip(few.first, few.number, described.tolist(), strict=True):
+        middle = cell + 0.5
+        middle[rows.axis] += 0.5 * (number - 1)
+        at = cells.origin + cells.size * middle
+        if length > 0.0:
+            yield _Measured(rows.is_wall, length, float(cells.size * number), at)
+
+
+def _worded(
+    found: Sequence[_Measured], size: float, where: str, *, may_cut: bool
+) -> Iterator[Diagnostic]:
+    if not found:
+        return
+    fitting = _fitting([each.described for each in found], size)
+    hint = f'set voxel_size = "{_length(fitting, 4)}" or smaller, or make both multiples of a voxel'
+    if may_cut:
+        hint = f'set fill = "fraction", {hint.removeprefix("set ")}'
+    for is_wall, words in ((True, "walls {} thick"), (False, "chambers {} wide")):
+        off = [each for each in found if each.is_wall == is_wall and each.difference >= LARGE]
+        if not off:
+            continue
+        worst = max(off, key=lambda each: each.difference)
+        voxels = worst.simulated / size
+        number = f"{voxels:.2g} voxel{'' if round(voxels, 1) == 1.0 else 's'}"
+        x, y, z = worst.at.tolist()
+        what = (
+            f"{words.format(_length(worst.described))} are solved as {_length(worst.simulated)} "
+            f"({number}), {near((x, y, z))}"
+        )
+        yield Diagnostic("warning", where, what, hint, (x, y, z))
+
+
+def _fitting(lengths: Sequence[float], size: float) -> float:
+    """The largest voxel size below `size` of which all lengths are nearly multiples."""
+    least = min(lengths)
+    for times in range(int(np.ceil(least / size - _FITS)), int(least / (_SMALLEST * size)) + 1):
+        if times < 1 or least / times > size * (1.0 - _FITS):
+            continue
+        parts = np.asarray(lengths) * times / least
+        if (np.abs(parts - np.rint(parts)) <= _FITS * np.maximum(1.0, parts / 4)).all():
+            return least / times
+    return min(size, least) / 2.0
+
+
+def _length(value: float, digits: int = 3) -> str:
+    return format_quantity(float(f"{value:.{digits}g}"), "length")
+
+
+def _may_cut(design: Design) -> bool:
+    """Return True if cut voxels are a remedy: all materials are hyperelastic."""
+    return all(isinstance(design.material_of(part), Hyperelastic) for part in design.parts)

@@ -1,0 +1,1 @@
+"""Derivatives of metrics at an equilibrium and along a path."""

@@ -1,0 +1,1 @@
+"""Results: state, fields, contact, vibrations and compliance at an equilibrium."""

@@ -1,0 +1,1 @@
+"""Runs: one design, a path of designs, many candidates, or step by step under commands."""

@@ -1,0 +1,102 @@
+"""Supplies along a path of designs, as one network with a history of each amount."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Final
+
+from voxsoft.design import Design
+from voxsoft.errors import DesignError
+from voxsoft.simulation.setup.fluids import Fluids
+from voxsoft.simulation.setup.setup import Setup
+
+#: Numbers that may differ between designs: fluid mass, its temperature, the volume outside.
+_AMOUNTS: Final = ("mass", "temperature", "outside")
+
+
+@dataclass(frozen=True)
+class FluidPath(Fluids):
+    """Supplies of designs that differ in the amounts that these give.
+
+    Attributes
+    ----------
+    design, mesh
+        The first design, and the mesh of all.
+    designs
+        All designs, in the order of the path.
+    instants
+        The time in s that stands for each design, rising.
+    key
+        The key that changes, for errors.
+
+    Raises
+    ------
+    DesignError
+        Designs whose supplies differ in more, or that have histories.
+    """
+
+    designs: tuple[Design, ...] = field(kw_only=True)
+    instants: tuple[float, ...] = field(kw_only=True)
+    key: str = field(kw_only=True)
+
+    @cached_property
+    def network(self) -> dict[str, Any]:
+        """Network whose histories are those of the path."""
+        networks = [Fluids(design, self.mesh).network for design in self.designs]
+        fixed = [_without_amounts(network) for network in networks]
+        if any(each != fixed[0] for each in fixed):
+            raise DesignError(
+                self.key,
+                "changes more of supplies than how much they give",
+                "vary a pressure, volume, mass or temperature; lines, leaks, pumps and histories "
+                "stay",
+            )
+        found = dict(networks[0])
+        found["chambers"] = [
+            {
+                **alike[0],
+                "path": [self._course([each[name][1] for each in alike]) for name in _AMOUNTS],
+            }
+            for alike in zip(*(network["chambers"] for network in networks), strict=True)
+        ]
+        found["sources"] = [
+            self._source([each["pressure"] for each in alike])
+            for alike in zip(*(network["sources"] for network in networks), strict=True)
+        ]
+        return found
+
+    def _course(self, values: Sequence[float]) -> list[list[float]]:
+        return [list(self.instants), list(values)]
+
+    def _source(self, pressures: Sequence[float]) -> dict[str, Any]:
+        largest = max(pressures, key=abs)
+        factors = [pressure / largest if largest else 0.0 for pressure in pressures]
+        return {"pressure": largest, "history": self._course(factors)}
+
+
+def _without_amounts(network: dict[str, Any]) -> dict[str, Any]:
+    def rest(entry: dict[str, Any], left_out: Sequence[str]) -> dict[str, Any]:
+        return {key: value for key, value in entry.items() if key not in left_out}
+
+    return {
+        **network,
+        "chambers": [rest(each, _AMOUNTS) for each in network["chambers"]],
+        "sources": [rest(each, ("pressure",)) for each in network["sources"]],
+    }
+
+
+@dataclass(frozen=True, repr=False)
+class SetupAlong(Setup):
+    """A setup whose supplies go along a path."""
+
+    along: FluidPath = field(kw_only=True)
+
+    def __post_init__(self) -> None:
+        """Skip the preparation: design and mesh are those of a setup."""
+
+    @cached_property
+    def fluids(self) -> Fluids | None:
+        """Supplies of the path."""
+        return self.along

@@ -1,0 +1,1 @@
+"""Symmetric bodies: the solved sector, its parts, and its mirror images."""

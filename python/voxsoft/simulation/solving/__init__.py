@@ -1,0 +1,1 @@
+"""Solution methods, their settings, and the choice between them."""
