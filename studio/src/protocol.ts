@@ -22,7 +22,19 @@ export const STILL_OBJECTS = 2;
 export const CAVITY = 128;
 
 /** Endings of mesh files that are read. */
-export const MESHES = [".stl", ".obj", ".ply", ".off", ".glb", ".mesh", ".msh", ".inp", ".vtk", ".vtu", ".vtp", ".vti", ".vts", ".vtr"] as const;
+export const MESHES = [".vtu", ".vti", ".vtp", ".vts", ".vtr", ".vtk", ".msh", ".inp", ".mesh", ".stl", ".obj", ".ply", ".off", ".glb"] as const;
+
+/** Formats of files that the server writes, by ending. */
+export const WRITTEN = {
+  ".vtu": {"title": "Mesh", "purpose": "To look at displacement, stretch and stress in ParaView or PyVista.", "asksUnit": false, "asksShape": false},
+  ".msh": {"title": "Mesh", "purpose": "To go on in Gmsh or a code that reads its meshes.", "asksUnit": false, "asksShape": false},
+  ".inp": {"title": "Mesh", "purpose": "To solve the same body in Abaqus or CalculiX and check this result.", "asksUnit": false, "asksShape": false},
+  ".stl": {"title": "Surface", "purpose": "To print the body or cut its mold; other programs read it as triangles.", "asksUnit": true, "asksShape": true},
+  ".obj": {"title": "Surface", "purpose": "To open the surface in Blender and other modelers.", "asksUnit": true, "asksShape": true},
+  ".npy": {"title": "Voxels", "purpose": "To work on the voxels in Python: an array of part numbers.", "asksUnit": false, "asksShape": false},
+  ".csv": {"title": "Table", "purpose": "To plot probes, residual and energies in a spreadsheet or Python.", "asksUnit": false, "asksShape": false},
+  ".toml": {"title": "Design", "purpose": "To keep, cite or send the design: this page of text rebuilds everything.", "asksUnit": false, "asksShape": false},
+} as const;
 
 /** Endings of files of CAD programs. */
 export const CAD_SUFFIXES = [".step", ".stp", ".p21", ".iges", ".igs", ".brep", ".brp", ".fcstd", ".sldprt", ".sldasm", ".ipt", ".f3d", ".x_t", ".x_b", ".sat", ".3dm"] as const;

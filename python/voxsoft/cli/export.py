@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 import typer
 
 from voxsoft.cli.exits import USAGE, errors_in_words
 from voxsoft.cli.options import Sets
 from voxsoft.cli.output import plain, say
+from voxsoft.formats.registry import WRITTEN
+
+#: Suffixes of files that do not state their unit.
+UNITLESS: Final = " and ".join(suffix for suffix, form in WRITTEN.items() if form.unit is None)
 
 
 def export(
@@ -18,7 +22,7 @@ def export(
     ],
     target: Annotated[
         Path | None,
-        typer.Argument(help="File to write: .vtu .msh .inp .stl .obj .npy .toml .csv"),
+        typer.Argument(help=f"File to write: {' '.join(WRITTEN)}"),
     ] = None,
     sets: Sets = None,
     deformed: Annotated[
@@ -26,7 +30,7 @@ def export(
     ] = False,
     unit: Annotated[
         str | None,
-        typer.Option("--unit", help="Unit of the numbers in .stl and .obj files; default: mm."),
+        typer.Option("--unit", help=f"Unit of the numbers in {UNITLESS} files; default: mm."),
     ] = None,
     html: Annotated[
         Path | None,
@@ -42,8 +46,8 @@ def export(
     with errors_in_words():
         if target is not None:
             files.export(source, target, sets or [], deformed=deformed, unit=unit)
-            surface = target.suffix.lower() in (".stl", ".obj")
-            shown = f", in {plain(files.unit_of(target, unit))}" if surface else ""
+            has_unit = WRITTEN[target.suffix.lower()].unit is None
+            shown = f", in {plain(files.unit_of(target, unit))}" if has_unit else ""
             say(f"wrote {plain(str(target))}{shown}")
         if html is not None:
             from voxsoft.studio.html import export_page

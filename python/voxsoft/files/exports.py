@@ -5,9 +5,9 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -19,19 +19,40 @@ from voxsoft.files.designs import FilePath, load, read_text, save
 from voxsoft.files.mesh_file import MeshFile
 from voxsoft.files.meshes import read_mesh_file, write_mesh
 from voxsoft.files.run_folder import csv_text
+from voxsoft.formats.registry import WRITTEN, function
 from voxsoft.simulation import named_regions
 from voxsoft.units import parse
 
-#: Suffixes of the formats that can be written.
-FORMATS: Final = (".vtu", ".msh", ".inp", ".stl", ".obj", ".npy", ".toml", ".csv")
 
-_SURFACES: Final = (".stl", ".obj")
-#: Reason why some formats take no unit.
-_OF_NO_UNIT: Final = {
-    ".toml": "says the unit of each number",
-    ".npy": "holds the parts of voxels, and no lengths",
-    ".csv": "has its units in its header",
-}
+class Source(Protocol):
+    """Subject of an export whose file is no mesh."""
+
+    @property
+    def design(self) -> Design:
+        """Design."""
+
+    def table(self) -> str:
+        """Return numbers as the text of a CSV file."""
+
+
+@dataclass(frozen=True)
+class _File:
+    """Design file or run folder.
+
+    Attributes
+    ----------
+    origin
+        Its path.
+    design
+        Its design.
+    """
+
+    origin: Path
+    design: Design
+
+    def table(self) -> str:
+        """Return the displacements of the probes."""
+        return _probes_csv(self.origin)
 
 
 def export(
@@ -49,10 +70,10 @@ def export(
     source
         A design file, or a run folder.
     target
-        Path of the file: a mesh ``.vtu`` ``.msh`` ``.inp``, its surface ``.stl`` ``.obj``, the
-        voxels as
-        a NumPy array of part ids ``.npy``, the resolved design ``.toml``, or the displacements
-        of the probes ``.csv`` (of a run folder).
+        Path of the file, whose suffix chooses among :data:`voxsoft.formats.registry.WRITTEN`: a
+        mesh ``.vtu`` ``.msh`` ``.inp``, its surface ``.stl`` ``.obj``, the voxels as a NumPy array
+        of part numbers ``.npy``, the resolved design ``.toml``, or the displacements of the probes
+        ``.csv`` (of a run folder).
     assignments
         Changes ``key=value`` of a design file.
     deformed
@@ -83,18 +104,35 @@ def export(
     suffix = goal.suffix.lower()
     _check(origin, goal, list(assignments), deformed, unit)
     design = load(_design_file(origin), assignments=assignments)
-    if suffix == ".toml":
-        save(design, goal, resolved=True)
-    elif suffix == ".csv":
-        write_atomically(goal, _probes_csv(origin))
-    elif suffix == ".npy":
-        array = io.BytesIO()
-        np.save(array, voxels_of(design).array)
-        write_atomically(goal, array.getvalue())
+    if WRITTEN[suffix].has_shape:
+        meter = parse(f"1 {unit_of(goal, unit)}", "length")
+        _write_body(goal, _body(origin, design), deformed, meter)
     else:
-        _write_body(
-            goal, _body(origin, design), deformed, parse(f"1 {unit_of(goal, unit)}", "length")
-        )
+        write_source(goal, _File(origin, design))
+
+
+def write_source(target: Path, source: Source) -> None:
+    """Write a file without a mesh by the writer for its suffix."""
+    form = WRITTEN[target.suffix.lower()]
+    assert form.writer is not None
+    function(form.writer)(target, source)
+
+
+def write_voxels(target: Path, source: Source) -> None:
+    """Write the voxels as a NumPy array of part numbers."""
+    array = io.BytesIO()
+    np.save(array, voxels_of(source.design).array)
+    write_atomically(target, array.getvalue())
+
+
+def write_table(target: Path, source: Source) -> None:
+    """Write the source's numbers as CSV."""
+    write_atomically(target, source.table())
+
+
+def write_design(target: Path, source: Source) -> None:
+    """Write the design with values in place of its formulas."""
+    save(source.design, target, resolved=True)
 
 
 def unit_of(target: FilePath, unit: str | None = None) -> str:
@@ -105,7 +143,8 @@ def unit_of(target: FilePath, unit: str | None = None) -> str:
     >>> unit_of("arm.stl"), unit_of("arm.stl", "inch"), unit_of("arm.vtu")
     ('mm', 'inch', 'm')
     """
-    return unit or ("mm" if Path(target).suffix.lower() in _SURFACES else "m")
+    form = WRITTEN[Path(target).suffix.lower()]
+    return unit or ("mm" if form.unit is None else "m")
 
 
 def _check(
@@ -113,23 +152,25 @@ def _check(
 ) -> None:
     """Refuse invalid combinations before anything is computed."""
     suffix, is_run = goal.suffix.lower(), origin.is_dir()
-    if suffix not in FORMATS:
-        what = f"unknown format {goal.suffix!r}; allowed are {' '.join(FORMATS)}"
+    if suffix not in WRITTEN:
+        what = f"unknown format {goal.suffix!r}; allowed are {' '.join(WRITTEN)}"
         raise FileError(str(goal), what)
+    form = WRITTEN[suffix]
     if is_run and assignments:
         raise FileError(
             str(origin), "is a run, whose design is settled", "run the changed design, or export it"
         )
-    if not is_run and (deformed or suffix == ".csv"):
+    if not is_run and (deformed or form.kind == "table"):
         what = "holds no result; a run folder does"
         raise FileError(str(origin), what, f"voxsoft run {origin}, then export its folder")
-    if deformed and suffix in (".npy", ".toml", ".csv"):
+    if deformed and not form.has_shape:
         raise FileError(str(goal), f"{suffix} cannot hold a deformed shape", "write .vtu or .stl")
     if unit is not None:
         parse(f"1 {unit}", "length", where="unit")
-        if suffix not in _SURFACES and (suffix in _OF_NO_UNIT or unit != "m"):
-            what = f"{suffix} {_OF_NO_UNIT.get(suffix, 'is always in m')}"
-            raise FileError(str(goal), what, "leave --unit out; it is for .stl and .obj")
+        if form.unit is not None and (not form.has_shape or unit != "m"):
+            free = [s for s, other in WRITTEN.items() if other.unit is None]
+            hint = f"leave --unit out; it is for {' and '.join(free)}"
+            raise FileError(str(goal), f"{suffix} {form.unit}", hint)
 
 
 def _design_file(origin: Path) -> Path:
@@ -150,15 +191,15 @@ def _body(origin: Path, design: Design) -> MeshFile:
 
 
 def _write_body(goal: Path, body: MeshFile, deformed: bool, meter: float) -> None:
-    mesh, suffix = body.mesh, goal.suffix.lower()
+    mesh, form = body.mesh, WRITTEN[goal.suffix.lower()]
     if deformed:
         moved = np.asarray(body.point_data["displacement"], dtype=np.float64)
         mesh = replace(mesh, vertices=mesh.vertices + moved)
-    if suffix in _SURFACES:
-        write_mesh(goal, replace(mesh, vertices=mesh.vertices / meter))
-    else:
-        points, cells = (body.point_data, body.cell_data) if suffix == ".vtu" else ({}, {})
-        write_mesh(goal, mesh, point_data=points, cell_data=cells, regions=body.regions)
+    mesh = replace(mesh, vertices=mesh.vertices / meter)
+    keeps_values = "values" in form.holds
+    points, cells = (body.point_data, body.cell_data) if keeps_values else ({}, {})
+    regions = body.regions if "regions" in form.holds else {}
+    write_mesh(goal, mesh, point_data=points, cell_data=cells, regions=regions)
 
 
 def _probes_csv(folder: Path) -> str:

@@ -1,64 +1,28 @@
 """Meshes to and from files in the format of the name's suffix.
 
-======== ============================= ======= ======= ======== =====
-Suffix   Format                        Parts   Regions Cavities Data
-======== ============================= ======= ======= ======== =====
-``.vtu`` VTK, ParaView, PyVista        kept    kept    kept     kept
-``.msh`` Gmsh 4.1, physical groups     kept    kept    kept
-``.inp`` Abaqus and CalculiX           kept    kept    kept
-``.stl`` binary STL of the boundary
-``.obj`` Wavefront OBJ of the boundary
-======== ============================= ======= ======= ======== =====
-
-Only ``.vtu`` keeps which voxel a tet belongs to. Other volume formats, such as Medit's ``.mesh``
-and Netgen's ``.vol``, are read, not written. Surface formats can be written,
-not read: a surface enters as a shape.
+Formats and the contents that each keeps: :mod:`voxsoft.formats.registry`. Only ``.vtu`` keeps which
+voxel a tet belongs to. Surface formats can be written, not read: a surface enters as a shape.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
-import meshio
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from voxsoft.errors import DesignError, FileError, MeshError
-from voxsoft.files import abaqus, gmsh, vtu
+from voxsoft.files import vtu
 from voxsoft.files.atomic import replace_whole
 from voxsoft.files.from_contents import mesh_of_contents
 from voxsoft.files.mesh_file import MeshFile, vertex_set
 from voxsoft.formats.read import read_contents
+from voxsoft.formats.registry import READ, WRITTEN, function, suffixes_that_hold
 from voxsoft.mesh import Mesh
 from voxsoft.records import check_name
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
-
-
-def _write_stl(path: Path, content: MeshFile) -> None:
-    # Not by meshio: NumPy's `tofile`, which it uses, silently loses data on a full disk.
-    import trimesh
-
-    mesh = content.mesh
-    body = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
-    path.write_bytes(trimesh.exchange.stl.export_stl(body))
-
-
-def _write_obj(path: Path, content: MeshFile) -> None:
-    triangles = [("triangle", content.mesh.triangles)]
-    meshio.obj.write(str(path), meshio.Mesh(content.mesh.vertices, triangles))
-
-
-_WRITERS: dict[str, Callable[[Path, MeshFile], None]] = {
-    ".vtu": vtu.write,
-    ".msh": gmsh.write,
-    ".inp": abaqus.write,
-    ".stl": _write_stl,
-    ".obj": _write_obj,
-}
-_SURFACES = {".stl", ".obj"}
-_ONLY_SURFACES = {*_SURFACES, ".ply", ".off"}
 
 
 def write_mesh(
@@ -74,7 +38,7 @@ def write_mesh(
     Parameters
     ----------
     path
-        Name of the file; its suffix chooses the format (see the table of the module).
+        Name of the file; its suffix chooses the format (:mod:`voxsoft.formats.registry`).
     mesh
         Mesh to write.
     point_data, cell_data : mappings of str to array_like, shape (n, ...) or (m, ...), optional
@@ -99,20 +63,23 @@ def write_mesh(
     [1, 1, 1, 1, 1, 2, 2, 2, 2, 2]
     """
     target = Path(path)
-    writer = _WRITERS.get(target.suffix.lower())
-    if writer is None:
-        raise _unknown_format(target, list(_WRITERS))
+    suffix = target.suffix.lower()
+    form = WRITTEN.get(suffix)
+    if form is None or form.writer is None or not form.has_shape:
+        raise _unknown_format(target, [s for s, form in WRITTEN.items() if form.has_shape])
     content = MeshFile(
         mesh,
         _checked_regions(target, regions or {}, len(mesh.vertices)),
         _checked_data(target, "point_data", point_data or {}, len(mesh.vertices)),
         _checked_data(target, "cell_data", cell_data or {}, len(mesh.tets)),
     )
-    suffix = target.suffix.lower()
-    if suffix != ".vtu" and (content.point_data or content.cell_data):
-        raise FileError(str(target), f"{suffix} cannot hold data", "write a .vtu file")
-    if suffix in _SURFACES and content.regions:
-        raise FileError(str(target), f"{suffix} cannot hold regions", "write .vtu, .msh or .inp")
+    if "values" not in form.holds and (content.point_data or content.cell_data):
+        what = f"{suffix} cannot hold data"
+        raise FileError(str(target), what, f"write a {suffixes_that_hold('values')} file")
+    if "regions" not in form.holds and content.regions:
+        what = f"{suffix} cannot hold regions"
+        raise FileError(str(target), what, f"write {suffixes_that_hold('regions')}")
+    writer = function(form.writer)
     replace_whole(target, lambda temporary: writer(temporary, content))
 
 
@@ -158,7 +125,7 @@ def read_mesh_file(path: str | os.PathLike[str], *, unit: str | None = None) -> 
     """
     source = Path(path)
     suffix = source.suffix.lower()
-    if suffix in _ONLY_SURFACES:
+    if suffix in READ and READ[suffix].kind == "surface":
         hint = "enter it as a shape and voxelize it"
         raise FileError(str(source), f"{suffix} holds a surface, not tetrahedra", hint)
     if is_cad_file(source.name):

@@ -32,7 +32,7 @@ _SILENT: Final = {"MeshFormat", "Comments", "Entities", "Nodes", "Elements", "Ph
 
 
 def read(path: Path) -> Contents:
-    """Read a file; versions other than 2.2 and 4.1 by meshio.
+    """Read a file; other versions, and files of ANSYS and others of this suffix, by meshio.
 
     Raises
     ------
@@ -40,6 +40,8 @@ def read(path: Path) -> Contents:
         If a section has no end, a count does not fit, or a cell names a node that is missing.
     """
     data = path.read_bytes()
+    if b"$MeshFormat" not in data[:4096]:
+        return by_meshio.read(path)
     head = re.match(rb"\s*\$MeshFormat\s+(\S+)\s+([01])\s+(\d+)[ \t]*\r?\n", data)
     if head is None:
         raise FileError(str(path), "does not begin with $MeshFormat and a version of Gmsh")

@@ -2,31 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Final
 
 from voxsoft.errors import FileError
-from voxsoft.formats import abaqus, by_meshio, by_trimesh, gmsh, obj, ply, stl, vtk_legacy, vtk_xml
+from voxsoft.formats import by_meshio, registry, vtk_xml
 from voxsoft.formats.contents import Contents
 
-#: Own readers by suffix, tried before meshio.
-READERS: Final[dict[str, Callable[[Path], Contents]]] = {
-    ".inp": abaqus.read,
-    ".msh": gmsh.read,
-    ".vtk": vtk_legacy.read,
-    **dict.fromkeys((".vtu", ".vtp", ".vti", ".vts", ".vtr"), vtk_xml.read),
-    ".obj": obj.read,
-    ".stl": stl.read,
-    ".glb": by_trimesh.read,
-    ".ply": ply.read,
-    ".off": by_trimesh.read_after_meshio,
-}
 #: Files of VTK that list other files: their reader names those.
-_LISTS: Final = dict.fromkeys(
-    (".vtm", ".vtmb", ".pvd", ".pvtu", ".pvtp", ".pvti", ".pvts", ".pvtr"), vtk_xml.read
-)
+_LISTS: Final = (".vtm", ".vtmb", ".pvd", ".pvtu", ".pvtp", ".pvti", ".pvts", ".pvtr")
 #: Advice for formats that are not read: programs that convert them.
 _WAYS: Final = (
     ((".3mf", ".amf"), "open it in a slicer such as PrusaSlicer and export it as STL"),
@@ -62,7 +47,7 @@ def known_suffixes() -> tuple[str, ...]:
     """
     import meshio
 
-    return tuple(sorted({*READERS, *meshio.extension_to_filetypes} - _DRAWINGS))
+    return tuple(sorted({*registry.READ, *meshio.extension_to_filetypes} - _DRAWINGS))
 
 
 def read_contents(path: Path) -> Contents:
@@ -89,8 +74,10 @@ def read_contents(path: Path) -> Contents:
         raise FileError(str(path), "no such file")
     if not path.stat().st_size:
         raise FileError(str(path), "holds nothing: it has 0 bytes", "save or copy it again")
-    if suffix == ".msh":
-        with path.open("rb") as file:
-            if b"$MeshFormat" not in file.read(4096):
-                return by_meshio.read(path)  # ANSYS and others use the suffix too
-    return (READERS | _LISTS).get(suffix, by_meshio.read)(path)
+    if suffix in _LISTS:
+        return vtk_xml.read(path)
+    form = registry.READ.get(suffix)
+    if form is None or form.reader is None:
+        return by_meshio.read(path)
+    contents: Contents = registry.function(form.reader)(path)
+    return contents

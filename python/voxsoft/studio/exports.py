@@ -14,9 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import files
-from voxsoft.design.discretization.discretize import voxels_of
+from voxsoft.design import Design
 from voxsoft.errors import FileError
 from voxsoft.files.atomic import write_atomically
+from voxsoft.files.exports import write_source
+from voxsoft.formats.registry import WRITTEN, Format
 from voxsoft.simulation import Result, named_regions
 from voxsoft.simulation.results.result import Status
 from voxsoft.simulation.runs.state import result_at
@@ -28,9 +30,7 @@ from voxsoft.studio.objects import poses_in, surroundings_of
 from voxsoft.units import parse
 
 #: What can be written of the body that is shown.
-FORMATS: Final = ("toml", "stl", "obj", "vtu", "msh", "inp", "npy", "csv", "run", "png", "html")
-_SURFACES: Final = ("stl", "obj")
-_MESHES: Final = ("vtu", "msh", "inp")
+FORMATS: Final = (*(suffix[1:] for suffix in WRITTEN), "run", "png", "html")
 #: Dots per inch of a picture of normal size.
 _DPI: Final = 200
 
@@ -78,6 +78,15 @@ class Shown:
     time: float = 0.0
     moment: events.Moment | None = None
 
+    @property
+    def design(self) -> Design:
+        """Design of the body."""
+        return self.body.setup.design
+
+    def table(self) -> str:
+        """Return the plots as the text of a CSV file."""
+        return _table(self)
+
     def measured(self) -> Result:
         """The state as a result: the solver's where one found it, else measured as it stands.
 
@@ -121,24 +130,13 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         An unknown format, or one that needs a result where there is none.
     """
     target = folder / f"{shown.name}.{format}"
-    deformed = bool(options.get("deformed", False))
-    if format == "toml":
-        resolved = bool(options.get("resolved", False))
-        design = shown.body.setup.design
-        write_atomically(target, design.to_toml(resolved=True) if resolved else shown.text)
-    elif format in _SURFACES:
-        meter = parse(f"1 {options.get('unit', 'mm')}", "length", where="unit")
-        mesh = shown.body.mesh
-        vertices = shown.positions if deformed else mesh.vertices
-        files.write_mesh(target, replace(mesh, vertices=vertices / meter))
-    elif format in _MESHES:
-        _write_mesh(shown, target, deformed=deformed)
-    elif format == "npy":
-        array = io.BytesIO()
-        np.save(array, voxels_of(shown.body.setup.design).array)
-        write_atomically(target, array.getvalue())
-    elif format == "csv":
-        write_atomically(target, _table(shown))
+    form = WRITTEN.get(f".{format}")
+    if form is not None and form.kind == "design" and not options.get("resolved", False):
+        write_atomically(target, shown.text)
+    elif form is not None and form.has_shape:
+        _write_mesh(shown, target, form, options)
+    elif form is not None:
+        write_source(target, shown)
     elif format == "run":
         target = target.with_suffix(".zip")
         _write_run(shown, target)
@@ -173,21 +171,24 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
     if format == "html":
         export_page(source, target)
         return target
-    unit = str(options.get("unit", "mm")) if format in _SURFACES else "m"
+    form = WRITTEN.get(f".{format}")
+    unit = str(options.get("unit", "mm")) if form is not None and form.unit is None else None
     files.export(source, target, deformed=bool(options.get("deformed", False)), unit=unit)
     return target
 
 
-def _write_mesh(shown: Shown, target: Path, *, deformed: bool) -> None:
+def _write_mesh(shown: Shown, target: Path, form: Format, options: dict[str, Any]) -> None:
     mesh = shown.body.mesh
-    moved = shown.positions - mesh.vertices
-    data = {"displacement": moved} if target.suffix == ".vtu" else {}
-    if shown.result is not None and target.suffix == ".vtu":
-        data["reaction"] = shown.result.reactions
-    regions = named_regions(shown.body.setup.design, mesh)
-    if deformed:
-        mesh = replace(mesh, vertices=shown.positions)
-    files.write_mesh(target, mesh, point_data=data, regions=regions)
+    data: dict[str, NDArray[np.float64]] = {}
+    if "values" in form.holds:
+        data["displacement"] = shown.positions - mesh.vertices
+        if shown.result is not None:
+            data["reaction"] = shown.result.reactions
+    regions = named_regions(shown.design, mesh) if "regions" in form.holds else {}
+    vertices = shown.positions if options.get("deformed", False) else mesh.vertices
+    if form.unit is None:
+        vertices = vertices / parse(f"1 {options.get('unit', 'mm')}", "length", where="unit")
+    files.write_mesh(target, replace(mesh, vertices=vertices), point_data=data, regions=regions)
 
 
 def _table(shown: Shown) -> str:

@@ -16,6 +16,7 @@ from typing import Any, Final
 
 from msgspec import inspect as types
 
+from voxsoft.formats.registry import HEADINGS, WRITTEN
 from voxsoft.shapes import KINDS as SHAPES
 from voxsoft.shapes.cad_files import CAD_SUFFIXES, HINT, WHAT
 from voxsoft.studio.commands import AnyCommand, Command
@@ -76,6 +77,7 @@ def typescript() -> str:
         _HEAD,
         *(_constant(name, value, about) for name, (value, about) in _NUMBERS.items()),
         _constant("MESHES", MESHES, "Endings of mesh files that are read."),
+        _constant("WRITTEN", _written(), "Formats of files that the server writes, by ending."),
         _constant("CAD_SUFFIXES", CAD_SUFFIXES, "Endings of files of CAD programs."),
         _constant("CAD_WHAT", WHAT, "Why they are not read."),
         _constant("CAD_HINT", HINT, "What to do with them."),
@@ -104,6 +106,18 @@ def _constant(name: str, value: object, about: str) -> str:
 def _codes(codes: type[IntEnum] | type[IntFlag]) -> str:
     about = inspect.cleandoc(codes.__doc__ or "").splitlines()[0]
     return _constant(codes.__name__, {code.name: code.value for code in codes}, about)
+
+
+def _written() -> dict[str, dict[str, object]]:
+    return {
+        suffix: {
+            "title": HEADINGS[form.kind],
+            "purpose": form.purpose,
+            "asksUnit": form.unit is None,
+            "asksShape": form.kind == "surface",
+        }
+        for suffix, form in WRITTEN.items()
+    }
 
 
 def _kinds() -> dict[str, dict[str, object]]:

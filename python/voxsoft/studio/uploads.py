@@ -18,6 +18,7 @@ from voxsoft.files import write_mesh
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
 from voxsoft.formats.read import read_contents
+from voxsoft.formats.registry import READ
 from voxsoft.formats.unit import name_of
 from voxsoft.shapes import TriangleMesh
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
@@ -29,10 +30,7 @@ from voxsoft.voxels import Voxels
 LARGEST_ARCHIVE: Final = 512 * 1024 * 1024
 #: Files in an archive.
 MOST_FILES: Final = 2_000
-MESHES: Final = (
-    *(".stl", ".obj", ".ply", ".off", ".glb", ".mesh", ".msh", ".inp"),
-    *(".vtk", ".vtu", ".vtp", ".vti", ".vts", ".vtr"),
-)
+MESHES: Final = tuple(READ)
 KINDS: Final = (".toml", *MESHES, ".npy", ".csv", ".zip")
 #: Cells along the longest side of a mesh that is dropped on the page.
 _FIRST_CELLS: Final = 32

@@ -1,5 +1,7 @@
 // What can be taken away, and what each is for.
 
+import { WRITTEN } from "../../protocol";
+
 export interface Format {
   readonly id: string;
   readonly title: string;
@@ -16,38 +18,11 @@ export interface Format {
 }
 
 export const FORMATS: readonly Format[] = [
-  {
-    id: "stl",
-    title: "Surface",
-    ending: ".stl",
-    purpose: "To print the body or cut its mold; other programs read it as triangles.",
-    asksUnit: true,
-    asksShape: true,
-  },
-  {
-    id: "vtu",
-    title: "Fields on the mesh",
-    ending: ".vtu",
-    purpose: "To look at displacement, stretch and stress in ParaView or PyVista.",
-  },
-  {
-    id: "inp",
-    title: "Finite-element model",
-    ending: ".inp",
-    purpose: "To solve the same body in Abaqus or CalculiX and check this result.",
-  },
-  {
-    id: "csv",
-    title: "Curves over time",
-    ending: ".csv",
-    purpose: "To plot probes, residual and energies in a spreadsheet or Python.",
-  },
-  {
-    id: "toml",
-    title: "Design",
-    ending: ".toml",
-    purpose: "To keep, cite or send the design: this page of text rebuilds everything.",
-  },
+  ...Object.entries(WRITTEN).map(([ending, format]) => ({
+    id: ending.slice(1),
+    ending,
+    ...format,
+  })),
   {
     id: "run",
     title: "Run folder",

@@ -1,0 +1,58 @@
+"""Write the page of file formats from the registry: ``python docs/formats.py``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from voxsoft.formats.registry import FORMATS, Holding
+
+PAGE: Final = Path(__file__).parent / "reference" / "formats.md"
+HEAD: Final = """# File formats
+
+Formats of meshes and surfaces that VoxSoft reads, and of files that it writes. This page is written
+from the registry (`voxsoft.formats.registry`) by `python docs/formats.py`; readers, `voxsoft
+export` and its help, and the studio's lists follow it.
+
+## Read
+
+A surface becomes a shape, volume cells also a mesh with parts and regions
+([your own geometry](../tutorials/own-geometry.md)). Most files do not say their unit: it is asked
+for.
+
+| suffix | format | taken |
+|---|---|---|
+"""
+WRITTEN: Final = """
+## Written
+
+By `voxsoft export`, `voxsoft.files.write_mesh` and the studio ([export](../how-to/export.md)). A
+mesh keeps its geometry in every format; the columns say what else a file keeps.
+
+| suffix | format | parts | regions | cavities | values | unit |
+|---|---|---|---|---|---|---|
+"""
+COLUMNS: Final[tuple[Holding, ...]] = ("parts", "regions", "cavities", "values")
+
+
+def page() -> str:
+    """Return the text of the page."""
+    read = [
+        f"| {', '.join(f'`{s}`' for s in form.suffixes)} | {form.title} | {form.taken} |"
+        for form in FORMATS
+        if form.reader is not None
+    ]
+    written = []
+    for form in FORMATS:
+        if form.writer is None:
+            continue
+        kept = ["yes" if c in form.holds else "no" for c in COLUMNS]
+        if form.kind in ("design", "table"):
+            kept = [""] * len(COLUMNS)
+        unit = "given by `--unit`; mm if left out" if form.unit is None else form.unit
+        written.append(f"| `{form.suffix}` | {form.title} | {' | '.join(kept)} | {unit} |")
+    return HEAD + "\n".join(read) + "\n" + WRITTEN + "\n".join(written) + "\n"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")

@@ -1,0 +1,236 @@
+"""Registry of file formats: suffixes, reader, writer, and contents that a file of each can hold.
+
+A format is one entry here. The readers of meshes and surfaces, :func:`voxsoft.files.write_mesh`,
+``voxsoft export`` and its help, the studio's lists and ``docs/reference/formats.md`` follow it.
+Readers and writers are named by module and function and are imported at their first use, so that
+help and lists cost no import.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any, Final, Literal
+
+#: Subject of a file: volume cells, triangles, an array of voxels, a design, or a table.
+Kind = Literal["cells", "surface", "voxels", "design", "table"]
+#: Heading of the files of each kind.
+HEADINGS: Final[dict[Kind, str]] = {
+    "cells": "Mesh",
+    "surface": "Surface",
+    "voxels": "Voxels",
+    "design": "Design",
+    "table": "Table",
+}
+#: Contents beside the geometry that a written file keeps.
+Holding = Literal["parts", "regions", "cavities", "values"]
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format.
+
+    Attributes
+    ----------
+    suffixes
+        Suffixes of its files, in lower case; the first one is the usual one.
+    kind
+        Subject of a file.
+    title
+        Name of the format and of the programs that it is for.
+    reader
+        Function from a path to :class:`~voxsoft.formats.contents.Contents`, as
+        ``"module:function"``; None if the format is not read.
+    taken
+        Contents that the reader takes, for the documentation.
+    writer
+        Function that writes a file, as ``"module:function"``; None if the format is not written.
+        Of ``cells`` and ``surface`` it takes the path and a
+        :class:`~voxsoft.files.mesh_file.MeshFile`, of others the path and a
+        :class:`~voxsoft.files.exports.Source`.
+    holds
+        Contents beside the geometry that a written file keeps.
+    purpose
+        Use of a written file, as a sentence.
+    unit
+        Reason why an export takes no unit, after the suffix; None where it takes one.
+    """
+
+    suffixes: tuple[str, ...]
+    kind: Kind
+    title: str
+    reader: str | None = None
+    taken: str = ""
+    writer: str | None = None
+    holds: frozenset[Holding] = frozenset()
+    purpose: str = ""
+    unit: str | None = "is always in m"
+
+    @property
+    def suffix(self) -> str:
+        """Usual suffix."""
+        return self.suffixes[0]
+
+    @property
+    def has_shape(self) -> bool:
+        """True for files with vertices, which can be those of the loaded body."""
+        return self.kind in ("cells", "surface")
+
+
+#: All formats with a reader or writer here; :mod:`meshio` reads further ones.
+FORMATS: Final = (
+    Format(
+        (".vtu",),
+        "cells",
+        "VTK unstructured grid, for ParaView and PyVista",
+        reader="voxsoft.formats.vtk_xml:read",
+        taken="cells of all components but ghosts and hidden ones, in any coding and compression, "
+        "and an array such as `material` as parts; polyhedra are refused",
+        writer="voxsoft.files.vtu:write",
+        holds=frozenset({"parts", "regions", "cavities", "values"}),
+        purpose="To look at displacement, stretch and stress in ParaView or PyVista.",
+    ),
+    Format(
+        (".vti", ".vtp", ".vts", ".vtr"),
+        "cells",
+        "VTK image, polygons and grids",
+        reader="voxsoft.formats.vtk_xml:read",
+        taken="cells as in `.vtu`; in an image a brick for each cell, or around each point, whose "
+        "label is not 0: whole numbers, at most 255, which are parts. Gray values are refused",
+    ),
+    Format(
+        (".vtk",),
+        "cells",
+        "Legacy VTK of versions 1 to 5.1",
+        reader="voxsoft.formats.vtk_legacy:read",
+        taken="data sets of all kinds, as in the files above",
+    ),
+    Format(
+        (".msh",),
+        "cells",
+        "Gmsh 2.2 and 4.1",
+        reader="voxsoft.formats.gmsh:read",
+        taken="cells with physical groups, as text or binary: volumes are parts; points, curves "
+        "and surfaces are regions, by name or number",
+        writer="voxsoft.files.gmsh:write",
+        holds=frozenset({"parts", "regions", "cavities"}),
+        purpose="To go on in Gmsh or a code that reads its meshes.",
+    ),
+    Format(
+        (".inp",),
+        "cells",
+        "Abaqus and CalculiX",
+        reader="voxsoft.formats.abaqus:read",
+        taken="nodes, elements and sets of flat decks and of assemblies, each instance at its "
+        "place; element sets with a section are parts, or all where none has one",
+        writer="voxsoft.files.abaqus:write",
+        holds=frozenset({"parts", "regions", "cavities"}),
+        purpose="To solve the same body in Abaqus or CalculiX and check this result.",
+    ),
+    Format(
+        (".mesh",),
+        "cells",
+        "Medit; `.vol`, `.bdf`, `.su2` and others of meshio alike",
+        reader="voxsoft.formats.by_meshio:read",
+        taken="cells, and an array such as `material` as parts",
+    ),
+    Format(
+        (".stl",),
+        "surface",
+        "STL, for printers and CAD",
+        reader="voxsoft.formats.stl:read",
+        taken="triangles as text or binary; the solids of a text by name",
+        writer="voxsoft.files.surfaces:write_stl",
+        purpose="To print the body or cut its mold; other programs read it as triangles.",
+        unit=None,
+    ),
+    Format(
+        (".obj",),
+        "surface",
+        "Wavefront OBJ, for modelers",
+        reader="voxsoft.formats.obj:read",
+        taken="faces of any number of corners; objects, groups and materials by name",
+        writer="voxsoft.files.surfaces:write_obj",
+        purpose="To open the surface in Blender and other modelers.",
+        unit=None,
+    ),
+    Format(
+        (".ply",),
+        "surface",
+        "PLY, for scanners",
+        reader="voxsoft.formats.ply:read",
+        taken="vertices and faces of any number of corners, as text or binary",
+    ),
+    Format(
+        (".off",),
+        "surface",
+        "OFF",
+        reader="voxsoft.formats.by_trimesh:read_after_meshio",
+        taken="vertices and faces",
+    ),
+    Format(
+        (".glb",),
+        "surface",
+        "glTF binary",
+        reader="voxsoft.formats.by_trimesh:read",
+        taken="triangles of all meshes, each at its place; in m by definition",
+    ),
+    Format(
+        (".npy",),
+        "voxels",
+        "NumPy array of the voxels' parts",
+        writer="voxsoft.files.exports:write_voxels",
+        holds=frozenset({"parts"}),
+        purpose="To work on the voxels in Python: an array of part numbers.",
+        unit="holds the parts of voxels, and no lengths",
+    ),
+    Format(
+        (".csv",),
+        "table",
+        "Table: probes of a run folder; in the studio, curves over time",
+        writer="voxsoft.files.exports:write_table",
+        purpose="To plot probes, residual and energies in a spreadsheet or Python.",
+        unit="has its units in its header",
+    ),
+    Format(
+        (".toml",),
+        "design",
+        "Design, with values in place of formulas",
+        writer="voxsoft.files.exports:write_design",
+        purpose="To keep, cite or send the design: this page of text rebuilds everything.",
+        unit="says the unit of each number",
+    ),
+)
+
+#: Formats that can be written, by suffix.
+WRITTEN: Final = {form.suffix: form for form in FORMATS if form.writer is not None}
+#: Formats that can be read, by suffix.
+READ: Final = {
+    suffix: form for form in FORMATS if form.reader is not None for suffix in form.suffixes
+}
+
+
+def function(name: str) -> Callable[..., Any]:
+    """Return the function ``"module:function"``.
+
+    Examples
+    --------
+    >>> function("voxsoft.formats.stl:read").__name__
+    'read'
+    """
+    module, _, attribute = name.partition(":")
+    found: Callable[..., Any] = getattr(import_module(module), attribute)
+    return found
+
+
+def suffixes_that_hold(*contents: Holding) -> str:
+    """Return the suffixes of written formats that keep all of some contents.
+
+    Examples
+    --------
+    >>> suffixes_that_hold("regions"), suffixes_that_hold("values")
+    ('.vtu, .msh or .inp', '.vtu')
+    """
+    *first, last = [s for s, form in WRITTEN.items() if form.holds.issuperset(contents)]
+    return f"{', '.join(first)} or {last}" if first else last
