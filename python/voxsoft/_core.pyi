@@ -6,6 +6,8 @@ from typing import ClassVar, Literal, final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft import _core_data
+
 __version__: str
 
 _Cells = tuple[int, int, int]
@@ -305,7 +307,7 @@ class ProblemParts:
     ) -> None: ...
     def fluid(
         self,
-        network: str,
+        network: _core_data.Network,
         walls: Sequence[
             Sequence[
                 tuple[
@@ -317,8 +319,8 @@ class ProblemParts:
         ],
     ) -> None: ...
     def floor(self, z: float) -> None: ...
-    def attach(self, kind: str, elements: str) -> None: ...
-    def tendon(self, tendon: str, history: _History = None) -> None: ...
+    def attach(self, kind: str, elements: Sequence[_core_data.Element]) -> None: ...
+    def tendon(self, tendon: _core_data.Tendon, history: _History = None) -> None: ...
     def touch(
         self,
         surface: NDArray[np.uint32],

@@ -16,6 +16,7 @@ mod live;
 mod materials;
 mod mesh;
 mod modes;
+mod plain;
 mod player;
 mod sensitivity;
 mod shapes;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use voxsoft_contact::touch::Flip;
 use voxsoft_contact::touch::law::Adhesive;
 use voxsoft_contact::touch::rigid::Frame;
@@ -25,6 +26,7 @@ use crate::errors::to_python;
 use crate::gate;
 use crate::handle::{Handle, PyMemory};
 use crate::materials::PyMaterial;
+use crate::plain::plain;
 use crate::skin::PySkin;
 use crate::tendon::{PyTendon, TendonPart, tendons};
 use crate::touch::{
@@ -183,11 +185,10 @@ impl PyProblemParts {
         self.load(load, history)
     }
 
-    /// Sets the gas or liquid in chambers: a network as JSON, and for each of its chambers the walls, as triangles with
+    /// Sets the gas or liquid in chambers: a network by the names of its fields, and for each of its chambers the walls, as triangles with
     /// their voids and weight.
-    fn fluid(&mut self, network: &str, walls: Vec<Vec<WallArgument<'_>>>) -> PyResult<()> {
-        let network: Network = serde_json::from_str(network)
-            .map_err(|error| PyValueError::new_err(format!("network: {error}")))?;
+    fn fluid(&mut self, network: &Bound<'_, PyAny>, walls: Vec<Vec<WallArgument<'_>>>) -> PyResult<()> {
+        let network: Network = plain("network", network)?;
         let wall = |(triangles, voids, weight): WallArgument<'_>| {
             Ok(Pressure {
                 triangles: rows("triangles", &triangles)?,
@@ -206,12 +207,11 @@ impl PyProblemParts {
         self.floor = Some(Floor { z });
     }
 
-    /// Adds an attached energy term: the name of its kind, and its elements as JSON.
-    fn attach(&mut self, kind: &str, elements: &str) -> PyResult<()> {
-        let tagged = format!("{{{kind:?}:{elements}}}");
-        let attachment = serde_json::from_str(&tagged)
-            .map_err(|error| PyValueError::new_err(format!("{kind}: {error}")))?;
-        self.attachments.push(attachment);
+    /// Adds an attached energy term: the name of its kind, and its elements by the names of their fields.
+    fn attach(&mut self, kind: &str, elements: &Bound<'_, PyAny>) -> PyResult<()> {
+        let tagged = PyDict::new(elements.py());
+        tagged.set_item(kind, elements)?;
+        self.attachments.push(plain(kind, &tagged)?);
         Ok(())
     }
 
@@ -257,11 +257,10 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// Adds a tendon, as JSON; tendons come after all other loads except dielectric sheets.
+    /// Adds a tendon, by the names of its fields; tendons come after all other loads except dielectric sheets.
     #[pyo3(signature = (tendon, history=None))]
-    fn tendon(&mut self, tendon: &str, history: HistoryArgument) -> PyResult<()> {
-        let part = serde_json::from_str(tendon)
-            .map_err(|error| PyValueError::new_err(format!("tendon: {error}")))?;
+    fn tendon(&mut self, tendon: &Bound<'_, PyAny>, history: HistoryArgument) -> PyResult<()> {
+        let part = plain("tendon", tendon)?;
         let history = self::history(history).map_err(to_python)?;
         self.tendons.push((part, history));
         Ok(())

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
-from typing import Any, ClassVar, Protocol, Self
+from typing import ClassVar, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft import _core_data
 from voxsoft.design.operands import Name
 from voxsoft.design.region import Probe, Region
 from voxsoft.records import Record
@@ -77,7 +78,7 @@ class Attachment(Record):
         return self.replace(**places)
 
     @abstractmethod
-    def element(self, body: AttachingBody, where: str) -> dict[str, Any]:
+    def element(self, body: AttachingBody, where: str) -> _core_data.Element:
         """Return the element of the core's term, by the names of its fields, as plain data.
 
         Parameters

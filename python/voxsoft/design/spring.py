@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 from pydantic import ConfigDict, model_validator
 
+from voxsoft import _core_data
 from voxsoft.design.attachment import AttachingBody, Attachment
 from voxsoft.design.region import Probe, Region
 from voxsoft.errors import DesignError
@@ -92,7 +93,7 @@ class Spring(Attachment):
         placed = super().placed(region, point)
         return placed if self.anchor is None else placed.replace(anchor=point(self.anchor))
 
-    def element(self, body: AttachingBody, where: str) -> dict[str, Any]:
+    def element(self, body: AttachingBody, where: str) -> _core_data.Spring:
         """Return the core's `Spring`; see :meth:`Attachment.element`."""
         first = body.place(self.at, f"{where}.at")
         ends = [(first, 1.0)]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
 
+from voxsoft import _core_data
 from voxsoft.design import Design
 from voxsoft.errors import DesignError
 from voxsoft.simulation.setup.fluids import Fluids
@@ -42,7 +43,7 @@ class FluidPath(Fluids):
     key: str = field(kw_only=True)
 
     @cached_property
-    def network(self) -> dict[str, Any]:
+    def network(self) -> _core_data.Network:
         """Network whose histories are those of the path."""
         networks = [Fluids(design, self.mesh).network for design in self.designs]
         fixed = [_without_amounts(network) for network in networks]
@@ -53,31 +54,35 @@ class FluidPath(Fluids):
                 "vary a pressure, volume, mass or temperature; lines, leaks, pumps and histories "
                 "stay",
             )
-        found = dict(networks[0])
-        found["chambers"] = [
-            {
-                **alike[0],
-                "path": [self._course([each[name][1] for each in alike]) for name in _AMOUNTS],
-            }
+        chambers = [
+            self._chamber_along(alike)
             for alike in zip(*(network["chambers"] for network in networks), strict=True)
         ]
-        found["sources"] = [
+        sources = [
             self._source([each["pressure"] for each in alike])
             for alike in zip(*(network["sources"] for network in networks), strict=True)
         ]
-        return found
+        return {**networks[0], "chambers": chambers, "sources": sources}
 
-    def _course(self, values: Sequence[float]) -> list[list[float]]:
+    def _chamber_along(self, alike: Sequence[_core_data.Chamber]) -> _core_data.Chamber:
+        amounts = (
+            [each["mass"][1] for each in alike],
+            [each["temperature"][1] for each in alike],
+            [each["outside"][1] for each in alike],
+        )
+        return {**alike[0], "path": [self._course(values) for values in amounts]}
+
+    def _course(self, values: Sequence[float]) -> _core_data.Course:
         return [list(self.instants), list(values)]
 
-    def _source(self, pressures: Sequence[float]) -> dict[str, Any]:
+    def _source(self, pressures: Sequence[float]) -> _core_data.Source:
         largest = max(pressures, key=abs)
         factors = [pressure / largest if largest else 0.0 for pressure in pressures]
         return {"pressure": largest, "history": self._course(factors)}
 
 
-def _without_amounts(network: dict[str, Any]) -> dict[str, Any]:
-    def rest(entry: dict[str, Any], left_out: Sequence[str]) -> dict[str, Any]:
+def _without_amounts(network: _core_data.Network) -> dict[str, Any]:
+    def rest(entry: Mapping[str, Any], left_out: Sequence[str]) -> dict[str, Any]:
         return {key: value for key, value in entry.items() if key not in left_out}
 
     return {

@@ -5,7 +5,6 @@ The result, the studio and metrics take the pressure of each chamber from here.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -14,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft import _core
+from voxsoft import _core, _core_data
 from voxsoft.cavity import MeshCavity
 from voxsoft.design import Connection, Design
 from voxsoft.design.chamber import chosen_cavities, name_of_cavity
@@ -36,8 +35,6 @@ from voxsoft.simulation.setup.chambers import center_of
 from voxsoft.simulation.setup.contact import times_and_factors
 from voxsoft.units import format_quantity
 
-#: Entry of a chamber whose pressure no source holds.
-_NO_SOURCE: Final[dict[str, Any]] = {"held": None}
 #: Numbers that the core reports for a chamber, in their order.
 _READINGS: Final = ("pressure", "volume", "mass", "flow", "work", "energy")
 
@@ -245,7 +242,7 @@ class Fluids:
             [wall for index in volume.cavities for wall in _walls(self.mesh.cavities[index])]
             for volume in self.volumes
         ]
-        parts.fluid(json.dumps(self.network, allow_nan=False), walls)
+        parts.fluid(self.network, walls)
         for reading in readings(self.design):
             if reading.quantity == "acceleration":
                 self._weigh(parts, reading)
@@ -267,12 +264,12 @@ class Fluids:
                     parts.hydrostatic(triangles, (weight * slope).tolist(), origin, history, voids)
 
     @cached_property
-    def network(self) -> dict[str, Any]:
+    def network(self) -> _core_data.Network:
         """Network as the core reads it."""
-        sources: list[dict[str, Any]] = []
-        branches: list[dict[str, Any]] = []
-        pumps: list[dict[str, Any]] = []
-        chambers: list[dict[str, Any]] = []
+        sources: list[_core_data.Source] = []
+        branches: list[_core_data.Branch] = []
+        pumps: list[_core_data.Pump] = []
+        chambers: list[_core_data.Chamber] = []
         for number, volume in enumerate(self.volumes):
             chamber = self._chamber(volume)
             supply = volume.supply
@@ -280,16 +277,17 @@ class Fluids:
                 chamber["held"] = len(sources)
                 sources.append(_source(supply.value, supply.history))
             if isinstance(supply, FlowSupply) and supply.source is not None:
-                ends = [{"source": len(sources)}, {"chamber": number}]
+                ends: list[_core_data.End] = [{"source": len(sources)}, {"chamber": number}]
                 sources.append(_source(supply.source, supply.history))
                 line = _line(supply.valve, supply.tube, supply.medium, supply.temperature)
                 branches.append(_branch(ends, line, supply.valve))
             if isinstance(supply, FlowSupply) and supply.pump is not None:
                 density = _density(supply.medium, supply.temperature)
-                curve = {"pressures": supply.pump.pressure, "flows": supply.pump.flow}
+                curve = _core_data.Curve(pressures=supply.pump.pressure, flows=supply.pump.flow)
                 history = _course(supply.history)
-                pump = {"chamber": number, "curve": curve, "density": density, "history": history}
-                pumps.append(pump)
+                pumps.append(
+                    {"chamber": number, "curve": curve, "density": density, "history": history}
+                )
             if supply is not None and supply.leak is not None:
                 ends = [{"chamber": number}, {"source": len(sources)}]
                 sources.append(_source(0.0, None))
@@ -308,8 +306,8 @@ class Fluids:
         }
 
     def _joined(
-        self, connection: Connection, where: str, chambers: list[dict[str, Any]]
-    ) -> dict[str, Any]:
+        self, connection: Connection, where: str, chambers: list[_core_data.Chamber]
+    ) -> _core_data.Branch:
         """The branch of a connection; half the volume of its tube counts at either end."""
         numbers = []
         for choice in connection.chambers:
@@ -341,7 +339,7 @@ class Fluids:
         line = _line(connection.valve, connection.tube, first.medium, temperature)
         return _branch([{"chamber": number} for number in numbers], line, connection.valve)
 
-    def _chamber(self, volume: Volume) -> dict[str, Any]:
+    def _chamber(self, volume: Volume) -> _core_data.Chamber:
         """Return fluid mass, temperature and outside volume: unloaded, and in the end."""
         supply = volume.supply
         inside = sum(float(self.mesh.cavities[index].volume) for index in volume.cavities)
@@ -366,7 +364,7 @@ class Fluids:
             "temperature": [filled_at, temperature],
             "outside": list(outside),
             "history": _course(history),
-            **_NO_SOURCE,
+            "held": None,
         }
 
     def states(self, numbers: NDArray[np.float64]) -> tuple[ChamberState, ...]:
@@ -403,7 +401,7 @@ def _density(medium: Gas | Liquid, temperature: float) -> float:
     return ATMOSPHERE / (medium.gas_constant * temperature)
 
 
-def _medium(medium: Gas | Liquid) -> dict[str, Any]:
+def _medium(medium: Gas | Liquid) -> _core_data.Medium:
     if isinstance(medium, Liquid):
         return {"liquid": {"density": medium.density, "bulk": medium.bulk_modulus}}
     return {"gas": {"constant": medium.gas_constant}}
@@ -411,32 +409,39 @@ def _medium(medium: Gas | Liquid) -> dict[str, Any]:
 
 def _line(
     valve: Valve | None, tube: Tube | None, medium: Gas | Liquid, temperature: float
-) -> dict[str, Any]:
-    found: dict[str, Any] = {"valve": None, "tube": None, "temperature": temperature}
-    found["medium"] = _medium(medium)
-    if valve is not None:
-        gas = {"conductance": valve.conductance, "critical_ratio": valve.critical_ratio}
-        is_gas = isinstance(medium, Gas)
-        found["valve"] = {"gas": gas} if is_gas else {"liquid": {"area": valve.area}}
-    if tube is not None:
-        found["tube"] = {
-            "length": tube.length,
-            "diameter": tube.diameter,
-            "viscosity": medium.viscosity,
+) -> _core_data.Line:
+    through: _core_data.Valve | None = None
+    if valve is not None and isinstance(medium, Gas):
+        assert valve.conductance is not None  # check_valve
+        through = {
+            "gas": {"conductance": valve.conductance, "critical_ratio": valve.critical_ratio}
         }
-    return found
+    elif valve is not None:
+        assert valve.area is not None  # check_valve
+        through = {"liquid": {"area": valve.area}}
+    along: _core_data.Tube | None = None
+    if tube is not None:
+        viscosity = medium.viscosity
+        along = {"length": tube.length, "diameter": tube.diameter, "viscosity": viscosity}
+    return {
+        "valve": through,
+        "tube": along,
+        "medium": _medium(medium),
+        "temperature": temperature,
+    }
 
 
 def _branch(
-    ends: list[dict[str, int]], line: dict[str, Any], valve: Valve | None
-) -> dict[str, Any]:
+    ends: list[_core_data.End], line: _core_data.Line, valve: Valve | None
+) -> _core_data.Branch:
     history = None if valve is None else valve.history
-    return {"ends": ends, "line": line, "opening": history and _course(history)}
+    opening = None if history is None else _course(history)
+    return {"ends": ends, "line": line, "opening": opening}
 
 
-def _source(pressure: float, history: History | None) -> dict[str, Any]:
+def _source(pressure: float, history: History | None) -> _core_data.Source:
     return {"pressure": pressure, "history": _course(history)}
 
 
-def _course(history: History | None) -> list[Sequence[float]]:
+def _course(history: History | None) -> _core_data.Course:
     return [[0.0], [1.0]] if history is None else [list(history.times), list(history.factors)]

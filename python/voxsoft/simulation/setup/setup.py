@@ -5,16 +5,15 @@ Long because all that is derived from a design stands in one class, a short prop
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final, TypeVar
+from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft import _core
+from voxsoft import _core, _core_data
 from voxsoft._memory import shortage
 from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design, Probe, Region
@@ -331,11 +330,11 @@ class Setup:
             self.fluids.give_to(parts)
         for term, elements in self.attached.items():
             _say_where(parts, term)
-            parts.attach(term, json.dumps(elements, allow_nan=False))
+            parts.attach(term, elements)
         for index, tendon in enumerate(self.tendons):
             _say_where(parts, f"tendons[{index}]")
             core = tendon.core(objects=touching)
-            parts.tendon(json.dumps(core, allow_nan=False), tendon.history)
+            parts.tendon(core, tendon.history)
         for sheet in self.dielectrics:
             assert isinstance(parts, _core.ProblemParts)  # there are none with planes of symmetry
             sheet.give_to(parts)
@@ -372,7 +371,7 @@ class Setup:
         return resolve(self.design.loads[index], self, f"loads[{index}]")
 
     @cached_property
-    def attached(self) -> dict[str, list[dict[str, Any]]]:
+    def attached(self) -> dict[str, list[_core_data.Element]]:
         """Elements of each term of the core that the design attaches, by the term's name.
 
         Raises
@@ -380,7 +379,7 @@ class Setup:
         DesignError
             An element with an end that is not on the body.
         """
-        found: dict[str, list[dict[str, Any]]] = {}
+        found: dict[str, list[_core_data.Element]] = {}
         for where, attachment in attachments_of(self.design):
             found.setdefault(attachment.term, []).append(attachment.element(self, where))
         return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft import _core
+from voxsoft import _core, _core_data
 from voxsoft.design.tendon import Guide, Tendon, guide_of
 from voxsoft.errors import DesignError
 from voxsoft.mesh import BodyMesh
@@ -85,6 +85,22 @@ class TendonState:
         return {name: getattr(self, name) for name in names}
 
 
+#: Carrier of a point of a path, as the core takes it.
+Place = _core_data.BodyPlace | _core_data.ObjectPlace
+
+
+def _in_space(offset: Sequence[float]) -> _core_data.BodyPlace:
+    """Return a point fixed in space [m]."""
+    return {"vertices": [], "weights": [], "offset": offset}
+
+
+def _fixed(place: Place) -> _core_data.BodyPlace:
+    """Return a place with a point of an object fixed in space."""
+    if "vertices" in place:
+        return place
+    return _in_space(place["point"])
+
+
 @dataclass(frozen=True, eq=False)
 class ResolvedTendon:
     """A tendon on a mesh.
@@ -103,7 +119,7 @@ class ResolvedTendon:
 
     name: str
     tendon: Tendon
-    places: tuple[Mapping[str, Any], ...] = field(repr=False)
+    places: tuple[Place, ...] = field(repr=False)
     points: Floats = field(repr=False)
 
     @property
@@ -135,7 +151,7 @@ class ResolvedTendon:
         value = factor * self.final_factor * self.size
         return self.tendon.replace(**{**changes, drive: value})
 
-    def core(self, *, objects: bool = True) -> dict[str, Any]:
+    def core(self, *, objects: bool = True) -> _core_data.Tendon:
         """Return the core's `Tendon`, by the names of its fields, as plain data.
 
         Parameters
@@ -143,19 +159,14 @@ class ResolvedTendon:
         objects
             True if there are objects that carry points; without them these points do not move.
         """
-        drive: dict[str, Any]
+        drive: _core_data.Drive
         if self.tendon.drive == "tension":
             drive = {"tension": self.tendon.value}
         else:
             stiffness = self.tendon.stiffness or STIFF
             drive = {"shortening": {"by": self._drawn_in[0], "stiffness": stiffness}}
         return {
-            "places": [
-                each
-                if objects or "object" not in each
-                else {"vertices": [], "weights": [], "offset": each["point"]}
-                for each in self.places
-            ],
+            "places": self.places if objects else [_fixed(each) for each in self.places],
             "lengths": self.lengths.tolist(),
             "drive": drive,
             "friction": self.tendon.friction,
@@ -289,13 +300,12 @@ class _Way:
         channel = self.tendon.guide == "channel"
         return channel and before.body is not None and before.body == stop.body
 
-    def _place(self, stop: _Stop) -> tuple[Mapping[str, Any], Floats]:
+    def _place(self, stop: _Stop) -> tuple[Place, Floats]:
         """Find the carrier of a point, and its position in space."""
         if stop.object is not None:
             return {"object": stop.object, "point": stop.position.tolist()}, stop.position
         if stop.body is None:
-            place = {"vertices": [], "weights": [], "offset": stop.position.tolist()}
-            return place, stop.position
+            return _in_space(stop.position.tolist()), stop.position
         body, carrier = self.carriers[stop.body]
         found = carrier.place(stop.own, stop.radius)
         if found is None:
@@ -309,7 +319,7 @@ class _Way:
             raise DesignError(stop.where, what, hint)
         vertices, weights = found
         at = weights @ self.setup.mesh.vertices[vertices + body.first_vertex]
-        place = {
+        place: _core_data.BodyPlace = {
             "vertices": (vertices + body.first_vertex).tolist(),
             "weights": weights.tolist(),
             "offset": [0.0, 0.0, 0.0],
@@ -338,7 +348,9 @@ class _Way:
             shown = ", ".join(format_quantity(float(x), "length") for x in found.points[short[0]])
             what = f"has two points at ({shown})"
             raise DesignError(f"{self.where}.through", what, "leave one of them out")
-        joined = {vertex for place in found.places for vertex in place.get("vertices", ())}
+        joined = {
+            vertex for place in found.places if "vertices" in place for vertex in place["vertices"]
+        }
         if len(joined) > _MOST_VERTICES:
             what = f"runs by {len(joined):,} vertices; at most {_MOST_VERTICES:,} are allowed"
             raise DesignError(self.where, what, "take larger voxels, or a shorter way")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final, NoReturn, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft import _core
+from voxsoft import _core, _core_data
 from voxsoft.design.symmetry import Symmetry
 from voxsoft.errors import DesignError
 from voxsoft.geometry import rotation_matrix
@@ -237,11 +238,11 @@ class SectorParts:
         self._check_along_planes(np.array([0.0, 0.0, 1.0]), "it")
         self.kept.floor(z - self._sector.origin[2])
 
-    def attach(self, _term: str, _elements: str) -> None:
+    def attach(self, _term: str, _elements: Sequence[_core_data.Element]) -> None:
         """Refuse an attachment of the body."""
         self._refuse(*REASONS["springs and the like", "symmetry"])
 
-    def tendon(self, _tendon: str, _history: CoreHistory) -> None:
+    def tendon(self, _tendon: _core_data.Tendon, _history: CoreHistory) -> None:
         """Refuse a tendon."""
         self._refuse(*REASONS["tendons", "symmetry"])
 
