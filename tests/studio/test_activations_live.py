@@ -5,10 +5,10 @@ import pytest
 import voxsoft as vs
 from voxsoft.design import Dielectric, Profile, Swelling
 from voxsoft.errors import DesignError, SimulationError
-from voxsoft.studio import commands
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.html import page_of
-from voxsoft.studio.playback import Playback
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.motion.playback import Playback
+from voxsoft.studio.outputs.html import page_of
+from voxsoft.studio.protocol import commands
 from voxsoft.units import kPa, mm
 
 RAMP = vs.History(time=("0 s", "1 s"), factor=(0, 1))

@@ -14,8 +14,8 @@ from own_loop import run
 
 from voxsoft.design import Design
 from voxsoft.simulation import simulate
-from voxsoft.studio import rest
-from voxsoft.studio.equilibrium import equilibrium_of
+from voxsoft.studio.bodies.equilibrium import equilibrium_of
+from voxsoft.studio.motion import rest
 from voxsoft.study import Study
 
 BAR = """

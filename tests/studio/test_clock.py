@@ -4,9 +4,9 @@ import pytest
 
 from voxsoft.design import families
 from voxsoft.simulation import simulate
-from voxsoft.studio import commands
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.playback import Playback
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.motion.playback import Playback
+from voxsoft.studio.protocol import commands
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ import pytest
 from voxsoft.design import families
 from voxsoft.errors import DesignError, FileError
 from voxsoft.files.toml_edits import with_value
-from voxsoft.studio.document import MOST_DOCUMENTS, DesignDocument
-from voxsoft.studio.opening import template_document
-from voxsoft.studio.positions import span_of
+from voxsoft.studio.documents.document import MOST_DOCUMENTS, DesignDocument
+from voxsoft.studio.documents.opening import template_document
+from voxsoft.studio.documents.positions import span_of
 
 CYLINDER = (Path(__file__).parents[2] / "examples" / "cylinder.toml").read_text()
 

@@ -18,7 +18,7 @@ from bad_designs import NO_DESIGN, NO_TEXT, NOT_SOLVABLE
 from own_loop import run
 
 from voxsoft.design.assignment import set_values
-from voxsoft.studio.session import OWN_FOLDER
+from voxsoft.studio.server.session import OWN_FOLDER
 
 CYLINDER = families.family_text("paper-cylinder")
 RADIUS = ["parameters", "radius", "value"]

@@ -16,10 +16,10 @@ from voxsoft.comparison.refining import refined
 from voxsoft.design import families
 from voxsoft.errors import DesignError
 from voxsoft.files.toml_edits import with_value
-from voxsoft.studio.document import DesignDocument
-from voxsoft.studio.equilibrium import equilibrium_of, with_error
-from voxsoft.studio.exports import Shown
-from voxsoft.studio.fineness import fineness_of, halved
+from voxsoft.studio.bodies.equilibrium import equilibrium_of, with_error
+from voxsoft.studio.documents.document import DesignDocument
+from voxsoft.studio.documents.fineness import fineness_of, halved
+from voxsoft.studio.outputs.exports import Shown
 
 BEAM = families.family_text("beam").replace('value = "100 mm"', 'value = "40 mm"')
 TWO_PARTS = """

@@ -10,7 +10,7 @@ from own_loop import run
 import voxsoft as vs
 from voxsoft.shapes import Box, Gyroid, HalfSpace, Sphere
 from voxsoft.shapes.sketching import MOST_SAMPLES, MOST_TRIANGLES, sketch
-from voxsoft.studio.ghosts import Kept, ghost_of
+from voxsoft.studio.bodies.ghosts import Kept, ghost_of
 
 TEXT = """
 schema = "voxsoft/1"
@@ -119,7 +119,7 @@ def test_a_known_surface_is_not_traced_again(design, monkeypatch):
     def refuse(*_):
         raise AssertionError("traced again")
 
-    monkeypatch.setattr("voxsoft.studio.ghosts.sketch", refuse)
+    monkeypatch.setattr("voxsoft.studio.bodies.ghosts.sketch", refuse)
     # Another shape of the design is another matter.
     other = design.replace(shapes={**design.shapes, "spare": Sphere(radius=0.001)})
     assert ghost_of(other, "hole", kept).vertices == first.vertices

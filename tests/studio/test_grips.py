@@ -6,8 +6,8 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.design import Floor, Object
-from voxsoft.studio.equilibrium import equilibrium_of
-from voxsoft.studio.grips import grips_of
+from voxsoft.studio.bodies.equilibrium import equilibrium_of
+from voxsoft.studio.bodies.grips import grips_of
 
 PINCH = vs.load(Path(__file__).parents[2] / "examples" / "pinch.toml")
 #: The plate hangs with its lower edge at -10 mm; it is 45 g heavy.

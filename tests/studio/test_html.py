@@ -13,10 +13,10 @@ from typer.testing import CliRunner
 import voxsoft as vs
 from voxsoft.cli.app import app
 from voxsoft.errors import DesignError, FileError
-from voxsoft.studio import commands
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.html import page_of
-from voxsoft.studio.player import Player
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.motion.player import Player
+from voxsoft.studio.outputs.html import page_of
+from voxsoft.studio.protocol import commands
 
 CYLINDER = families.family_text("paper-cylinder")
 
@@ -131,7 +131,7 @@ def test_the_command_writes_a_page_of_a_file_and_of_a_run(tmp_path, monkeypatch)
 
 
 def test_a_missing_viewer_is_reported(monkeypatch, tmp_path):
-    monkeypatch.setattr("voxsoft.studio.page.ARCHIVE", tmp_path / "page.zip")
+    monkeypatch.setattr("voxsoft.studio.outputs.page.ARCHIVE", tmp_path / "page.zip")
     with pytest.raises(FileError, match="make studio"):
         families.beam().show()
 

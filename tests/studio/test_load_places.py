@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.studio.body import StudioBody
+from voxsoft.studio.bodies.body import StudioBody
 
 
 @pytest.mark.parametrize("direction", [(0, 0, -1), (1, 0, 0), (1, 2, -2)])

@@ -11,9 +11,9 @@ from voxsoft.design import families
 from voxsoft.files.cards import save_card
 from voxsoft.files.toml_edits import with_value
 from voxsoft.materials import card_names, load_card
-from voxsoft.studio import events
-from voxsoft.studio.document import DesignDocument
-from voxsoft.studio.materials import materials_of
+from voxsoft.studio.documents.document import DesignDocument
+from voxsoft.studio.documents.materials import materials_of
+from voxsoft.studio.protocol import events
 
 BEAM = families.family_text("beam")
 

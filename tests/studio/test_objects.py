@@ -18,14 +18,14 @@ from voxsoft.files.designs import load
 from voxsoft.simulation import simulate
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.posed import posed_surface
-from voxsoft.studio import commands, events
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.exports import export_shown
-from voxsoft.studio.fields import CONTACT_FIELDS, FIELDS, contact_values
-from voxsoft.studio.objects import moments_of, poses_in, surroundings_of
-from voxsoft.studio.playback import Playback
-from voxsoft.studio.protocol import decode
-from voxsoft.studio.rest import RestSearch
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.bodies.fields import CONTACT_FIELDS, FIELDS, contact_values
+from voxsoft.studio.bodies.objects import moments_of, poses_in, surroundings_of
+from voxsoft.studio.motion.playback import Playback
+from voxsoft.studio.motion.rest import RestSearch
+from voxsoft.studio.outputs.exports import export_shown
+from voxsoft.studio.protocol import commands, events
+from voxsoft.studio.protocol.codec import decode
 from voxsoft.units import mm
 
 PINCH = Path(__file__).parents[2] / "examples" / "pinch.toml"

@@ -7,8 +7,8 @@ import pytest
 from own_loop import run
 
 import voxsoft as vs
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.overlap_event import overlap_of
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.bodies.overlap_event import overlap_of
 
 PUSHED = Path(__file__).parents[1] / "data" / "pushed.toml"
 

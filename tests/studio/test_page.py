@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from starlette.testclient import TestClient
 
-from voxsoft.studio.app import make_app
-from voxsoft.studio.page import page_file
+from voxsoft.studio.outputs.page import page_file
+from voxsoft.studio.server.app import make_app
 
 ROOT = Path(__file__).parents[2]
 SOURCES = ROOT / "studio"
@@ -84,7 +84,7 @@ def test_files_of_the_page_are_served_from_the_archive():
 
 
 def test_without_a_page_the_server_says_how_to_build_one(monkeypatch, tmp_path):
-    monkeypatch.setattr("voxsoft.studio.page.ARCHIVE", tmp_path / "page.zip")
+    monkeypatch.setattr("voxsoft.studio.outputs.page.ARCHIVE", tmp_path / "page.zip")
     app = make_app(_NoSession(), token="secret", port=80)
     with TestClient(app, base_url="http://127.0.0.1") as browser:
         assert "make studio" in browser.get("/?token=secret").text

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from voxsoft.errors import SimulationError
-from voxsoft.studio import commands, events
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.playback import Playback
-from voxsoft.studio.player import Command, Player, Shown
-from voxsoft.studio.scene import scene_of
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.bodies.scene import scene_of
+from voxsoft.studio.motion.playback import Playback
+from voxsoft.studio.motion.player import Command, Player, Shown
+from voxsoft.studio.protocol import commands, events
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import pytest
 from waiting import until
 
 from voxsoft.jobs import events as jobs
-from voxsoft.studio.progress import Progress
+from voxsoft.studio.running.progress import Progress
 
 
 class Report:
@@ -80,7 +80,7 @@ def test_other_work_is_held_where_it_next_says_how_far_it_is(calibration):
 
 def test_pauses_do_not_count_as_work(calibration, monkeypatch):
     now = [100.0]
-    monkeypatch.setattr("voxsoft.studio.progress.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("voxsoft.studio.running.progress.time.monotonic", lambda: now[0])
     reported = Report("calibrate")
     progress = reported.progress
     progress.pause()

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from voxsoft.studio import commands, events
-from voxsoft.studio.catalog import hello
-from voxsoft.studio.protocol import ProtocolError, decode, encode
+from voxsoft.studio.protocol import commands, events
+from voxsoft.studio.protocol.codec import ProtocolError, decode, encode
+from voxsoft.studio.server.catalog import hello
 from voxsoft.studio.typescript import typescript
 
 PAGE_TYPES = Path(__file__).parents[2] / "studio" / "src" / "protocol.ts"

@@ -12,9 +12,9 @@ from voxsoft.errors import FileError
 from voxsoft.jobs import DesignSource, MeasuredTable, RunSpec
 from voxsoft.jobs.copies import with_copies
 from voxsoft.jobs.folder import write_job
-from voxsoft.studio import commands
-from voxsoft.studio.asked import spec_of
-from voxsoft.studio.recipes import recipe_of
+from voxsoft.studio.protocol import commands
+from voxsoft.studio.running.asked import spec_of
+from voxsoft.studio.running.recipes import recipe_of
 
 CLI = "from voxsoft.cli.app import app; app()"
 TABLE = "arc_position_from_clamp_mm,dz_mm\n30,-15\n60,-44\n90,-75\n"
@@ -35,7 +35,7 @@ def begun(folder, asked, family="paper-cylinder", tables=()):
 
 def do(folder):
     """Do the job as the studio does: in a process of its own."""
-    command = [sys.executable, "-m", "voxsoft.studio.worker", str(folder)]
+    command = [sys.executable, "-m", "voxsoft.studio.running.worker", str(folder)]
     # It stops once nobody is there to tell it anything any more.
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
         assert process.wait() == 0

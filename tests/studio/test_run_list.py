@@ -2,7 +2,7 @@
 
 import json
 
-from voxsoft.studio.runs import RunList
+from voxsoft.studio.running.runs import RunList
 
 DESIGN = '[objectives]\nrise = { maximize = "displacement", probe = "top" }\n'
 

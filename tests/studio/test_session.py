@@ -18,8 +18,8 @@ from own_loop import run
 
 import voxsoft as vs
 from voxsoft.simulation import simulate
-from voxsoft.studio.app import MOST_WRONG
-from voxsoft.studio.wire import PROTOCOL, CloseCode
+from voxsoft.studio.protocol.wire import PROTOCOL, CloseCode
+from voxsoft.studio.server.app import MOST_WRONG
 
 CYLINDER = families.family_text("paper-cylinder")
 
@@ -260,7 +260,7 @@ def test_a_slider_gives_a_new_body_and_a_bad_value_keeps_the_old_one(studio):
 
 
 def test_a_body_too_large_for_the_memory_is_refused_with_the_estimate(studio, monkeypatch):
-    monkeypatch.setattr("voxsoft.studio.body.memory_limit", lambda: 5_000_000)
+    monkeypatch.setattr("voxsoft.studio.bodies.body.memory_limit", lambda: 5_000_000)
 
     async def scenario():
         async with studio.page() as page:
@@ -602,7 +602,7 @@ def test_unsaved_changes_are_there_after_a_restart(make_studio, tmp_path):
 
 
 def test_a_body_that_takes_its_time_is_announced(studio, monkeypatch):
-    monkeypatch.setattr("voxsoft.studio.mesher.SLOW", 0.0)
+    monkeypatch.setattr("voxsoft.studio.bodies.mesher.SLOW", 0.0)
 
     async def scenario():
         async with studio.page() as page:
@@ -625,7 +625,7 @@ def test_a_panic_of_the_core_is_reported_and_the_next_body_comes(studio, monkeyp
         async with studio.page() as page:
             await page.shown(lambda s: s.state == "paused")
             with monkeypatch.context() as broken:
-                broken.setattr("voxsoft.studio.mesher.StudioBody.of", panic)
+                broken.setattr("voxsoft.studio.bodies.mesher.StudioBody.of", panic)
                 await page.send("edit", rev=page.rev, path=["voxel_size"], value="2.5 mm")
                 document = await page.until("document", lambda d: d.diagnostics)
             assert "index out of bounds" in document.diagnostics[0]["what"]

@@ -10,11 +10,11 @@ from voxsoft.design import families
 from voxsoft.design.discretize import mesh_of
 from voxsoft.design.isometry import Isometry
 from voxsoft.files.designs import load
-from voxsoft.studio import commands, events
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.document import DesignDocument
-from voxsoft.studio.session import Session
-from voxsoft.studio.several import several_of
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.documents.document import DesignDocument
+from voxsoft.studio.documents.several import several_of
+from voxsoft.studio.protocol import commands, events
+from voxsoft.studio.server.session import Session
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

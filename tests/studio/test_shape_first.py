@@ -8,17 +8,17 @@ import lattice_families as families
 import numpy as np
 import pytest
 
-from voxsoft.studio import mesher
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.canvas import Canvas
-from voxsoft.studio.catalog import FIELDS
-from voxsoft.studio.mesher import Mesher
-from voxsoft.studio.pictures import Pictures
-from voxsoft.studio.playback import Playback
-from voxsoft.studio.player import Player
-from voxsoft.studio.surface import Surface
-from voxsoft.studio.tab import Tab
-from voxsoft.studio.wire import CAVITY
+from voxsoft.studio.bodies import mesher
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.bodies.mesher import Mesher
+from voxsoft.studio.bodies.surface import Surface
+from voxsoft.studio.motion.canvas import Canvas
+from voxsoft.studio.motion.pictures import Pictures
+from voxsoft.studio.motion.playback import Playback
+from voxsoft.studio.motion.player import Player
+from voxsoft.studio.protocol.tab import Tab
+from voxsoft.studio.protocol.wire import CAVITY
+from voxsoft.studio.server.catalog import FIELDS
 from voxsoft.voxels import Voxels
 
 DISPLACEMENT = next(field.id for field in FIELDS if field.name == "displacement")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import voxsoft as vs
-from voxsoft.studio.ghosts import ghost_of
+from voxsoft.studio.bodies.ghosts import ghost_of
 
 ROOT = Path(__file__).parents[2]
 STARTERS = json.loads((ROOT / "studio/src/panes/design/shapeStarters.json").read_text())

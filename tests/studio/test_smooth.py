@@ -9,7 +9,7 @@ import voxsoft as vs
 from voxsoft.design import families
 from voxsoft.design.discretize import voxels_of
 from voxsoft.shapes.tracing import trace
-from voxsoft.studio.smooth import pack_smooth
+from voxsoft.studio.bodies.smooth import pack_smooth
 
 
 def traced(design):

@@ -7,8 +7,8 @@ import pytest
 from own_loop import run
 
 from voxsoft.design import families, robots
-from voxsoft.studio.recent import MOST, RecentFiles
-from voxsoft.studio.security import cookie_name
+from voxsoft.studio.documents.recent import MOST, RecentFiles
+from voxsoft.studio.server.security import cookie_name
 
 LENGTH = ["parameters", "length", "value"]
 

@@ -16,7 +16,7 @@ from own_loop import run
 from voxsoft import files
 from voxsoft.design import Design
 from voxsoft.simulation import simulate
-from voxsoft.studio import stills
+from voxsoft.studio.outputs import stills
 from voxsoft.study import Study
 
 BAR = """

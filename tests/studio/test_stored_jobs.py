@@ -10,9 +10,9 @@ import pytest
 from voxsoft import files
 from voxsoft.calibration import Experiment, calibrate, read_measurement
 from voxsoft.errors import FileError
-from voxsoft.studio import events
-from voxsoft.studio.job_journal import JOURNAL, JobJournal, read_journal
-from voxsoft.studio.stored_job import stored_job
+from voxsoft.studio.protocol import events
+from voxsoft.studio.running.job_journal import JOURNAL, JobJournal, read_journal
+from voxsoft.studio.running.stored_job import stored_job
 
 KINDS = ("generation", "overlay", "calibrated")
 TABLE = "arc_position_from_clamp_mm,dz_mm\n30,-15\n60,-44\n90,-75\n"

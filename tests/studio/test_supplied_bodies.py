@@ -7,10 +7,10 @@ import pytest
 
 from voxsoft.errors import SimulationError
 from voxsoft.files.designs import load
-from voxsoft.studio import commands, events
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.playback import Playback
-from voxsoft.studio.rest import RestSearch
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.motion.playback import Playback
+from voxsoft.studio.motion.rest import RestSearch
+from voxsoft.studio.protocol import commands, events
 
 FINGER = Path(__file__).parents[2] / "examples" / "pulsed_finger.toml"
 

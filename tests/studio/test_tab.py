@@ -4,8 +4,8 @@ import asyncio
 
 from own_loop import run
 
-from voxsoft.studio import events
-from voxsoft.studio.tab import LONGEST_QUEUE, Tab
+from voxsoft.studio.protocol import events
+from voxsoft.studio.protocol.tab import LONGEST_QUEUE, Tab
 
 
 class Wire:

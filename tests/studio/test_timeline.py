@@ -8,8 +8,8 @@ import pytest
 
 from voxsoft.design import families
 from voxsoft.files.toml_edits import with_value
-from voxsoft.studio import events
-from voxsoft.studio.document import DesignDocument
+from voxsoft.studio.documents.document import DesignDocument
+from voxsoft.studio.protocol import events
 
 TEXT = (
     families.family_text("pneunet")

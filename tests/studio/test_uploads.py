@@ -11,7 +11,12 @@ from voxsoft import check
 from voxsoft.design import Design
 from voxsoft.design.discretize import voxels_of
 from voxsoft.errors import FileError, VoxelError
-from voxsoft.studio.uploads import design_of_array, design_of_mesh, safe_name, unpack_folder
+from voxsoft.studio.documents.uploads import (
+    design_of_array,
+    design_of_mesh,
+    safe_name,
+    unpack_folder,
+)
 
 
 @pytest.mark.parametrize(
@@ -51,7 +56,7 @@ def test_an_archive_that_is_none_is_reported(tmp_path):
 
 
 def test_a_bomb_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("voxsoft.studio.uploads.LARGEST_ARCHIVE", 1_000_000)
+    monkeypatch.setattr("voxsoft.studio.documents.uploads.LARGEST_ARCHIVE", 1_000_000)
     archive = tmp_path / "run.zip"
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
         packed.writestr("zeros", bytes(2_000_000))

@@ -4,8 +4,8 @@ import pytest
 from own_loop import run
 
 from voxsoft.errors import FileError
-from voxsoft.studio.line_difference import line_differences
-from voxsoft.studio.versions import MOST, MOST_FILES, Versions
+from voxsoft.studio.documents.line_difference import line_differences
+from voxsoft.studio.documents.versions import MOST, MOST_FILES, Versions
 
 BOX = """
 schema = "voxsoft/1"

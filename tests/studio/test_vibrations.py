@@ -5,7 +5,7 @@ import pytest
 from own_loop import run
 
 import voxsoft as vs
-from voxsoft.studio.vibration import REACH
+from voxsoft.studio.motion.vibration import REACH
 
 BEAM = """
 schema = "voxsoft/1"

@@ -14,8 +14,8 @@ from voxsoft.files import load
 from voxsoft.jobs import RunSpec, again, run_job
 from voxsoft.jobs.source import DesignSource
 from voxsoft.simulation.setup import Setup
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.smooth import pack_smooth
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.bodies.smooth import pack_smooth
 from voxsoft.units import kPa, mm
 
 FINGER = """

@@ -9,8 +9,8 @@ import voxsoft as vs
 from voxsoft.cli.app import app
 from voxsoft.files import read_mesh
 from voxsoft.shapes.cad_files import HINT
-from voxsoft.studio.opening import document_at
-from voxsoft.studio.uploads import safe_name
+from voxsoft.studio.documents.opening import document_at
+from voxsoft.studio.documents.uploads import safe_name
 
 STEP = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n"
 

@@ -10,8 +10,8 @@ from voxsoft.files import load, save
 from voxsoft.simulation import Setup, simulate
 from voxsoft.simulation.rigid import surface_of
 from voxsoft.simulation.state import result_at
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.html import page_of_body
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.outputs.html import page_of_body
 from voxsoft.units import kPa, mm
 
 SIDE, PRESS = 12 * mm, 1.5 * mm

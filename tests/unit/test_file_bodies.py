@@ -15,8 +15,8 @@ from voxsoft.design.discretize import mesh_of, voxels_of
 from voxsoft.errors import DesignError
 from voxsoft.files import load, read_mesh, save, write_mesh
 from voxsoft.simulation.setup import Setup
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.smooth import pack_smooth
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.bodies.smooth import pack_smooth
 from voxsoft.voxels import Voxels
 
 SOFT, STIFF = (

@@ -7,8 +7,8 @@ import voxsoft as vs
 from voxsoft.design import Design, Refinement
 from voxsoft.errors import DesignError
 from voxsoft.simulation import Setup
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.html import page_of
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.outputs.html import page_of
 from voxsoft.units import kPa, mm
 
 RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.49, density=1070.0)

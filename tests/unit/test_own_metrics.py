@@ -194,7 +194,7 @@ def test_what_a_metric_must_not_return(pressed, function, words):
 
 
 def test_the_lists_of_the_studio_hold_it(tmp_path):
-    from voxsoft.studio.catalog import hello
+    from voxsoft.studio.server.catalog import hello
 
     found = {each.name: each.kind for each in hello(tmp_path).metrics}
     assert found["tip_height"] == "length"

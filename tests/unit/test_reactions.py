@@ -149,7 +149,7 @@ def test_a_mesh_file_has_the_vertices_of_a_clamp_by_its_name(tmp_path):
 
 
 def test_the_card_of_a_result_in_the_studio_has_the_reactions():
-    from voxsoft.studio.equilibrium import _force_in_words
+    from voxsoft.studio.bodies.equilibrium import _force_in_words
 
     # Less than E A e by the second order of the strain.
     force = vs.simulate(bar()).clamp_reactions["jaw"]

@@ -7,7 +7,7 @@ import voxsoft as vs
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.simulation import Setup, gradient, simulate
-from voxsoft.studio.body import StudioBody
+from voxsoft.studio.bodies.body import StudioBody
 from voxsoft.units import kPa, mm
 
 YOUNG, SIDE, LENGTH, STIFFNESS = 60 * kPa, 2 * mm, 16 * mm, 0.5

@@ -19,7 +19,7 @@ from voxsoft.design import (
 from voxsoft.design.fluid import ROOM
 from voxsoft.errors import DesignError, NoCavityError, SimulationError
 from voxsoft.simulation import Setup, simulate
-from voxsoft.studio.html import page_of
+from voxsoft.studio.outputs.html import page_of
 from voxsoft.units import kPa, mm
 
 SIDE = 12 * mm

@@ -14,8 +14,8 @@ from voxsoft.plot.body import body_image
 from voxsoft.plot.cutout import cutout
 from voxsoft.plot.objects import Surroundings
 from voxsoft.simulation import Setup
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.stills import Still
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.outputs.stills import Still
 from voxsoft.units import mm
 
 HALF = SIDE / 2
