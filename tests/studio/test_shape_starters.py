@@ -11,7 +11,7 @@ import voxsoft as vs
 from voxsoft.studio.bodies.ghosts import ghost_of
 
 ROOT = Path(__file__).parents[2]
-STARTERS = json.loads((ROOT / "studio/src/panes/design/shapeStarters.json").read_text())
+STARTERS = json.loads((ROOT / "studio/src/panes/design/shapes/shapeStarters.json").read_text())
 SIDE = 20.0
 PLACES = {"middle": [0, 0, 0], "foot": [0, 0, -SIDE / 2]}
 PLACES |= {"left": [-SIDE / 2, 0, 0], "right": [SIDE / 2, 0, 0]}
