@@ -1,4 +1,4 @@
-// The page reads formulas as VoxSoft does: both are held to the cases of tests/unit/formulas.json.
+// The page reads formulas as VoxSoft does: both are held to the cases of tests/unit/design/formulas.json.
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import type { Dimension } from "../../src/controls/dimension";
@@ -13,7 +13,7 @@ interface Cases {
   refused: { formula: string; words: string[] }[];
 }
 
-const file = new URL("../../../tests/unit/formulas.json", import.meta.url);
+const file = new URL("../../../tests/unit/design/formulas.json", import.meta.url);
 const cases = JSON.parse(readFileSync(file, "utf8")) as Cases;
 const dimensionOf = (kind: string) => cases.dimensions[kind];
 const parameters = Object.fromEntries(
