@@ -11,12 +11,13 @@ import voxsoft as vs
 from voxsoft.simulation import Setup
 from voxsoft.units import kPa, mm
 
-BENCHMARKS = Path(__file__).parents[3] / "benchmarks"
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture(autouse=True)
 def beside_the_benchmarks(monkeypatch):
-    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    monkeypatch.syspath_prepend(str(ROOT / "evidence"))
     monkeypatch.setattr(sys, "argv", ["benchmark"])
 
 

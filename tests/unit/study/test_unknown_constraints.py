@@ -14,7 +14,7 @@ from voxsoft.design import Constraint, Design, families
 from voxsoft.study import Outcome, Study
 from voxsoft.study.trial import violations
 
-sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
+sys.path.insert(0, str(Path(__file__).parents[3] / "evidence"))
 from unsolvable import shares
 
 WALLS = {"wall": ("5 mm", "8 mm", "1 mm")}

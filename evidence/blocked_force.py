@@ -1,6 +1,6 @@
 """The blocked force of a bending actuator of EcoFlex 00-30, against the one that was measured.
 
-``python benchmarks/blocked_force.py [--json] [--variants]``. The actuator is that of
+``python evidence/blocked_force.py [--json] [--variants]``. The actuator is that of
 `examples/validation/epfl_bender.toml`, five chambers in walls of 10 mm, with its tip held: nothing
 is fitted to the forces. Measured: Reconfigurable Robotics Lab, EPFL
 (`examples/data/epfl_bender/README.md`).
@@ -20,13 +20,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from measure import Report
 
 from voxsoft.units import MPa, kPa, mm
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "examples" / "validation"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 
 from epfl_blocked_force import Model, measured, predicted
+from measure import Report
 
 
 @dataclass(frozen=True, kw_only=True)

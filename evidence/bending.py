@@ -1,6 +1,6 @@
 """Strips, a plate, bars and a block of the voxels that are solved: bending, torsion, stability.
 
-``python benchmarks/bending.py [--json]``. The cases are those by which the element was chosen
+``python evidence/bending.py [--json]``. The cases are those by which the element was chosen
 (`research/elements.py`, docs/method/elements.md), here with the element of the package: strips
 100 mm long and 10 mm thick against Timoshenko's beam, a clamped plate of 200 x 200 x 5 mm against
 Kirchhoff's, and a block with sliding ends that is squeezed and drawn until it is not stable. No
@@ -11,12 +11,16 @@ ends that turn in their planes and are free to warp, against Saint-Venant's tors
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 import numpy as np
-from measure import Report
 
 import voxsoft as vs
 from voxsoft.units import kPa, mm
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report
 
 YOUNG = 60 * kPa
 #: Saint-Venant's J of a square bar, over the fourth power of its side.

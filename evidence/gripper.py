@@ -1,6 +1,6 @@
 """A gripper closes on a cube, lifts it, and holds it, with voxels and steps of several sizes.
 
-``python benchmarks/gripper.py [--json] [--fine]``. `examples/gripper.toml`, two PneuNet fingers,
+``python evidence/gripper.py [--json] [--fine]``. `examples/gripper.toml`, two PneuNet fingers,
 with 25 kPa in place of 20: a cube of 50 g is lifted by 50 mm and held by friction alone. One set of
 parameters for every size of voxels and every step. By default voxels of 2.5 mm, steps of 20 ms, and
 one second of holding; `--fine` takes three sizes with three steps each, ten seconds of holding, and
@@ -17,10 +17,13 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from measure import Report
 
 import voxsoft as vs
 from voxsoft.units import kPa, mm
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report
 
 DESIGN = Path(__file__).parents[1] / "examples" / "gripper.toml"
 #: Edges of voxels in mm and steps in ms, the default case first.

@@ -5,20 +5,24 @@ in five of the designs can be solved. The evaluation is a formula, so that the s
 measured. For each sampler the share of solved designs among the first and the last 50 of 200
 trials, as the mean over seeds.
 
-``python benchmarks/unsolvable.py [--json]``
+``python evidence/unsolvable.py [--json]``
 """
 
 from __future__ import annotations
 
+import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any, Final
-
-from measure import Report
 
 from voxsoft.design import Design, families
 from voxsoft.study import Outcome, Study
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report
 
 SPACE: Final = {"wall": ("10 mm", "20 mm", "0.1 mm"), "radius": ("21 mm", "40 mm", "0.1 mm")}
 TRIALS: Final = 200

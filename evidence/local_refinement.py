@@ -3,22 +3,26 @@
 Each body is solved on large voxels, on small ones, and on both: where a person would have them
 small, and where the estimated error is. Errors are against voxels smaller than all of these.
 
-    python benchmarks/local_refinement.py [--json]
+    python evidence/local_refinement.py [--json]
 """
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-
-from measure import Report
+from pathlib import Path
 
 import voxsoft as vs
 from voxsoft.comparison import refined
 from voxsoft.design import Refinement, families
 from voxsoft.simulation import Setup
 from voxsoft.units import kPa, mm
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report
 
 RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.49, density=1070.0)
 #: Of the block around a chamber.

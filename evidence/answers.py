@@ -8,6 +8,7 @@ processor time of the run without and with its bar.
 from __future__ import annotations
 
 import runpy
+import sys
 import time
 from collections.abc import Callable, Sequence
 from functools import cache
@@ -15,11 +16,14 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from measure import Report
 
 import voxsoft as vs
 from voxsoft.comparison import ErrorBars, discretization_error, error_bars
 from voxsoft.units import kPa, mm
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report
 
 #: E of everything here.
 YOUNG: Final = 60 * kPa

@@ -1,6 +1,6 @@
 """Annular membranes of EcoFlex 00-30 that lift weights, against the pressures that were measured.
 
-``python benchmarks/membranes.py [--json] [--fine] [--variants]``. A membrane is that of
+``python evidence/membranes.py [--json] [--fine] [--variants]``. A membrane is that of
 `examples/validation/membrane.toml`; nothing is fitted to the data
 (`examples/data/membrane_lift/README.md`). For each height of the disc the pressure is found at
 which the membrane lifts the weight. Pressure over height is what is compared first: some measured
@@ -21,13 +21,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from measure import Report
 
 import voxsoft as vs
 from voxsoft.units import MPa, kPa, mm
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "examples" / "validation"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 
+from measure import Report
 from membrane_lift import HEIGHTS, MEMBRANES, Lifted, Membrane, Model, measured
 
 #: The heights that are compared, up to what was measured; with ``--fine`` all of them.

@@ -1,6 +1,6 @@
 """Growth of contact: seconds to rest of a block on a block, and of one block as high as both.
 
-``python benchmarks/contact_growth.py [--json] [--fine]``. Two blocks of 20 x 20 x 10 mm, a voxel
+``python evidence/contact_growth.py [--json] [--fine]``. Two blocks of 20 x 20 x 10 mm, a voxel
 apart, are pressed on each other by 2 mm, in finer and finer voxels; `--fine` adds 10⁶ voxels, which
 take minutes and gigabytes. The default settings, and no friction. Each size has a process of its
 own, so that its peak of memory is its own. Wall clock, all cores, from the design to the state at
@@ -10,15 +10,20 @@ rest. The ratio is that to one block of the same voxels, which is pressed as far
 from __future__ import annotations
 
 import multiprocessing
+import sys
 import time
+from pathlib import Path
 
 import contact_designs as designs
 import numpy as np
-from measure import Report, peak_bytes
 
 import voxsoft as vs
 from voxsoft.design import Contact
 from voxsoft.units import mm
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report, peak_bytes
 
 #: Voxels along an edge of both blocks together.
 ACROSS, ACROSS_FINE = (10, 22, 46), (100,)

@@ -1,6 +1,6 @@
 """Whether error bars hold, on bodies that were fixed before any of them was solved.
 
-``python benchmarks/error_bars.py TABLE SET [KIND ...]``. Three sets of nine kinds of bodies, drawn
+``python evidence/error_bars.py TABLE SET [KIND ...]``. Three sets of nine kinds of bodies, drawn
 from a generator of random numbers by kind and number. With the first set at hand the rule of
 `voxsoft.comparison.bars` was made wider; after the second, the floor of 1 % was added; the third
 had no part in it. Each body is run as ``voxsoft run`` does, and its estimate held against the

@@ -1,10 +1,10 @@
 """A PneuNet whose facing walls meet: whether it gets there, how long it takes, how right it is.
 
-``python benchmarks/pneunet_contact.py [--json] [--fine]``. `examples/pneunet_contact.toml` under
+``python evidence/pneunet_contact.py [--json] [--fine]``. `examples/pneunet_contact.toml` under
 80 kPa with the default settings, with and without contact in turn (three times each
 with `--fine`). The surface that touches is looked at by the exact test and by ipctk
 (`crossing_faces.py`) at every point of the load path. The tip is held against CalculiX with
-contact (`tests/data/contact/pneunet.csv`, made by `benchmarks/make_pneunet_reference.py`) where
+contact (`tests/data/contact/pneunet.csv`, made by `evidence/make_pneunet_reference.py`) where
 that file is there.
 
 A path that ends early says which part of the load was reached; what it reached is looked at too.
@@ -14,15 +14,19 @@ from __future__ import annotations
 
 import csv
 import statistics
+import sys
 from pathlib import Path
 
 import numpy as np
 from crossing_faces import Faces
-from measure import Report
 
 import voxsoft as vs
 from voxsoft.simulation import Setup, simulate
 from voxsoft.units import kPa
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report
 
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "examples" / "pneunet_contact.toml"

@@ -1,10 +1,10 @@
 """Other engines on the pinched capsule: how far it creeps, and whether it stays.
 
-``python benchmarks/contact_peers.py [--json] [--fine]``. A rigid capsule of 45 g, 4 mm in radius,
+``python evidence/contact_peers.py [--json] [--fine]``. A rigid capsule of 45 g, 4 mm in radius,
 is held by friction alone (μ = 0.7) between two rigid pads that slide along one axis and press it
 with 20 N each, 63 times what its weight needs. The pads press first, the weight comes after. It is
 followed for 6 s, or (`--fine`) for a minute, by steps of 1, 5 and 20 ms.
-`benchmarks/contact_over_time.py` has ours, between soft pads.
+`evidence/contact_over_time.py` has ours, between soft pads.
 
 The rows are the speed at which the capsule sinks once a second has passed, what a second of it
 takes in processor time, and how deep the capsule is in the pads. Where it is lost, a row says when.
@@ -32,6 +32,9 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
 from measure import Report
 
 RADIUS, HALF_LENGTH, MASS, FRICTION = 0.004, 0.004, 0.045, 0.7

@@ -1,6 +1,6 @@
 """Contact over time: what is pinched must not creep, and what slides must slide as Coulomb says.
 
-``python benchmarks/contact_over_time.py [--json] [--fine]``. A capsule of 45 g is held by friction
+``python evidence/contact_over_time.py [--json] [--fine]``. A capsule of 45 g is held by friction
 alone between two soft pads (μ = 0.7), by steps of 1, 5 and 20 ms with the same settings: how far it
 creeps once the weight has come, in some seconds or (`--fine`) a minute, and what a second of it
 takes. A soft block lies on an incline (μ = 0.5) that holds it, and slides down steeper ones: its
@@ -13,15 +13,19 @@ from __future__ import annotations
 
 import math
 import sys
+from pathlib import Path
 
 import numpy as np
-from measure import Report
 from numpy.typing import NDArray
 
 import voxsoft as vs
 from voxsoft.design import Body, Contact, Floor, History, Object
 from voxsoft.simulation import Recording
 from voxsoft.units import kPa, mm
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report
 
 #: Steps in ms, and how many seconds are shown, by default and with `--fine`.
 PINCHES = [(20.0, (6.0, 60.0)), (5.0, (6.0, 60.0)), (1.0, (2.0, 60.0))]

@@ -1,6 +1,6 @@
 """CalculiX on a PneuNet whose walls meet: its tip at each increment of the pressure.
 
-``python benchmarks/make_pneunet_reference.py FOLDER [SPLIT] [--without] [--rows] [DESIGN]
+``python evidence/make_pneunet_reference.py FOLDER [SPLIT] [--without] [--rows] [DESIGN]
 [KEY=VALUE ...]`` solves one half of DESIGN (`examples/pneunet_contact.toml` without it) up to its
 `pressure` in FOLDER, and adds the rows to FOLDER/pneunet.csv: displacement and angle of the tip and
 force between the walls at each increment. SPLIT (default 1) is how many quadratic bricks (C3D20R)

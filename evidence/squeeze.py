@@ -1,6 +1,6 @@
 """Random bodies squeezed to half their height: how many end there, and how the others fail.
 
-``python benchmarks/squeeze.py [--bodies 50] [--first 0] [--jobs 1] [--limit 120] [--json]``.
+``python evidence/squeeze.py [--bodies 50] [--first 0] [--jobs 1] [--limit 120] [--json]``.
 `squeeze_bodies.py` says what is squeezed, and who judges. One body again, with all that is known of
 it: ``--seed 17``. A process beside this one squeezes it, and is stopped after so many seconds of
 processor time (`--limit`), or ten times as long by the clock: that is what "time limit" means.
@@ -16,13 +16,17 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 
 import numpy as np
 import psutil
-from measure import Report
 from rich.console import Console
 from rich.table import Table
 from squeeze_bodies import GOOD, KINDS, VOXELS, Verdict, judged
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report
 
 #: How many times the limit of processor time may pass by the clock, and how often that is looked
 #: at [s].

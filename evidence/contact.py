@@ -1,6 +1,6 @@
 """Errors of contact in equilibrium against converged references and closed forms.
 
-``python benchmarks/contact.py [--json] [--fine]``. A uniform pressure through voxels that do not
+``python evidence/contact.py [--json] [--fine]``. A uniform pressure through voxels that do not
 match, a half sphere on a rigid plane, a rigid ball pressed into a block, a block on a block, and a
 bellows whose walls meet. Nothing is fitted: every solution has the default settings, and ratios
 are those to the reference. Where the load path ends early, the row says which part of the load was
@@ -21,11 +21,14 @@ from typing import Any
 
 import contact_designs as designs
 import numpy as np
-from measure import Report
 
 import voxsoft as vs
 from voxsoft.simulation import Setup
 from voxsoft.units import mm
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report
 
 DATA = Path(__file__).parents[1] / "tests" / "data" / "contact"
 

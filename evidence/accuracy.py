@@ -1,6 +1,6 @@
 """Errors against converged references, for the hyperelastic voxel and the lattice.
 
-``python benchmarks/accuracy.py [--json] [--fine] [--answers]``. First what runs answer, with their
+``python evidence/accuracy.py [--json] [--fine] [--answers]``. First what runs answer, with their
 error bars and times (`answers.py`): twisted bars, thick spheres and tubes, cylinders, a PneuNet,
 and six clamped beams of three Poisson's ratios; `--answers` stops there. Then the same beams,
 round and stair-step cylinders at 4 kPa, the PneuNet at 3 kPa, and a block with a smooth exact
@@ -34,7 +34,6 @@ from answers import (
 )
 from bending import torsion
 from make_references import SOFT, cylinder, pneunet
-from measure import Report
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from smooth_block import error as smooth_error
@@ -45,6 +44,10 @@ from voxsoft.design import families
 from voxsoft.materials import Material
 from voxsoft.simulation import Setup, relax
 from voxsoft.units import kPa, mm
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report
 
 Floats = NDArray[np.float64]
 

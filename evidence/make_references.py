@@ -1,6 +1,6 @@
 """References of `tests/data/voxel_references.csv`: outside codes on the same voxels, split finer.
 
-``python benchmarks/make_references.py FOLDER [CASE ...]`` solves what FOLDER does not hold yet,
+``python evidence/make_references.py FOLDER [CASE ...]`` solves what FOLDER does not hold yet,
 keeps the displacements of each run there, and writes the tables into it. CalculiX (C3D20R) and the
 mixed bricks of `voxsoft.comparison.scikit_fem` (Q2-P1) share no line of code past the nodes.
 Symmetry planes halve the work: bodies are cut at x = 0, or at the middle of their width.

@@ -1,6 +1,6 @@
 """Bodies that the estimates of the discretization error never saw, and the truth of each.
 
-``python benchmarks/make_estimate_truths.py TABLE [SET ...]``. Shapes, loads, materials and probes
+``python evidence/make_estimate_truths.py TABLE [SET ...]``. Shapes, loads, materials and probes
 of a set were fixed before any of it was solved, and so was the rule of
 `voxsoft.comparison.richardson`: the first set was for the rule with a safety factor of 1.25 on two
 sizes, the second for the one that replaced it. The truth is our own element on voxels split 2, 4
