@@ -32,10 +32,10 @@ from studio import FLAGS, WINDOW, opened, require_voxels, served, until
 import voxsoft as vs
 from voxsoft.design import Contact, History, Object
 from voxsoft.files.designs import load
-from voxsoft.studio import commands, events
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.html import page_of
-from voxsoft.studio.player import Player
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.motion.player import Player
+from voxsoft.studio.outputs.html import page_of
+from voxsoft.studio.protocol import commands, events
 from voxsoft.units import kPa, mm
 
 if TYPE_CHECKING:

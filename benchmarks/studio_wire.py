@@ -18,7 +18,7 @@ from urllib.parse import parse_qs, urlsplit
 import numpy as np
 from measure import Report
 
-from voxsoft.studio.wire import HEADER, PROTOCOL
+from voxsoft.studio.protocol.wire import HEADER, PROTOCOL
 
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection

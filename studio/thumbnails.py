@@ -51,7 +51,7 @@ PATIENCE: Final = 900.0
 SERVE: Final = """
 import sys
 from pathlib import Path
-from voxsoft.studio.server import StudioServer
+from voxsoft.studio.server.process import StudioServer
 server = StudioServer(Path(sys.argv[1]), runs=Path(sys.argv[2]))
 server.run_and_exit(lambda address: print(address, flush=True))
 """

@@ -6,5 +6,6 @@ import signal
 # that the tests start and interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# `tests/unit/test_own_metrics.py` registers these metrics; a search for doctests would do so first.
+# `tests/unit/metrics/test_own_metrics.py` registers these metrics; a search for doctests would do
+# so first.
 collect_ignore = ["own_metrics.py"]

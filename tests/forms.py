@@ -150,7 +150,7 @@ SPECIAL[ShapeMemory, "transformed"] = (0.25, 1)
 SPECIAL[Body, "design"] = (INNER, Design.from_document(INNER))
 SPECIAL[Body, "set"] = ({"r": "12 mm"}, {"r": 0.1 / 3}, {"r": "= p_length"}, {"many": 3, "r": 0.02})
 #: Names of bodies that there are: test_roundtrip_of_places_of_bodies has these. Names of regions of
-#: a mesh's file: tests/unit/test_file_bodies.py saves and loads them.
+#: a mesh's file: tests/unit/design/test_file_bodies.py saves and loads them.
 ELSEWHERE = {(Region, "body"), (Part, "body"), (Guide, "body"), (Region, "name")}
 
 #: What a record needs beside what its fields require.

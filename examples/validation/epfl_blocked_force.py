@@ -8,7 +8,7 @@ film is pinned to a load cell. Seen from the slider the root is fixed and the ti
 actuator: its lower edge is held upright and across, and the force is what holds it there. Weight
 was removed from the measurement as its baseline, and is left out.
 
-``python examples/validation/epfl_blocked_force.py``: some minutes. `benchmarks/blocked_force.py`
+``python examples/validation/epfl_blocked_force.py``: some minutes. `evidence/blocked_force.py`
 has what else the experiment may have been.
 """
 

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PATH = re.compile(r"`((?:crates|python|tests|docs|examples|benchmarks|research)/[\w./-]+)`")
+FOLDERS = "crates|python|tests|docs|examples|benchmarks|evidence|research"
+PATH = re.compile(rf"`((?:{FOLDERS})/[\w./-]+)`")
 
 
 def named_paths():

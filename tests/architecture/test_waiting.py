@@ -18,7 +18,7 @@ SLEEPS = re.compile(
 ALLOWED = {
     "waiting.py": "looks again at a condition",
     "study_families.py": "trials that take their time, so that a study can be stopped",
-    "unit/test_shapes_errors.py": "a field that takes its time, so that it can be interrupted",
+    "unit/shapes/test_shapes_errors.py": "a field that takes its time, to be interrupted",
     "studio/browser/test_pictures.py": "takes pictures for the documents, and checks nothing",
     "studio/browser/test_view_and_run.py": "compares a picture with the one before it",
 }

@@ -17,7 +17,7 @@ from voxsoft.simulation import Setup, simulate
 from voxsoft.units import kPa, mm
 
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "benchmarks"))
+sys.path.insert(0, str(ROOT / "evidence"))
 
 import contact_designs as designs  # noqa: E402
 

@@ -15,11 +15,11 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def made():
-    sys.path.insert(0, str(ROOT / "benchmarks"))
+    sys.path.insert(0, str(ROOT / "evidence"))
     try:
         import make_estimate_truths
     finally:
-        sys.path.pop(0)
+        sys.path.remove(str(ROOT / "evidence"))
     return make_estimate_truths
 
 

@@ -24,7 +24,7 @@ def test_pressure_bends_it_toward_its_paper():
     small = run(*SMALL)
     assert small["status"] == "ok"
     # CalculiX with the paper as bricks has -0.241 mm at 18.65 kPa, and ours there -0.232 mm; twice
-    # as many voxels along each edge move it by 8 % (`benchmarks/make_pneunet_reference.py`).
+    # as many voxels along each edge move it by 8 % (`evidence/make_pneunet_reference.py`).
     x, y, z = small["probes"]["tip"]["displacement"]
     assert -0.28e-3 < z < -0.23e-3
     assert abs(y) < 1e-9

@@ -23,8 +23,8 @@ from voxsoft.simulation.compatibility import (
 )
 from voxsoft.simulation.features import FEATURES, IMPLIED, has_feature
 from voxsoft.simulation.runs.state import result_at
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.html import page_of
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.outputs.html import page_of
 
 RUBBER = {"model": "neo-hookean", "young": "100 kPa", "poisson": 0.45, "density": "1070 kg/m^3"}
 RELAXING = {**RUBBER, "prony": [{"g": 0.2, "tau": "0.1 s"}]}

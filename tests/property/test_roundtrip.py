@@ -31,7 +31,7 @@ from voxsoft.units import mm
 
 #: Not in files: Python code.
 PYTHON_ONLY = {Function}
-# A body of a file needs the file: tests/unit/test_file_bodies.py saves and loads one.
+# A body of a file needs the file: tests/unit/design/test_file_bodies.py saves and loads one.
 MODELS = [
     model for model in all_models() if model not in PYTHON_ONLY and model not in (Card, FileMesh)
 ]

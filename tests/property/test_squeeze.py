@@ -1,6 +1,6 @@
 """Random bodies squeezed to half their height: no crash, no NaN, no hang, and nothing in a plate.
 
-What is squeezed, and the judges, are those of `benchmarks/squeeze.py`, whose figures are in
+What is squeezed, and the judges, are those of `evidence/squeeze.py`, whose figures are in
 `docs/method/contact.md`: walls of a body may still pass through each other, which it counts.
 """
 
@@ -14,7 +14,7 @@ import voxsoft as vs
 from voxsoft.simulation import Setup
 from voxsoft.simulation.checks.crossed_surfaces import crossed_surfaces
 
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+EVIDENCE = Path(__file__).parents[2] / "evidence"
 # So small that one takes a second or two.
 SMALL = (20, 60)
 # They came to half their height without any faces through each other when this was written.
@@ -22,8 +22,8 @@ SOUND = (2, 10)
 
 
 @pytest.fixture(autouse=True)
-def beside_the_benchmarks(monkeypatch):
-    monkeypatch.syspath_prepend(str(BENCHMARKS))
+def beside_the_evidence(monkeypatch):
+    monkeypatch.syspath_prepend(str(EVIDENCE))
     monkeypatch.setattr(sys, "argv", ["benchmark"])
 
 

@@ -15,8 +15,8 @@ import pytest
 import websockets
 from own_loop import run
 
-from voxsoft.studio.server import StudioServer
-from voxsoft.studio.wire import PROTOCOL
+from voxsoft.studio.protocol.wire import PROTOCOL
+from voxsoft.studio.server.process import StudioServer
 
 #: Seconds after which what has not come never will, however busy the machine is.
 PATIENCE = 120.0
@@ -182,7 +182,7 @@ async def visited(port, token, hello=True, **options):
 SERVE = """
 import sys
 from pathlib import Path
-from voxsoft.studio.server import StudioServer
+from voxsoft.studio.server.process import StudioServer
 server = StudioServer(Path(sys.argv[1]), runs=Path(sys.argv[2]), port=0, token="token")
 server.run_and_exit(lambda address: print(server.port, flush=True))
 """

@@ -1,6 +1,6 @@
 """Contact in equilibrium against closed forms and converged finite elements.
 
-The designs and the references are those of `benchmarks/contact.py`.
+The designs and the references are those of `evidence/contact.py`.
 """
 
 import sys
@@ -11,16 +11,16 @@ import pytest
 import voxsoft as vs
 from voxsoft.units import mm
 
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+EVIDENCE = Path(__file__).parents[2] / "evidence"
 
 
 @pytest.fixture(scope="module")
 def contact():
-    sys.path.insert(0, str(BENCHMARKS))
+    sys.path.insert(0, str(EVIDENCE))
     try:
         return __import__("contact")
     finally:
-        sys.path.pop(0)
+        sys.path.remove(str(EVIDENCE))
 
 
 def found(design):

@@ -18,7 +18,7 @@ def imported(folder, name):
     try:
         return __import__(name)
     finally:
-        sys.path.pop(0)
+        sys.path.remove(str(ROOT / folder))
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def paper():
 
 @pytest.fixture(scope="module")
 def accuracy():
-    return imported("benchmarks", "accuracy")
+    return imported("evidence", "accuracy")
 
 
 def test_elements_of_5_mm_already_beat_the_paper(paper):

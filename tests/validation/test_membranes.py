@@ -17,11 +17,11 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def membranes():
-    sys.path.insert(0, str(ROOT / "benchmarks"))
+    sys.path.insert(0, str(ROOT / "evidence"))
     try:
         return importlib.import_module("membranes")
     finally:
-        sys.path.pop(0)
+        sys.path.remove(str(ROOT / "evidence"))
 
 
 def tensions(along, around):

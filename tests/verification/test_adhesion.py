@@ -8,7 +8,7 @@ from voxsoft.design import Contact, Object
 from voxsoft.design.contact import Adhesion, ContactPair
 from voxsoft.errors import DesignError
 from voxsoft.simulation import gradient, simulate
-from voxsoft.studio.objects import not_live
+from voxsoft.studio.bodies.objects import not_live
 from voxsoft.units import MPa, kPa, mm
 
 SIDE = 8 * mm

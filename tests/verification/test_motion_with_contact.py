@@ -1,6 +1,6 @@
 """Balls that roll, bounce and meet, as closed forms and what must be kept say.
 
-The designs are those of `benchmarks/contact_over_time.py`, which has the figures.
+The designs are those of `evidence/contact_over_time.py`, which has the figures.
 """
 
 import math
@@ -12,13 +12,13 @@ import pytest
 
 import voxsoft as vs
 
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+EVIDENCE = Path(__file__).parents[2] / "evidence"
 GRAVITY = 9.81
 
 
 @pytest.fixture
 def designs(monkeypatch):
-    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    monkeypatch.syspath_prepend(str(EVIDENCE))
     import contact_over_time
 
     monkeypatch.setattr(sys, "argv", ["benchmark"])

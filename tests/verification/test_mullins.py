@@ -10,8 +10,8 @@ from voxsoft.design import families
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Mullins, cycled_stress
 from voxsoft.materials.homogeneous import principal_stretches
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.html import page_of
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.outputs.html import page_of
 from voxsoft.units import kPa, mm
 
 SIDE = 4 * mm

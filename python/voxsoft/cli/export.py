@@ -50,7 +50,7 @@ def export(
             shown = f", in {plain(files.unit_of(target, unit))}" if has_unit else ""
             say(f"wrote {plain(str(target))}{shown}")
         if html is not None:
-            from voxsoft.studio.html import export_page
+            from voxsoft.studio.outputs.html import export_page
 
             export_page(source, html, sets or [])
             say(f"wrote {plain(str(html))}")

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 #: From this part of small voxels everywhere on these take no longer: a finger that is refined to
-#: 0.8 takes 1.6 times their time, a block to 0.4 half of it (`benchmarks/local_refinement.py`).
+#: 0.8 takes 1.6 times their time, a block to 0.4 half of it (`evidence/local_refinement.py`).
 _MOST = 0.6
 
 

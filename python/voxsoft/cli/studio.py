@@ -31,7 +31,7 @@ def studio(
     It listens on this machine only, and the address holds a token that no one else knows. Ctrl-C
     ends it; changes that were not saved are there at the next start.
     """
-    from voxsoft.studio.server import StudioServer
+    from voxsoft.studio.server.process import StudioServer
 
     def ready(address: str) -> None:
         # On a line of standard output by itself, for programs that start the studio.

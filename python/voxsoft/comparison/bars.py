@@ -41,7 +41,7 @@ SAME_VOLUME: Final = 0.01
 #: Voxels through a wall from which on errors are regular; see `richardson`.
 REGULAR_WALL: Final = 2
 #: Walls of one voxel may hide their error: one and two voxels can give the same number and both be
-#: off. Of the chambers, plates and fins of `benchmarks/make_estimate_truths.py` those with two
+#: off. Of the chambers, plates and fins of `evidence/make_estimate_truths.py` those with two
 #: voxels through a wall were 2 to 29 % off, seven of eight by less than this.
 HIDDEN: Final = 0.25
 #: Least error from two sizes, as a part of the number: errors of corners and of free sides have

@@ -64,7 +64,7 @@ from voxsoft.shapes import AnyShape
 from voxsoft.units import EXACT, FILE_CONTEXT, PositiveLength, format_quantity
 
 if TYPE_CHECKING:
-    from voxsoft.studio.html import LivePage
+    from voxsoft.studio.outputs.html import LivePage
 
 SCHEMA: Final = "voxsoft/1"
 
@@ -612,7 +612,7 @@ class Design(Record):
         >>> "voxsoft-scene" in families.beam().show().text
         True
         """
-        from voxsoft.studio.html import page_of
+        from voxsoft.studio.outputs.html import page_of
 
         return page_of(self)
 

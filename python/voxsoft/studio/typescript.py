@@ -19,10 +19,10 @@ from msgspec import inspect as types
 from voxsoft.formats.registry import HEADINGS, WRITTEN
 from voxsoft.shapes import KINDS as SHAPES
 from voxsoft.shapes.cad_files import CAD_SUFFIXES, HINT, WHAT
-from voxsoft.studio.commands import AnyCommand, Command
-from voxsoft.studio.events import AnyEvent, Event
-from voxsoft.studio.uploads import MESHES
-from voxsoft.studio.wire import (
+from voxsoft.studio.documents.uploads import MESHES
+from voxsoft.studio.protocol.commands import AnyCommand, Command
+from voxsoft.studio.protocol.events import AnyEvent, Event
+from voxsoft.studio.protocol.wire import (
     CAVITY,
     CREDITS,
     HEADER,

@@ -1,6 +1,6 @@
 import { useEffect, useRef } from "react";
 import uPlot from "uplot";
-import { ladder } from "../view/quality";
+import { ladder } from "../view/drawing/quality";
 import { decadeName, decades, tickSpace } from "./axes";
 import { formatNumber } from "./units";
 import "uplot/dist/uPlot.min.css";

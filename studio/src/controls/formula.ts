@@ -1,5 +1,5 @@
-// Formulas as VoxSoft reads them (python/voxsoft/design/document/formula.py has the grammar), so that a field
-// can say at once what is wrong; tests/unit/formulas.json holds both readers to the same cases.
+// Formulas as VoxSoft reads them (python/voxsoft/design/formula.py has the grammar), so that a field
+// can say at once what is wrong; tests/unit/design/formulas.json holds both readers to the same cases.
 import {
   type Dimension,
   describeDimension,

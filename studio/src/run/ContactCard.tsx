@@ -2,7 +2,7 @@ import { Section } from "../controls/Choice";
 import { formatNumber, formatQuantity } from "../controls/units";
 import type { Touch } from "../protocol";
 import { useStudio } from "../store/studio";
-import { holdColor } from "../view/forces";
+import { holdColor } from "../view/marks/forces";
 import { holdOf } from "./hold";
 
 /** What touches what in the frame that is shown: with how much force, over which area, and whether it holds. */

@@ -7,7 +7,7 @@ import { currentEngine, send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useView } from "../store/view";
 import { viewport } from "../view/instance";
-import { useOverlap } from "../view/overlap";
+import { useOverlap } from "../view/marks/overlap";
 import { ContactCard } from "./ContactCard";
 import { EquilibriumCard, useEquilibrium } from "./EquilibriumCard";
 import { GripCard } from "./GripCard";

@@ -3,7 +3,7 @@ import { useEffect, useMemo, useRef, useState } from "react";
 import { Button } from "../controls/Choice";
 import { openSheet, setMode, usePage } from "../store/page";
 import { useView } from "../store/view";
-import { SCHEMES, schemeWords } from "../view/schemes";
+import { SCHEMES, schemeWords } from "../view/hands/schemes";
 import { type Action, actions } from "./actions";
 import { Icon } from "./icons";
 import { DiscardSheet, SaveSheet } from "./SaveSheet";

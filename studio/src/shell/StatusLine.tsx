@@ -2,7 +2,7 @@ import { formatKind } from "../controls/kinds";
 import { formatNumber } from "../controls/units";
 import { useEquilibrium } from "../run/EquilibriumCard";
 import { useStudio } from "../store/studio";
-import { useOverlap } from "../view/overlap";
+import { useOverlap } from "../view/marks/overlap";
 import { showPane } from "./actions";
 
 export function StatusLine() {

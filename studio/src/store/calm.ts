@@ -1,7 +1,7 @@
 // Statistics come ten times a second. Where pictures are slow, writing them anew that often would
 // take the time of every other picture: while time runs they are then told less often.
 import type { StatEvent } from "../protocol";
-import { ladder } from "../view/quality";
+import { ladder } from "../view/drawing/quality";
 
 const BETWEEN = 300; // ms
 

@@ -1,6 +1,6 @@
 // The face of the body that was pressed, until another is or the body is another; and where a tendon begins.
 import { create } from "zustand";
-import type { Face } from "../view/face";
+import type { Face } from "../view/hands/face";
 
 /** A place as it is written. */
 export type WrittenPlace = readonly (string | number)[];

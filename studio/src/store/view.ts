@@ -1,9 +1,9 @@
 // How the body is shown. Kept between visits; nothing here needs a round trip but the field
 // and the change between surface and tetrahedra.
 import { create } from "zustand";
-import type { ColormapName } from "../view/colormaps";
-import type { Clipped } from "../view/colorRange";
-import type { Scheme } from "../view/schemes";
+import type { ColormapName } from "../view/body/colormaps";
+import type { Clipped } from "../view/body/colorRange";
+import type { Scheme } from "../view/hands/schemes";
 import { keepAs, kept } from "./page";
 
 export type Appearance = "voxels" | "smooth" | "tets" | "wireframe";

@@ -9,17 +9,17 @@ import { usePage } from "../store/page";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useShown, useView } from "../store/view";
-import { isAsBuilt } from "./asBuilt";
-import { ContactBanner } from "./ContactBanner";
-import { Cube } from "./Cube";
-import { FaceCard } from "./FaceCard";
-import { ForceLegend } from "./ForceLegend";
+import { isAsBuilt } from "./body/asBuilt";
+import { ContactBanner } from "./cards/ContactBanner";
+import { Cube } from "./cards/Cube";
+import { FaceCard } from "./cards/FaceCard";
+import { ForceLegend } from "./cards/ForceLegend";
+import { Legend } from "./cards/Legend";
+import { OverlapBanner } from "./cards/OverlapBanner";
+import { ViewBar } from "./cards/ViewBar";
 import { viewport } from "./instance";
-import { Legend } from "./Legend";
-import { OverlapBanner } from "./OverlapBanner";
-import { ViewBar } from "./ViewBar";
 import "./view.css";
-import "./shapeHandle.css";
+import "./hands/shapeHandle.css";
 
 export default function ViewPane() {
   const box = useRef<HTMLDivElement>(null);

@@ -3,9 +3,9 @@
 import { provideHook } from "../hook";
 import { type Action, provideViewActions } from "../shell/actions";
 import { setView, useView } from "../store/view";
-import type { StandardView } from "./camera";
+import type { StandardView } from "./drawing/camera";
+import { SCHEMES } from "./hands/schemes";
 import { savePicture } from "./recorder";
-import { SCHEMES } from "./schemes";
 import { Viewport } from "./viewport";
 
 const STANDARD: readonly [StandardView, string, string][] = [

@@ -3,7 +3,7 @@
 import { factorOf, formatNumber, shownUnit, unitText } from "../controls/units";
 import { toast, useStudio } from "../store/studio";
 import { useShown, useView } from "../store/view";
-import { colorAt } from "./colormaps";
+import { colorAt } from "./body/colormaps";
 import type { Viewport } from "./viewport";
 
 const GIF_WIDTH = 640;

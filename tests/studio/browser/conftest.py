@@ -34,7 +34,7 @@ PATIENCE = 120.0
 SERVE = """
 import sys
 from pathlib import Path
-from voxsoft.studio.server import StudioServer
+from voxsoft.studio.server.process import StudioServer
 source, runs, port, token = sys.argv[1:]
 source = Path(source) if source else None
 server = StudioServer(source, runs=Path(runs), port=int(port), token=token)

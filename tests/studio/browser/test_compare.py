@@ -10,7 +10,7 @@ import pytest
 
 from voxsoft import files, load
 from voxsoft.simulation import Setup, simulate
-from voxsoft.studio.stills import design_in
+from voxsoft.studio.outputs.stills import design_in
 from voxsoft.study import Study
 
 pytestmark = pytest.mark.browser

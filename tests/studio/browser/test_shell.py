@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from voxsoft.studio.wire import PROTOCOL
+from voxsoft.studio.protocol.wire import PROTOCOL
 
 pytestmark = pytest.mark.browser
 

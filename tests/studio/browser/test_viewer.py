@@ -8,8 +8,8 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.design import Design
-from voxsoft.studio.body import StudioBody
-from voxsoft.studio.html import page_of, page_of_body
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.outputs.html import page_of, page_of_body
 
 LOWEST = """(() => {
   let low = 1;

@@ -9,7 +9,7 @@ from voxsoft.errors import FileError
 from voxsoft.files.meshes import read_mesh_file, write_mesh
 from voxsoft.formats.read import known_suffixes
 from voxsoft.formats.registry import FORMATS, READ, WRITTEN, function
-from voxsoft.studio.exports import FORMATS as EXPORTS
+from voxsoft.studio.outputs.exports import FORMATS as EXPORTS
 from voxsoft.voxels import Voxels
 
 MESHES = [suffix for suffix, form in WRITTEN.items() if form.has_shape]

@@ -5,7 +5,7 @@
 //! shortest of these offsets is the distance. It is never too short, as each ends on the surface. It is too long only
 //! where none of the eight nodes has its closest point on the same sheet as the query: there two sheets are equally far
 //! except for the curvature of their distances over one cell of the grid, an error of second order in the cell, for
-//! which [`SLACK`] is a generous bound (`tests/unit/test_shapes_periodic.py` measures it).
+//! which [`SLACK`] is a generous bound (`tests/unit/shapes/test_shapes_periodic.py` measures it).
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 use std::sync::{Arc, LazyLock, Mutex};

@@ -13,7 +13,7 @@ The grammar (whitespace is free)::
 The name of a parameter is never read as a unit; straight after a number it is refused, as it may
 have been meant as either. A formula is evaluated while it is read; nothing in it can call, index
 or loop. The studio's page reads formulas by the same grammar (``studio/src/controls/formula.ts``),
-and ``tests/unit/formulas.json`` holds both to the same cases.
+and ``tests/unit/design/formulas.json`` holds both to the same cases.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ from voxsoft.simulation.setup.volumes import Volumes, volumes_of
 from voxsoft.units import format_percent, format_quantity
 
 if TYPE_CHECKING:
-    from voxsoft.studio.html import LivePage
+    from voxsoft.studio.outputs.html import LivePage
 
 #: Largest residual of an equilibrium with contact without a warning. Surfaces that slip act from
 #: their present position once a state is taken, which leaves less than this where they slip little.
@@ -443,7 +443,7 @@ class Result(Shown):
         The page begins at this result; its Play shows the motion there from the unloaded shape.
         """
         # `studio` lies above `simulation` in the layers; this convenience reaches up when called.
-        from voxsoft.studio.html import page_of
+        from voxsoft.studio.outputs.html import page_of
 
         return page_of(self)
 

@@ -3,7 +3,7 @@
 The time of an iteration is known well, their number is not: it depends on how far the body
 moves. So the answer is a range. All constants were measured on one core of a 2.4 GHz server with
 the examples and with beams, blocks, plates, tubes and balls of 80 to 6,000 voxels, of lattice and
-of rubber; `tests/unit/test_cost.py` holds the iterations against runs.
+of rubber; `tests/unit/simulation/test_cost.py` holds the iterations against runs.
 """
 
 from __future__ import annotations

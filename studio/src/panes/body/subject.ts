@@ -1,4 +1,4 @@
-import { single } from "../design/schema";
+import { single } from "../design/fields/schema";
 
 // What a finding is about, in words: the path "loads[0]" of a design is "Load 1".
 

@@ -6,7 +6,7 @@ import type { CalibratedEvent } from "../../protocol";
 import { send } from "../../store/session";
 import { toast, useStudio } from "../../store/studio";
 import { edit } from "../design/edits";
-import type { Schema } from "../design/schema";
+import type { Schema } from "../design/fields/schema";
 import { withUnits } from "./setup";
 import { showFit } from "./tell";
 

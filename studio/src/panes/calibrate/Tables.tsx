@@ -3,7 +3,7 @@ import { useRef, useState } from "react";
 import { Button, Section, Select } from "../../controls/Choice";
 import type { MeasuredColumn, MeasuredEvent } from "../../protocol";
 import { useStudio } from "../../store/studio";
-import { Glyph } from "../design/Glyph";
+import { Glyph } from "../design/fields/Glyph";
 import { addFile, changeFile, type MeasuredFile, removeFile, useCalibrateDraft } from "./draft";
 
 const QUANTITIES: Readonly<Record<string, string>> = {

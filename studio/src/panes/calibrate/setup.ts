@@ -1,7 +1,7 @@
 // From what was chosen in the pane to the calibration that is asked of VoxSoft.
 import { siUnit } from "../../controls/kinds";
 import type { CalibrateSpec, FitRange, MaterialCard, MeasuredEvent } from "../../protocol";
-import { controlOf, helpOfKeys, resolve, type Schema } from "../design/schema";
+import { controlOf, helpOfKeys, resolve, type Schema } from "../design/fields/schema";
 import type { CalibrateDraft } from "./draft";
 
 /** The model of the material that the first part is made of. */

@@ -2,19 +2,27 @@
 import { Button, Empty, Section } from "../../controls/Choice";
 import { useStudio } from "../../store/studio";
 import { browseMaterials } from "../materials/browse";
-import { Bodies } from "./Bodies";
-import { Adder, EntryList, EntryMap } from "./Entries";
+import { Bodies } from "./bodies/Bodies";
+import { ContactSection, Objects } from "./bodies/Objects";
 import { edit } from "./edits";
+import { Adder, EntryList, EntryMap } from "./fields/Entries";
+import { Glyph } from "./fields/Glyph";
+import { SchemaField, TableFields } from "./fields/SchemaField";
+import {
+  helpOfKeys,
+  labelOf,
+  listSections,
+  resolve,
+  type Schema,
+  single,
+  summary,
+} from "./fields/schema";
+import { materialName } from "./fields/starters";
 import { type Form, FormContext } from "./form";
 import { Gallery } from "./Gallery";
-import { Glyph } from "./Glyph";
 import { Goals } from "./Goals";
-import { ContactSection, Objects } from "./Objects";
-import { Parameters } from "./Parameters";
-import { SchemaField, TableFields } from "./SchemaField";
-import { Shapes } from "./Shapes";
-import { helpOfKeys, labelOf, listSections, resolve, type Schema, single, summary } from "./schema";
-import { materialName } from "./starters";
+import { Parameters } from "./parameters/Parameters";
+import { Shapes } from "./shapes/Shapes";
 import { NO_DIAGNOSTICS, useFormOfDocument } from "./useForm";
 import "./design.css";
 

@@ -4,14 +4,14 @@ import { formatKind, readWritten } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
 import type { Metric } from "../../protocol";
 import { useStudio } from "../../store/studio";
-import { CavityField } from "./CavityField";
-import { EntryMap, type Table } from "./Entries";
+import { bodyNames } from "./bodies/several";
 import { changesOf, edit, editAll, type Path } from "./edits";
+import { CavityField } from "./fields/CavityField";
+import { EntryMap, type Table } from "./fields/Entries";
+import { inside, labelOf } from "./fields/schema";
 import { useForm } from "./form";
-import { PromoteTool } from "./PromoteTool";
-import { isNumber, promoted } from "./promote";
-import { inside, labelOf } from "./schema";
-import { bodyNames } from "./several";
+import { PromoteTool } from "./parameters/PromoteTool";
+import { isNumber, promoted } from "./parameters/promote";
 
 const AXES = [
   { value: "", label: "magnitude" },

@@ -2,8 +2,8 @@
 import { createContext, useContext } from "react";
 import type { Amounts } from "../../controls/formula";
 import type { Diagnostic } from "../../protocol";
-import type { Schema } from "./schema";
-import type { Names } from "./starters";
+import type { Schema } from "./fields/schema";
+import type { Names } from "./fields/starters";
 
 export interface Form {
   readonly root: Schema;

@@ -4,8 +4,8 @@ import type { Amounts } from "../../controls/formula";
 import { dimensionOf } from "../../controls/kinds";
 import type { DocumentEvent } from "../../protocol";
 import { useStudio } from "../../store/studio";
+import type { Schema } from "./fields/schema";
 import type { Form } from "./form";
-import type { Schema } from "./schema";
 
 export const NO_DIAGNOSTICS: Form["diagnostics"] = [];
 

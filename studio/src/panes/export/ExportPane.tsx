@@ -3,7 +3,7 @@ import { Button, Select } from "../../controls/Choice";
 import type { ErrorEvent, ExportedEvent } from "../../protocol";
 import { toast, useStudio } from "../../store/studio";
 import { flushText } from "../../store/typing";
-import { Glyph } from "../design/Glyph";
+import { Glyph } from "../design/fields/Glyph";
 import { FORMATS, type Format, type Options, obstacle, request, UNITS, type Unit } from "./formats";
 import "./export.css";
 

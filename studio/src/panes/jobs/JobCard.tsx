@@ -4,7 +4,7 @@ import { formatSpan } from "../../controls/units";
 import type { JobEvent } from "../../protocol";
 import { Icon } from "../../shell/icons";
 import { send } from "../../store/session";
-import { Glyph } from "../design/Glyph";
+import { Glyph } from "../design/fields/Glyph";
 import { RecipeButtons } from "./Recipe";
 import "./jobs.css";
 

@@ -1,7 +1,7 @@
 // How a part gets a material, and how a card becomes a material of the design.
 import type { MaterialFacts } from "../../protocol";
 import type { Change } from "../design/edits";
-import { freeName } from "../design/starters";
+import { freeName } from "../design/fields/starters";
 
 type Table = Readonly<Record<string, unknown>>;
 

@@ -10,7 +10,7 @@ import { type Mode, setMode, usePage } from "../../store/page";
 import { onReady, send } from "../../store/session";
 import { toast, useStudio } from "../../store/studio";
 import { openHere } from "../design/edits";
-import { Glyph } from "../design/Glyph";
+import { Glyph } from "../design/fields/Glyph";
 import { Reproduce } from "../jobs/Recipe";
 import { ago, inTrash, matchesSearch } from "./rows";
 import "../jobs/jobs.css";

@@ -1,7 +1,7 @@
 // Designs in space: three quantities along the axes, a fourth as color, a fifth as size.
 import { useEffect, useMemo, useRef, useState } from "react";
 import { Select } from "../../controls/Choice";
-import { gradient } from "../../view/colormaps";
+import { gradient } from "../../view/body/colormaps";
 import { axisTitle, Tip } from "./chart/PointChart";
 import { CORNERS, EDGES, labelEdge, type Projected, project, type Turn } from "./chart/space";
 import { useSize } from "./chart/useSize";

@@ -2,7 +2,7 @@
 // vision read.
 
 import type { TrialEvent, TrialsEvent } from "../../protocol";
-import { colorAt } from "../../view/colormaps";
+import { colorAt } from "../../view/body/colormaps";
 import { type Axis, isDone, rangeOf, valueOn } from "./trials";
 
 export interface Coloring {

@@ -4,7 +4,7 @@ import { formatNumber } from "../../controls/units";
 import type { HistoryLine } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import { edit } from "../design/edits";
-import { inside } from "../design/schema";
+import { inside } from "../design/fields/schema";
 import { ticks } from "../study/chart/ticks";
 import { useSize } from "../study/chart/useSize";
 import { HistoryRow, setInType } from "./HistoryRow";

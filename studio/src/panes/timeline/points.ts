@@ -4,7 +4,7 @@ import { factorOf } from "../../controls/units";
 import { unitOf } from "../../controls/unitTable";
 import type { HistoryLine } from "../../protocol";
 import type { Change } from "../design/edits";
-import { inside } from "../design/schema";
+import { inside } from "../design/fields/schema";
 import { ticks } from "../study/chart/ticks";
 
 /** Points are dragged one by one up to this many; longer lists are changed in the text. */

@@ -1,8 +1,8 @@
 import { factorOf, formatNumber, shownUnit, unitText } from "../../controls/units";
 import type { Field } from "../../protocol";
 import { useView } from "../../store/view";
-import { gradient } from "../colormaps";
-import { CLIP } from "../colorRange";
+import { gradient } from "../body/colormaps";
+import { CLIP } from "../body/colorRange";
 
 /** The colors that several bodies share, with the values at both ends. */
 export function ColorBar(props: {

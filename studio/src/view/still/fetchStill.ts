@@ -1,7 +1,7 @@
 // Bodies at rest beside the one of the view: of runs, of designs of studies, of calibrations.
 import { decodeAll, type Frame, type Topology } from "../../engine/frames";
 import { STILL_OBJECTS } from "../../protocol";
-import { colorRange } from "../colorRange";
+import { colorRange } from "../body/colorRange";
 
 export interface Still {
   readonly topology: Topology;

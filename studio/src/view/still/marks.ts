@@ -12,8 +12,8 @@ import {
   Vector3,
 } from "three";
 import type { Triple } from "../../protocol";
-import type { Label } from "../labels";
-import { themeColor } from "../theme";
+import { themeColor } from "../drawing/theme";
+import type { Label } from "../marks/labels";
 
 export interface Mark {
   readonly key: string;

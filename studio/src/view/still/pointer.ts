@@ -1,8 +1,8 @@
 // The mouse and the keys on bodies at rest: buttons steer as the chosen scheme has it, the wheel
 // zooms to the pointer. Nothing is pulled or picked here.
 import { useView } from "../../store/view";
-import type { StandardView } from "../camera";
-import { type Motion, motionOf, steer } from "../schemes";
+import type { StandardView } from "../drawing/camera";
+import { type Motion, motionOf, steer } from "../hands/schemes";
 import type { StillStage } from "./stage";
 
 const TURN = 24;

@@ -11,12 +11,12 @@ import {
 } from "three";
 import type { Frame } from "../../engine/frames";
 import type { View } from "../../store/view";
-import { BodyMesh } from "../body";
-import { CameraRig, type StandardView } from "../camera";
-import { Ground, Sky } from "../ground";
-import { Labels } from "../labels";
-import { around, type ObjectMesh, objectMesh } from "../objects";
-import { themeColor } from "../theme";
+import { BodyMesh } from "../body/body";
+import { CameraRig, type StandardView } from "../drawing/camera";
+import { Ground, Sky } from "../drawing/ground";
+import { themeColor } from "../drawing/theme";
+import { Labels } from "../marks/labels";
+import { around, type ObjectMesh, objectMesh } from "../marks/objects";
 import { commonRange, type Still } from "./fetchStill";
 import { type Mark, Marks } from "./marks";
 import { listen } from "./pointer";

@@ -11,7 +11,7 @@ import {
   type Schema,
   schemaAt,
   summary,
-} from "../schema";
+} from "../fields/schema";
 import { type Place, placeAt, type Step } from "./place";
 
 /** The table of keys that a path leads to, with what its kind is known to be. */

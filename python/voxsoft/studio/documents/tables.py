@@ -1,0 +1,166 @@
+"""Measured tables as they are dropped on the page: what their columns hold, and in which unit."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Sequence
+from typing import Final
+
+from voxsoft.calibration import Measurement, read_measurement
+from voxsoft.calibration.measurement import QUANTITIES
+from voxsoft.calibration.table import ARC, UNITS
+from voxsoft.errors import MeasurementError, VoxSoftError
+from voxsoft.studio.protocol import commands, events
+
+#: What a column may hold, as the page offers it; "" is nothing that is read.
+CHOICES: Final = ("", "arc", "probe", *QUANTITIES, "material", "note")
+_LABELS: Final = ("probe", "material", "note")
+#: Cells of a column that are shown.
+_SAMPLE: Final = 5
+_NAMED: Final = re.compile(rf"(?P<quantity>{ARC}|arc|s|d?[xyz])[ _\[(]*(?P<unit>mm|cm|m)?[\])]?")
+
+
+def guessed_columns(text: str) -> list[commands.ColumnMap]:
+    r"""Guess what the columns of a table hold from their names.
+
+    Examples
+    --------
+    >>> [(c.quantity, c.unit) for c in guessed_columns("s (mm),dz [cm],remark\n1,2,a")]
+    [('arc', 'mm'), ('dz', 'cm'), ('', '')]
+    """
+    header, _ = _cells(text)
+    found = []
+    for column in header:
+        plain = column.strip().casefold()
+        named = _NAMED.fullmatch(plain)
+        if plain in _LABELS:
+            found.append(commands.ColumnMap(column=column, quantity=plain))
+        elif named:
+            quantity = "arc" if named["quantity"] in (ARC, "s") else named["quantity"]
+            found.append(
+                commands.ColumnMap(column=column, quantity=quantity, unit=named["unit"] or "")
+            )
+        else:
+            found.append(commands.ColumnMap(column=column, quantity=""))
+    return found
+
+
+def mapped_text(text: str, columns: Sequence[commands.ColumnMap]) -> str:
+    """Write a table anew with columns named as a measurement wants them.
+
+    Raises
+    ------
+    MeasurementError
+        A column that is not there, or a quantity or unit that is not known.
+    """
+    header, rows = _cells(text)
+    comments = [line for line in text.splitlines() if line.startswith("#")]
+    chosen: list[tuple[int, str]] = []
+    for each in columns:
+        if not each.quantity:
+            continue
+        where = f"column {each.column}"
+        if each.column not in header:
+            raise MeasurementError(where, "is not in the table", f"it has {', '.join(header)}")
+        if each.quantity not in CHOICES:
+            raise MeasurementError(where, f'"{each.quantity}" is not known')
+        name = each.quantity
+        if name not in _LABELS:
+            if each.unit not in UNITS:
+                raise MeasurementError(where, "needs a unit", f"choose from {', '.join(UNITS)}")
+            name = f"{ARC if name == 'arc' else name}_{each.unit}"
+        chosen.append((header.index(each.column), name))
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow([name for _, name in chosen])
+    for row in rows:
+        writer.writerow([row[index] if index < len(row) else "" for index, _ in chosen])
+    return "\n".join([*comments, out.getvalue()])
+
+
+def measured(
+    name: str, text: str, columns: Sequence[commands.ColumnMap] | None, select: str | None
+) -> tuple[events.Measured, Measurement | None]:
+    """Read a table and say how it was understood.
+
+    Returns
+    -------
+    event
+        What the page is told.
+    measurement
+        None where the table cannot be used as it is; the event says why.
+    """
+    problems: list[events.Finding] = []
+    found: Measurement | None = None
+    header: list[str] = []
+    rows: list[list[str]] = []
+    used: list[commands.ColumnMap] = []
+    try:
+        header, rows = _cells(text)
+        used = list(columns) if columns is not None else guessed_columns(text)
+        found = read_measurement(mapped_text(text, used), name=name, select=select)
+    except VoxSoftError as error:
+        problems = [
+            events.Finding(severity="error", where=p.where, what=p.what, hint=p.hint)
+            for p in error.problems
+        ]
+    by_name = {each.column: each for each in used}
+    event = events.Measured(
+        name=name,
+        columns=[
+            events.MeasuredColumn(
+                column=column,
+                quantity=by_name[column].quantity if column in by_name else "",
+                unit=by_name[column].unit if column in by_name else "",
+                sample=[row[index] for row in rows[:_SAMPLE] if index < len(row)],
+            )
+            for index, column in enumerate(header)
+        ],
+        quantities=list(CHOICES),
+        stations=0 if found is None else len(found),
+        materials=_materials(header, rows, used),
+        arcs=[] if found is None or found.arcs is None else found.arcs.tolist(),
+        points=[] if found is None else _points(found),
+        problems=problems,
+    )
+    return event, found
+
+
+def _cells(text: str) -> tuple[list[str], list[list[str]]]:
+    """Header and rows of a table, whose separator may be a comma, semicolon or tab."""
+    if "\0" in text:
+        raise MeasurementError("table", "is not a text file", "save the table as CSV")
+    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
+    if not lines:
+        raise MeasurementError("table", "holds no table", "name the columns in its first line")
+    separator = max((",", ";", "\t"), key=lines[0].count)
+    try:
+        rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator)]
+    except csv.Error as error:
+        raise MeasurementError("table", f"cannot be read: {error}", "save it as CSV") from None
+    if separator != ",":  # where columns are parted by semicolons numbers often have commas
+        rows = [rows[0], *([cell.replace(",", ".") for cell in row] for row in rows[1:])]
+    return rows[0], rows[1:]
+
+
+def _materials(
+    header: list[str], rows: list[list[str]], used: Sequence[commands.ColumnMap]
+) -> list[str]:
+    labels = [each.column for each in used if each.quantity == "material"]
+    if not labels or labels[0] not in header:
+        return []
+    index = header.index(labels[0])
+    return list(dict.fromkeys(row[index] for row in rows if index < len(row)))
+
+
+def _points(found: Measurement) -> list[tuple[float, float, float]]:
+    """Measured numbers as points, zero along axes that were not measured [m]."""
+    points = []
+    for row in found.values:
+        point = [0.0, 0.0, 0.0]
+        for axis, value in zip(found.axes, row, strict=True):
+            point[int(axis)] = float(value)
+        points.append((point[0], point[1], point[2]))
+    return points

@@ -1,0 +1,243 @@
+"""Files of what the studio shows: the design, the body as it stands, or a run folder."""
+
+from __future__ import annotations
+
+import csv
+import io
+import shutil
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import files
+from voxsoft.design import Design
+from voxsoft.errors import FileError
+from voxsoft.files.atomic import write_atomically
+from voxsoft.files.exports import write_source
+from voxsoft.formats.registry import WRITTEN, Format
+from voxsoft.simulation import Result, named_regions
+from voxsoft.simulation.results.result import Status
+from voxsoft.simulation.runs.state import result_at
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.bodies.objects import poses_in, surroundings_of
+from voxsoft.studio.outputs.html import export_page, page_of_body
+from voxsoft.studio.protocol import events
+from voxsoft.studio.protocol.events import GrabState
+from voxsoft.units import parse
+
+#: What can be written of the body that is shown.
+FORMATS: Final = (*(suffix[1:] for suffix in WRITTEN), "run", "png", "html")
+#: Dots per inch of a picture of normal size.
+_DPI: Final = 200
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """What a tab sees at the moment of an export.
+
+    Attributes
+    ----------
+    name
+        What files are called.
+    text
+        The text of the design.
+    body
+        The body.
+    positions
+        Where its vertices are [m].
+    result
+        The state at rest that a solver found, if the body is in it.
+    columns, units, rows
+        What the plots show.
+    factors
+        How many times as large as in the design each load is.
+    pulls
+        The springs that pull by hand.
+    status, sentence, time
+        How the simulation stands, and at what time [s].
+    moment
+        Where objects are, and what touches, as far as that is known.
+    """
+
+    name: str
+    text: str
+    body: StudioBody = field(repr=False)
+    positions: NDArray[np.float64] = field(repr=False)
+    result: Result | None = field(repr=False)
+    columns: Sequence[str]
+    units: Sequence[str]
+    rows: Sequence[Sequence[float | None]] = field(repr=False)
+    factors: Sequence[float] = ()
+    pulls: Sequence[GrabState] = ()
+    status: Status = "not-at-rest"
+    sentence: str = ""
+    time: float = 0.0
+    moment: events.Moment | None = None
+
+    @property
+    def design(self) -> Design:
+        """Design of the body."""
+        return self.body.setup.design
+
+    def table(self) -> str:
+        """Return the plots as the text of a CSV file."""
+        return _table(self)
+
+    def measured(self) -> Result:
+        """The state as a result: the solver's where one found it, else measured as it stands.
+
+        Raises
+        ------
+        VoxSoftError
+            The body cannot be solved, or the state is not finite.
+        """
+        if self.result is not None:
+            return self.result
+        setup = self.body.under(self.factors)
+        return result_at(
+            setup, self.positions, status=self.status, message=self.sentence, time=self.time
+        )
+
+
+def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Path) -> Path:
+    """Write what is shown.
+
+    Parameters
+    ----------
+    shown
+        What is shown.
+    format
+        One of :data:`FORMATS`.
+    options
+        ``deformed``: whether a mesh or surface has the shape under load; ``unit`` of the numbers
+        in STL and OBJ files, ``"mm"`` by default; ``resolved``: whether a design file holds
+        values in place of formulas; ``scale`` of a picture.
+    folder
+        Where to write.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    FileError
+        An unknown format, or one that needs a result where there is none.
+    """
+    target = folder / f"{shown.name}.{format}"
+    form = WRITTEN.get(f".{format}")
+    if form is not None and form.kind == "design" and not options.get("resolved", False):
+        write_atomically(target, shown.text)
+    elif form is not None and form.has_shape:
+        _write_mesh(shown, target, form, options)
+    elif form is not None:
+        write_source(target, shown)
+    elif format == "run":
+        target = target.with_suffix(".zip")
+        _write_run(shown, target)
+    elif format == "png":
+        _draw(shown, target, options.get("scale", 1))
+    elif format == "html":
+        page = page_of_body(
+            shown.body,
+            factors=shown.factors,
+            positions=shown.positions,
+            moment=shown.moment,
+            at_rest=shown.status == "ok",
+            text=shown.text,
+        )
+        page.save(target)
+    else:
+        raise FileError("format", f'"{format}" is not known', f"use {', '.join(FORMATS)}")
+    return target
+
+
+def export_run(source: Path, format: str, options: dict[str, Any], folder: Path) -> Path:
+    """Write a run folder in a format: the folder itself as an archive, or what it holds.
+
+    Raises
+    ------
+    FileError
+        As for :func:`voxsoft.files.export`.
+    """
+    target = folder / f"{source.name}.{format}"
+    if format == "run":
+        return _archive(source, target.with_suffix(".zip"))
+    if format == "html":
+        export_page(source, target)
+        return target
+    form = WRITTEN.get(f".{format}")
+    unit = str(options.get("unit", "mm")) if form is not None and form.unit is None else None
+    files.export(source, target, deformed=bool(options.get("deformed", False)), unit=unit)
+    return target
+
+
+def _write_mesh(shown: Shown, target: Path, form: Format, options: dict[str, Any]) -> None:
+    mesh = shown.body.mesh
+    data: dict[str, NDArray[np.float64]] = {}
+    if "values" in form.holds:
+        data["displacement"] = shown.positions - mesh.vertices
+        if shown.result is not None:
+            data["reaction"] = shown.result.reactions
+    regions = named_regions(shown.design, mesh) if "regions" in form.holds else {}
+    vertices = shown.positions if options.get("deformed", False) else mesh.vertices
+    if form.unit is None:
+        vertices = vertices / parse(f"1 {options.get('unit', 'mm')}", "length", where="unit")
+    files.write_mesh(target, replace(mesh, vertices=vertices), point_data=data, regions=regions)
+
+
+def _table(shown: Shown) -> str:
+    if not shown.rows:
+        raise FileError("csv", "nothing was recorded yet", "press play, then export again")
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    pairs = zip(shown.columns, shown.units, strict=True)
+    writer.writerow([f"{name.replace(' ', '_')}_{unit}" if unit else name for name, unit in pairs])
+    for row in shown.rows:
+        writer.writerow(["" if value is None else f"{value:.9g}" for value in row])
+    return out.getvalue()
+
+
+def _write_run(shown: Shown, target: Path) -> None:
+    folder = target.with_suffix("")
+    files.write_run(shown.measured(), folder)
+    _archive(folder, target)
+
+
+def _archive(folder: Path, target: Path) -> Path:
+    try:
+        shutil.make_archive(str(target.with_suffix("")), "zip", folder.parent, folder.name)
+    except (OSError, ValueError) as error:
+        raise FileError(str(folder), f"cannot be archived: {error}") from None
+    return target
+
+
+def _draw(shown: Shown, target: Path, scale: object) -> None:
+    from voxsoft.files.figures import save_figure
+    from voxsoft.plot import plot_body
+    from voxsoft.plot.objects import Surroundings
+
+    if not isinstance(scale, (int, float)) or not 0 < scale <= 8:
+        raise FileError("scale", f"{scale!r} is no scale", "use a number up to 8")
+    if shown.result is not None:
+        figure = plot_body(shown.result)
+    else:
+        mesh = shown.body.mesh
+        moved = np.linalg.norm(shown.positions - mesh.vertices, axis=1)
+        design = shown.body.setup.design
+        # Of a moment in the past it may not be known where objects were.
+        known = shown.moment is not None or shown.time == 0.0
+        around = surroundings_of(design, poses_in(shown.moment, design))
+        figure = plot_body(
+            replace(mesh, vertices=shown.positions),
+            1e3 * moved,
+            label="displacement (mm)",
+            objects=around if known else Surroundings(floor=around.floor),
+        )
+    figure.set_dpi(_DPI * float(scale))
+    save_figure(figure, target)

@@ -1,0 +1,50 @@
+"""What the start screen shows: finished robots, ways to a new one, and files of before."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from voxsoft.design import robots
+from voxsoft.studio.protocol import events
+
+#: Where the server has the pictures of robots.
+PICTURES: Final = "/robot/"
+#: The robot whose picture moves.
+MOVING: Final = robots.ROBOTS[0].name
+
+
+def start_event(recent: list[events.RecentFile], *, fresh: bool) -> events.Start:
+    """Tell what the start screen shows.
+
+    Parameters
+    ----------
+    recent
+        Files of before, the newest first.
+    fresh
+        Whether nothing was opened or changed yet, so that the screen opens by itself.
+    """
+    return events.Start(
+        fresh=fresh,
+        robots=[
+            events.Robot(
+                name=each.name,
+                title=each.title,
+                sentence=each.sentence,
+                picture=f"{PICTURES}{each.name}",
+                moving=f"{PICTURES}{each.name}?moving=1" if each.name == MOVING else "",
+            )
+            for each in robots.ROBOTS
+        ],
+        ways=[
+            events.Way(
+                name=each.name,
+                drive=each.drive,
+                form=each.form,
+                task=each.task,
+                robot=each.robot,
+                sentence=each.sentence,
+            )
+            for each in robots.STARTS
+        ],
+        recent=recent,
+    )

@@ -1,0 +1,76 @@
+// The ways to a new shape: the picker of all kinds, a file, and what most robots begin with.
+
+import { useRef } from "react";
+import { MESHES } from "../../../protocol";
+import { sendFile } from "../../../shell/DropZone";
+import type { Schema } from "../fields/schema";
+import { ShapeIcon } from "./ShapeIcon";
+import { ShapePicker } from "./ShapePicker";
+import type { ShapeKind } from "./shapeKinds";
+import { type Spot, shapeStarter } from "./shapeStarters";
+
+type Table = Readonly<Record<string, unknown>>;
+
+/** What most robots begin with. */
+const STARTS: readonly ShapeKind[] = ["box", "cylinder", "sphere"];
+
+interface Props {
+  /** Where the new shape stands. */
+  readonly spot: Spot;
+  onAdd(shape: Table): void;
+}
+
+export function AddShape(props: Props & { variants: Readonly<Record<string, Schema>> }) {
+  const file = useRef<HTMLInputElement>(null);
+  const addFile = async (mesh: File) => {
+    const sent = await sendFile(mesh);
+    if (sent) props.onAdd({ kind: "mesh", path: sent.path, unit: "mm" });
+  };
+  return (
+    <>
+      <ShapePicker
+        variants={props.variants}
+        onChoose={(kind) => {
+          if (kind === "mesh") file.current?.click();
+          else props.onAdd(shapeStarter(kind, props.spot));
+        }}
+      />
+      <input
+        ref={file}
+        type="file"
+        accept={MESHES.join(",")}
+        hidden
+        aria-label="Mesh file of a shape"
+        data-testid="shape-file"
+        onChange={(event) => {
+          const [mesh] = event.target.files ?? [];
+          if (mesh) void addFile(mesh);
+          event.target.value = "";
+        }}
+      />
+    </>
+  );
+}
+
+/** Where there is no shape yet: what most robots begin with, one press away. */
+export function FirstShapes(props: Props) {
+  return (
+    <>
+      <p className="muted">None yet. Add a box or a cylinder, then cut, join or repeat it.</p>
+      <div className="shape-starts">
+        {STARTS.map((kind) => (
+          <button
+            key={kind}
+            type="button"
+            className="shape-tile"
+            data-testid={`start-${kind}`}
+            onClick={() => props.onAdd(shapeStarter(kind, props.spot))}
+          >
+            <ShapeIcon kind={kind} />
+            <span>{kind}</span>
+          </button>
+        ))}
+      </div>
+    </>
+  );
+}

@@ -1,0 +1,28 @@
+"""Where the page draws what a load does."""
+
+import numpy as np
+import pytest
+
+import voxsoft as vs
+from voxsoft.studio.bodies.body import StudioBody
+
+
+@pytest.mark.parametrize("direction", [(0, 0, -1), (1, 0, 0), (1, 2, -2)])
+def test_the_arrow_of_gravity_ends_where_it_enters_the_body(direction):
+    part = vs.Part(
+        shape=vs.Box(size=("40 mm", "10 mm", "10 mm"), corner=(0, 0, 0)), material="ecoflex-00-30"
+    )
+    design = vs.Design(
+        name="bar", voxel_size="5 mm", parts=(part,), loads=(vs.Gravity(direction=direction),)
+    )
+    body = StudioBody.of(design, rev=1, topology=1)
+    (load,) = body.loads
+    low, high = body.mesh.vertices.min(axis=0), body.mesh.vertices.max(axis=0)
+    at, along = np.array(load.at), np.array(load.direction)
+    # On the bounds of the body: its arrow is outside, and what is just beyond the tip is inside.
+    before, after = at - 1e-6 * along, at + 1e-6 * along
+    assert not np.all((low < before) & (before < high))
+    assert np.all((low < after) & (after < high))
+    # The line goes through the middle.
+    middle = body.mesh.vertices.mean(axis=0)
+    assert np.linalg.norm(np.cross(middle - at, along)) == pytest.approx(0.0, abs=1e-12)

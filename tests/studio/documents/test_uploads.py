@@ -1,0 +1,117 @@
+"""Names and archives that come from the page."""
+
+import tomllib
+import zipfile
+
+import numpy as np
+import pytest
+import trimesh
+
+from voxsoft import check
+from voxsoft.design import Design
+from voxsoft.design.discretization.discretize import voxels_of
+from voxsoft.errors import FileError, VoxelError
+from voxsoft.studio.documents.uploads import (
+    design_of_array,
+    design_of_mesh,
+    safe_name,
+    unpack_folder,
+)
+
+
+@pytest.mark.parametrize(
+    ("given", "stored"),
+    [
+        ("arm.toml", "arm.toml"),
+        ("../../arm.toml", "arm.toml"),
+        ("C:\\Users\\me\\arm v2.STL", "arm-v2.stl"),
+        (".hidden.csv", "hidden.csv"),
+        ("\u202egpj.obj", "gpj.obj"),
+        ("a" * 300 + ".npy", "a" * 120 + ".npy"),
+        ("con.csv", "_con.csv"),
+    ],
+)
+def test_a_name_stays_in_its_folder(given, stored):
+    assert safe_name(given) == stored
+
+
+@pytest.mark.parametrize("inside", ["../outside.txt", "/tmp/outside.txt", "a/../../outside.txt"])
+def test_an_archive_that_leads_outside_is_refused_whole(tmp_path, inside):
+    archive = tmp_path / "run.zip"
+    with zipfile.ZipFile(archive, "w") as packed:
+        packed.writestr("design.toml", "a = 1")
+        packed.writestr(inside, "no")
+    (tmp_path / "runs").mkdir()
+    with pytest.raises(FileError, match="outside itself"):
+        unpack_folder(archive, tmp_path / "runs")
+    assert list((tmp_path / "runs").iterdir()) == []
+    assert not (tmp_path / "outside.txt").exists()
+
+
+def test_an_archive_that_is_none_is_reported(tmp_path):
+    archive = tmp_path / "run.zip"
+    archive.write_bytes(b"PK\x03\x04 and no more")
+    with pytest.raises(FileError, match="is no archive"):
+        unpack_folder(archive, tmp_path)
+
+
+def test_a_bomb_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("voxsoft.studio.documents.uploads.LARGEST_ARCHIVE", 1_000_000)
+    archive = tmp_path / "run.zip"
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
+        packed.writestr("zeros", bytes(2_000_000))
+    with pytest.raises(FileError, match="too large when unpacked"):
+        unpack_folder(archive, tmp_path)
+
+
+def uploaded(tmp_path, array):
+    np.save(tmp_path / "scan.npy", array)
+    return Design.from_document(tomllib.loads(design_of_array(tmp_path / "scan.npy")))
+
+
+def test_labels_of_an_array_are_parts(tmp_path):
+    labels = np.zeros((6, 4, 3), np.uint8)
+    labels[:3], labels[3:, 1:] = 1, 7
+    design = uploaded(tmp_path, labels)
+    assert [part.label for part in design.parts] == ["part-1", "part-7"]
+    filled = voxels_of(design).array
+    np.testing.assert_array_equal(filled, np.select([labels == 1, labels == 7], [1, 2]))
+    assert voxels_of(design).voxel_size == 1e-3
+
+
+@pytest.mark.parametrize("labels", [np.ones((4, 3, 5), np.int64), np.ones((4, 3, 5), bool)])
+def test_an_array_of_one_label_is_one_part(tmp_path, labels):
+    design = uploaded(tmp_path, labels)
+    assert len(design.parts) == 1
+    assert voxels_of(design).count == 60
+
+
+@pytest.mark.parametrize(
+    ("array", "what"),
+    [
+        (np.full((4, 4, 4), 0.03), "compare with a threshold"),
+        (np.full((4, 4, 4), -1000, np.int16), "numbered 0 .* to 255"),
+        (np.full((4, 4, 4), 300, np.int16), "numbered 0 .* to 255"),
+    ],
+)
+def test_an_array_that_is_no_labels_is_refused(tmp_path, array, what):
+    with pytest.raises(VoxelError, match=what):
+        uploaded(tmp_path, array)
+
+
+def test_a_mesh_that_says_its_unit_is_read_in_it(tmp_path):
+    file = tmp_path / "box.glb"
+    trimesh.creation.box((0.04, 0.02, 0.02)).export(file)
+    text = design_of_mesh(file)
+    assert "Its numbers are, as it says, in m: change" in text
+    design = Design.from_document(tomllib.loads(text))
+    assert voxels_of(design).volume == pytest.approx(16e-6, rel=0.1)
+
+
+def test_a_mesh_of_a_doubtful_size_is_asked_about(tmp_path):
+    file = tmp_path / "box_m.stl"
+    trimesh.creation.box((0.04, 0.02, 0.02)).export(file)
+    text = design_of_mesh(file)
+    assert ", m: 40 mm long" in text
+    found = [str(each) for each in check(Design.from_document(tomllib.loads(text))).findings]
+    assert any("box_m.stl is read in mm" in each for each in found)

@@ -1,0 +1,202 @@
+"""Tables of testing machines: what is understood, what is refused, and how it is said."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from voxsoft.errors import MeasurementError
+from voxsoft.materials.coupon import Curve, read_curve
+
+DATA = Path(__file__).parents[3] / "examples" / "data" / "tensile"
+STRAINS = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5]
+STRESSES = [0.0, 5e3, 9e3, 12e3, 15e3, 18e3]
+
+
+def table(heads, columns, separator=","):
+    rows = zip(*columns, strict=True)
+    lines = (separator.join(str(v) for v in row) for row in rows)
+    return "\n".join([separator.join(heads), *lines]) + "\n"
+
+
+def scaled(values, factor):
+    return [value * factor for value in values]
+
+
+@pytest.mark.parametrize(
+    ("heads", "strains", "stresses"),
+    [
+        (["strain", "stress_Pa"], STRAINS, STRESSES),
+        (["eng_strain", "eng_stress_Pa"], STRAINS, STRESSES),
+        (["Strain (%)", "Stress [MPa]"], scaled(STRAINS, 100), scaled(STRESSES, 1e-6)),
+        (["strain_percent", "stress_kpa"], scaled(STRAINS, 100), scaled(STRESSES, 1e-3)),
+        (["stretch", "Engineering Stress (Mpa)"], [1 + e for e in STRAINS], scaled(STRESSES, 1e-6)),
+        (["Extension (mm)", "Load (N)"], scaled(STRAINS, 33), scaled(STRESSES, 18e-6)),
+        (["displacement_m", "force_mN"], scaled(STRAINS, 0.033), scaled(STRESSES, 18e-3)),
+        (["strain [mm/mm]", "stress (N/mm^2)"], STRAINS, scaled(STRESSES, 1e-6)),
+        (["Dehnung [%]", "Spannung [MPa]"], scaled(STRAINS, 100), scaled(STRESSES, 1e-6)),
+        (["Weg (mm)", "Kraft (N)"], scaled(STRAINS, 33), scaled(STRESSES, 18e-6)),
+        (["Standardweg_mm", "Standardkraft_N"], scaled(STRAINS, 33), scaled(STRESSES, 18e-6)),
+        (
+            ["Standard travel (mm)", "Standard force (N)"],
+            scaled(STRAINS, 33),
+            scaled(STRESSES, 18e-6),
+        ),
+        (["Verlängerung (mm)", "Stress (Pa)"], scaled(STRAINS, 33), STRESSES),
+    ],
+)
+def test_names_and_units_are_understood(heads, strains, stresses):
+    curve = read_curve(table(heads, [strains, stresses]), area=18e-6, length=33e-3)
+    # What float division leaves.
+    np.testing.assert_allclose(curve.strain, STRAINS, atol=1e-12)
+    np.testing.assert_allclose(curve.stress, STRESSES, rtol=1e-12)
+
+
+def test_decimal_commas_unit_rows_and_other_columns():
+    text = "Probe 7\n\nTime;Strain;Stress\n(s);(%);(kPa)\n" + "".join(
+        f"0,{i};{i},5;{2 * i},25\n" for i in range(6)
+    )
+    curve = read_curve(text)
+    np.testing.assert_allclose(curve.strain, [(i + 0.5) / 100 for i in range(6)])
+    np.testing.assert_allclose(curve.stress, [2e3 * i + 250 for i in range(6)])
+
+
+def test_the_line_above_the_numbers_is_named_where_no_header_is_known():
+    text = "Sample;Ecoflex batch 7\nTemperatur;23\n\nAllongement;Contrainte\n(%);(kPa)\n0;0\n1;2\n"
+    with pytest.raises(MeasurementError, match='no column of stress among "Allongement", "Contr'):
+        read_curve(text)
+
+
+def test_a_preamble_without_separators_hides_no_commas():
+    text = "Batch 7\n\nstrain,stress_Pa\n" + "".join(f"0.{i},{i}\n" for i in range(6))
+    np.testing.assert_array_equal(read_curve(text).stress, range(6))
+
+
+def test_a_preamble_above_german_columns_is_passed_over():
+    text = "Sample;Ecoflex batch 7\n\nZeit;Weg;Kraft\ns;mm;N\n" + "".join(
+        f"{i};{3.3 * i:.1f};{1.8 * i:.1f}\n".replace(".", ",") for i in range(6)
+    )
+    curve = read_curve(text, area=18e-6, length=33e-3)
+    np.testing.assert_allclose(curve.strain, [0.1 * i for i in range(6)], atol=1e-12)
+    np.testing.assert_allclose(curve.stress, [1e5 * i for i in range(6)])
+
+
+def test_the_database_s_own_form():
+    text = (DATA / "rtv615.csv").read_text(encoding="utf-8")
+    curve = read_curve(text)
+    assert len(curve.strain) == 43
+    assert curve.strain[0] == pytest.approx(0.0445966666666667)
+    assert curve.stress[-1] == pytest.approx(0.800973333333333e6)
+
+
+def test_points_after_the_break_are_left_out():
+    curve = read_curve(table(["strain", "stress_Pa"], [[*STRAINS, 0.51], [*STRESSES, 100.0]]))
+    assert len(curve.strain) == len(STRAINS)
+    assert curve.elongation_at_break == 0.5
+
+
+@pytest.mark.parametrize(
+    ("heads", "words"),
+    [
+        (
+            ["time", "voltage"],
+            'no column of strain and no column of stress among "time", "voltage"',
+        ),
+        (["strain", "voltage"], 'no column of stress among "strain", "voltage"'),
+        (["strain", "stress"], "has no unit"),
+        (["strain", "stress_mm"], "expected a pressure"),
+        (["strain", "stress_blah"], 'no unit "blah"'),
+        (["strain_mm", "stress_kPa"], "no unit of strain"),
+        (["strain", "force_N"], "--area"),
+        (["displacement_mm", "stress_kPa"], "--length"),
+        (["displacement", "stress_kPa"], "--length|has no unit"),
+        (["true_strain", "true_stress_kPa"], "expected engineering quantities"),
+    ],
+)
+def test_wrong_columns_are_reported_in_words(heads, words):
+    with pytest.raises(MeasurementError, match=words):
+        read_curve(table(heads, [STRAINS, STRESSES]))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "is empty"),
+        ("\n\n", "is empty"),
+        ("a\0b", "is not a table"),
+        ("strain,stress_kPa\n", "has 0 points"),
+        ("strain,stress_kPa\n0,0\n1,x\n", "line 3.*not a number"),
+        ("strain,stress_kPa\n0,0\n1\n", "line 3.*not a number"),
+        (table(["strain", "strain", "stress_kPa"], [STRAINS, STRAINS, STRESSES]), "both a strain"),
+        (table(["strain", "stress_kPa"], [[0, 50, 100, 150, 200], [0, 1, 2, 3, 4]]), "percent"),
+        (table(["strain", "stress_kPa"], [[0, 1, 2, 1, 0, 1], [0, 1, 2, 1, 0, 1]]), "a cycle"),
+        (table(["strain", "stress_kPa"], [[0, 1, 2, 3, 4], [0, 1, "nan", 1, 2]]), "not finite"),
+        (table(["strain", "stress_kPa"], [[0, -1, -2, -3, -4], [0, 1, 2, 1, 2]]), "zero or less"),
+    ],
+)
+def test_bad_tables_are_reported_in_words(text, words):
+    with pytest.raises(MeasurementError, match=words):
+        read_curve(text)
+
+
+def test_a_toe_is_found_and_taken_off():
+    """Slack of 2 % before a neo-Hookean coupon of E = 60 kPa, seen from 5 % on."""
+    strain = np.linspace(0.05, 1.0, 60)
+    taut = 1.0 + strain - 0.02
+    curve = Curve(strain, 20e3 * (taut - taut**-2))
+    toe = curve.toe()
+    # The line is drawn in the measure of the shifted stretch, which bends it: 5 % of the toe.
+    assert toe.strain == pytest.approx(0.02, rel=0.06)
+    assert toe.offset == pytest.approx(-toe.young * toe.strain)
+    corrected = curve.corrected("strain")
+    assert abs(corrected.toe().strain) < 0.1 * toe.strain
+    np.testing.assert_array_equal(curve.corrected("off").strain, curve.strain)
+    np.testing.assert_allclose(curve.corrected("stress").stress, curve.stress - toe.offset)
+
+
+def test_an_offset_of_the_load_cell_is_found():
+    strain = np.linspace(0.0, 1.0, 60)
+    stretch = 1.0 + strain
+    for mode, stress in (
+        ("uniaxial", stretch - stretch**-2),
+        ("equibiaxial", stretch - stretch**-5),
+        ("planar", stretch - stretch**-3),
+    ):
+        toe = Curve(strain, 20e3 * stress + 3e3, mode).toe()
+        # Exact: this is the line that is fitted.
+        assert toe.offset == pytest.approx(3e3)
+        assert toe.young == pytest.approx(60e3)
+
+
+def test_the_uncertainty_of_a_toe_is_its_scatter_over_specimens():
+    strain = np.linspace(0.01, 1.0, 60)
+    stretch = 1.0 + strain
+    toes = [
+        Curve(strain, 20e3 * (stretch - stretch**-2) + 200.0 * noise).toe()
+        for noise in np.random.default_rng(5).standard_normal((200, 60))
+    ]
+    # 200 specimens know their standard deviation to 5 %; three times that.
+    scatter = np.std([toe.strain for toe in toes])
+    assert np.mean([toe.uncertainty for toe in toes]) == pytest.approx(scatter, rel=0.15)
+
+
+def test_few_points_at_the_start_tell_no_toe():
+    assert Curve(np.linspace(0.2, 3.0, 20), np.linspace(5e3, 60e3, 20)).toe() is None
+
+
+@pytest.mark.parametrize(
+    ("strain", "sign", "words"),
+    [
+        ((0.0, 1.0), -1.0, "stress is negative while strain grows to 1"),
+        ((-0.3, 0.0), -1.0, "stress is positive while strain falls to -0.3"),
+        ((-0.3, 1.0), -1.0, "while strain grows to 1"),
+    ],
+)
+def test_a_stress_of_the_wrong_sign_is_refused(strain, sign, words):
+    """A card of it would be a rubber that pushes where it should pull."""
+    stretch = 1.0 + np.linspace(*strain, 30)
+    stress = 20e3 * (stretch - stretch**-2)
+    with pytest.raises(MeasurementError, match=words + r".*turn the sign"):
+        Curve(stretch - 1.0, sign * stress)
+    # A load cell whose zero is off by more than all of the curve says nothing of its sign.
+    Curve(stretch - 1.0, stress - 1e6)
