@@ -15,18 +15,19 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::brick::Within;
-use crate::coarse::Coarse;
-use crate::color::{color_order, interleave};
+use crate::element::coarse::Coarse;
+use crate::element::hex8::Within;
+use crate::element::ties::Ties;
 use crate::hyperelastic::LocalMaterials;
-use crate::lattice::LatticeConstants;
+use crate::lattice::color::{color_order, interleave};
+use crate::lattice::material::LatticeConstants;
 use crate::matrix::{IDENTITY, Mat3, apply_transposed};
-use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
-use crate::ties::Ties;
+use crate::term::Term;
+use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Tet, Tets};
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use crate::{
     Brick, Contact, Filling, Growth, HyperelasticMaterial, LatticeMaterial, Material, Membrane,
-    ProblemError, Warping, cube, free_faces,
+    ProblemError, Warping, element::free_faces, lattice::cube,
 };
 
 /// The six edges of a tetrahedron and, for each, the two vertices opposite to it.

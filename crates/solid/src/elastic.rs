@@ -2,8 +2,8 @@
 
 use crate::assembly::{ElementsVisitor, Visitor};
 use crate::body::Body;
-use crate::brick::{Tangent, Within};
-use crate::terms::Term;
+use crate::element::hex8::{Tangent, Within};
+use crate::term::Term;
 use crate::vector::Vec3;
 
 /// The elastic energy in J.

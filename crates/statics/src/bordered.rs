@@ -5,13 +5,14 @@
 //! `δs` (Riks 1979, doi 10.1016/0020-7683(79)90081-7). The tangent may be indefinite; it is singular only at single
 //! points of the path. Clamps that move with the load are part of `∂r/∂s`.
 //!
-//! Mixed iterations, with strains as unknowns ([`voxsoft_solid::mixed`]), come first; they are quick but may cycle, for
-//! example where layers change between taut and wrinkled. From their best state a line search continues: if the
-//! equilibria are minima of an energy among all states that satisfy the constraint, on the augmented Lagrangian
-//! `Π − s c + ρ/2 c²` (Nocedal and Wright 2006, chapter 17, doi 10.1007/978-0-387-40065-5); otherwise, which only
-//! contact needs, on the residual. The file is long because both methods share the evaluation of a state and the steps.
+//! Mixed iterations, with strains as unknowns ([`voxsoft_solid::element::assumed_strain`]), come first; they are quick
+//! but may cycle, for example where layers change between taut and wrinkled. From their best state a line search
+//! continues: if the equilibria are minima of an energy among all states that satisfy the constraint, on the augmented
+//! Lagrangian `Π − s c + ρ/2 c²` (Nocedal and Wright 2006, chapter 17, doi 10.1007/978-0-387-40065-5); otherwise, which
+//! only contact needs, on the residual. The file is long because both methods share the evaluation of a state and the
+//! steps.
 
-use voxsoft_solid::mixed::Strains;
+use voxsoft_solid::element::assumed_strain::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale};
 use voxsoft_solid::{Observer, Problem};
 

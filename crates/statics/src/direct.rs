@@ -12,7 +12,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
-use voxsoft_solid::mixed::Strains;
+use voxsoft_solid::element::assumed_strain::Strains;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Load, Problem, elastic};
 

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
+use voxsoft_solid::element::assumed_strain::Strains;
 use voxsoft_solid::matrix::axial;
-use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{Body, Brick, Fluid, Observer, Problem, Progress, elastic};
 
@@ -46,7 +46,7 @@ impl From<FactorError> for Failure {
 /// Variant of Newton's method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Way {
-    /// Mixed, with strains as unknowns ([`voxsoft_solid::mixed`]).
+    /// Mixed, with strains as unknowns ([`voxsoft_solid::element::assumed_strain`]).
     Quick,
     /// Mixed, then, if that diverges, with a line search.
     Safe,

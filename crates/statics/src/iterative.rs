@@ -4,7 +4,7 @@
 //! dimensions grow with its powers 4/3 and 2.
 
 use voxsoft_solid::assembly::Elements;
-use voxsoft_solid::mixed::Strains;
+use voxsoft_solid::element::assumed_strain::Strains;
 use voxsoft_solid::vector::{Vec3, axpy, dot};
 use voxsoft_solid::{Load, Problem, Term, elastic};
 

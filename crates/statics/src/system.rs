@@ -1,6 +1,6 @@
 //! Tangent of a problem on its free coordinates: choice between direct and iterative solver.
 
-use voxsoft_solid::mixed::Strains;
+use voxsoft_solid::element::assumed_strain::Strains;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Load, Problem, Ties};
 

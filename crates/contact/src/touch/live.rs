@@ -15,7 +15,7 @@ use std::any::Any;
 use std::collections::BTreeSet;
 
 use voxsoft_solid::assembly::Visitor;
-use voxsoft_solid::brick::Tangent;
+use voxsoft_solid::element::hex8::Tangent;
 use voxsoft_solid::vector::{Vec3, scale};
 use voxsoft_solid::{Contact, ContactMemory, ProblemError, Term};
 

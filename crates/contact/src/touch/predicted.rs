@@ -2,7 +2,7 @@
 //!
 //! A step that lets two surfaces penetrate ends under spurious pressures, whose geometric stiffness would make the next
 //! tangent indefinite. With the pressure `p` of every sample as an unknown of its own, Newton's method on `f(x) + Σ p
-//! ∂g = 0` and `p = ⟨λ − k (g − δ)⟩` solves, as for strains ([`voxsoft_solid::mixed`]),
+//! ∂g = 0` and `p = ⟨λ − k (g − δ)⟩` solves, as for strains ([`voxsoft_solid::element::assumed_strain`]),
 //!
 //! `(K + Σ k ∂g ∂gᵀ + Σ p̂ ∂²g) δ = f + Σ ⟨λ − k (g − δ)⟩ ∂g`,
 //!

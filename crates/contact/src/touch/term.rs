@@ -1,7 +1,7 @@
 //! Contact as an energy term: its energy, forces and tangent stiffness with given multipliers.
 
 use voxsoft_solid::assembly::Visitor;
-use voxsoft_solid::brick::Tangent;
+use voxsoft_solid::element::hex8::Tangent;
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, dot, scale};
 use voxsoft_solid::{ProblemError, Strain, Term};

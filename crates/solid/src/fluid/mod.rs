@@ -23,7 +23,8 @@ use std::sync::Arc;
 pub use self::motion::State as FluidMemory;
 use self::motion::State;
 use crate::assembly::Visitor;
-use crate::loads::{ExternalForce, Pressure, Vertices};
+use crate::loads::Pressure;
+use crate::loads::external_force::{ExternalForce, Vertices};
 use crate::vector::{Vec3, axpy};
 use crate::{History, Load, LoadKind, PointForces, ProblemError};
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::HyperelasticMaterial;
+use super::material::HyperelasticMaterial;
 
 /// The materials of voxels of parts that have wound fibers or a growth field: one for each direction and each share, so
 /// that voxels which differ only in their place along an axis share one.

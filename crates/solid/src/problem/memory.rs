@@ -1,9 +1,10 @@
 //! Memory of a problem: its data that depend on the load path.
 
 use super::Problem;
-use crate::brick::Within;
+use crate::element::hex8::Within;
 use crate::fluid::FluidMemory;
-use crate::loads::{TendonMemory, Vertices};
+use crate::loads::TendonMemory;
+use crate::loads::external_force::Vertices;
 use crate::vector::Vec3;
 use crate::{Contact, ContactMemory, Load, LoadKind, Tendon};
 

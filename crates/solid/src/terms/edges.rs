@@ -1,6 +1,6 @@
-use super::{Strain, Term};
 use crate::assembly::Visitor;
-use crate::brick::Tangent;
+use crate::element::hex8::Tangent;
+use crate::term::{Strain, Term};
 use crate::vector::{Vec3, axpy, dot, norm, scale, sub};
 
 /// An edge constraint.

@@ -1,8 +1,8 @@
 use serde::{Deserialize, Serialize};
 
-use super::{Strain, Term};
 use crate::assembly::{Visitor, add_product, add_row_sums};
-use crate::membrane::Membrane;
+use crate::element::membrane::Membrane;
+use crate::term::{Strain, Term};
 use crate::vector::Vec3;
 
 /// All membranes of a body.

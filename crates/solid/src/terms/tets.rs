@@ -1,7 +1,7 @@
-use super::{Strain, Term};
 use crate::assembly::Visitor;
-use crate::brick::Tangent;
+use crate::element::hex8::Tangent;
 use crate::matrix::cross_matrix;
+use crate::term::{Strain, Term};
 use crate::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 
 /// A volume constraint.

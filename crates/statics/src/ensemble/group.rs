@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use pulp::{Simd, WithSimd};
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
-use voxsoft_solid::lanes::Lanes;
+use voxsoft_solid::lattice::lanes::Lanes;
 use voxsoft_solid::vector::{Vec3, norm, sub};
 
 use super::factor::{Factor, Solve};

@@ -3,9 +3,10 @@
 //!
 //! Each SIMD lane of the processor holds one candidate, so that constraints and blocks of the tangent are processed one
 //! after the other with contiguous loads, whatever the mesh. All lanes take a mixed Newton step together, with strains
-//! as unknowns ([`voxsoft_solid::mixed`]); the position on the load path is individual. A candidate that has come to
-//! rest makes room for the next one, so a slow one holds up no other. Groups of lanes run side by side on threads. A
-//! lane never sees its neighbors: the bits of a result depend neither on them, nor on the number of lanes or threads.
+//! as unknowns ([`voxsoft_solid::element::assumed_strain`]); the position on the load path is individual. A candidate
+//! that has come to rest makes room for the next one, so a slow one holds up no other. Groups of lanes run side by side
+//! on threads. A lane never sees its neighbors: the bits of a result depend neither on them, nor on the number of lanes
+//! or threads.
 //!
 //! # Why Newton's method and not relaxation
 //!

@@ -5,7 +5,7 @@
 //! of `D` that have changed since are corrected exactly (Sherman, Morrison and Woodbury):
 //! `(A + E Δ Eᵀ)⁻¹ = A⁻¹ − C (Δ⁻¹ + Eᵀ C)⁻¹ Cᵀ` with `C = A⁻¹ E`.
 
-use voxsoft_solid::brick::{Tangent, Within};
+use voxsoft_solid::element::hex8::{Tangent, Within};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Load, Problem, elastic};
 

@@ -28,8 +28,8 @@ mod stepper;
 mod turns;
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
-use voxsoft_solid::brick::Tangent;
-use voxsoft_solid::hands::{Hands, shortest_edge};
+use voxsoft_solid::element::hex8::Tangent;
+use voxsoft_solid::loads::grabs::{Hands, shortest_edge};
 use voxsoft_solid::vector::{Vec3, add, axpy};
 use voxsoft_solid::{Ask, Damping, LiveStatus, Problem, State, Viscosity};
 

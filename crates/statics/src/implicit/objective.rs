@@ -1,6 +1,6 @@
 //! Objective of a step: `κ/2 |x − y|²_M` plus the energy of the body, its loads and the grabs.
 
-use voxsoft_solid::brick::Within;
+use voxsoft_solid::element::hex8::Within;
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
 use voxsoft_solid::{Grab, Problem, elastic};
 

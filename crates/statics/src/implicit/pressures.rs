@@ -13,7 +13,7 @@
 //! nothing changes, `p = pₙ` and therefore `p = K (J − 1)`: the rest is that of the material. On the way the volume is
 //! off by `(p − pₙ)/r`, and the remainder shrinks by about `μ/r` in each step.
 
-use voxsoft_solid::brick::{Pressure, Within};
+use voxsoft_solid::element::hex8::{Pressure, Within};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Brick};
 

@@ -1,7 +1,7 @@
 //! Test for rest, and the critical damping that reaches it soonest.
 
 use voxsoft_solid::balance::{balance_of_forces, is_still_with};
-use voxsoft_solid::hands::loads_end;
+use voxsoft_solid::loads::grabs::loads_end;
 use voxsoft_solid::vector::{Vec3, add, dot, sub};
 use voxsoft_solid::{LiveStatus, State, elastic};
 

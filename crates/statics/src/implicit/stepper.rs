@@ -1,7 +1,7 @@
 //! Stepper interface of implicit runs.
 
 use voxsoft_solid::breakdown::Breakdown;
-use voxsoft_solid::hands::still_state;
+use voxsoft_solid::loads::grabs::still_state;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Ask, Grab, LiveStatus, Look, Method, Problem, ProblemError, State, Stepper};
 

@@ -1,7 +1,7 @@
 //! Forces and energies of a state, and the test for rest.
 
 use voxsoft_solid::balance::{NEGLIGIBLE_STRAIN, balance_of_forces, is_still_with};
-use voxsoft_solid::hands::loads_end;
+use voxsoft_solid::loads::grabs::loads_end;
 use voxsoft_solid::vector::{Vec3, add, dot, scale, sub};
 use voxsoft_solid::{Problem, State, Term, elastic};
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
-use voxsoft_solid::hands::{Hands, shortest_edge};
+use voxsoft_solid::loads::grabs::{Hands, shortest_edge};
 use voxsoft_solid::{Damping, LiveStatus, Load, Observer, Problem, State, Status, Term, Viscosity};
 
 use super::Transient;

@@ -3,7 +3,7 @@
 use voxsoft_solid::Observer;
 use voxsoft_solid::State;
 use voxsoft_solid::breakdown::Breakdown;
-use voxsoft_solid::brick::Within;
+use voxsoft_solid::element::hex8::Within;
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
 
 use super::energy::Now;

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use voxsoft_solid::breakdown::Breakdown;
-use voxsoft_solid::hands::still_state;
+use voxsoft_solid::loads::grabs::still_state;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
     Ask, Grab, LiveStatus, Look, Method, Problem, ProblemError, Progress, State, Stepper,

@@ -1,7 +1,7 @@
 //! Interactive run that continues between calls, with changes of loads and grabs.
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
-use voxsoft_solid::hands::{Hands, loads_end, shortest_edge, still_state};
+use voxsoft_solid::loads::grabs::{Hands, loads_end, shortest_edge, still_state};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
     Ask, Grab, LiveStatus, Look, Method, Problem, ProblemError, State, Stepper, elastic,

@@ -7,8 +7,8 @@
 use std::any::Any;
 
 use crate::assembly::Visitor;
-use crate::brick::Tangent;
-use crate::terms::{Strain, Term};
+use crate::element::hex8::Tangent;
+use crate::term::{Strain, Term};
 use crate::vector::Vec3;
 use crate::{Contact, ContactMemory, Images, ProblemError};
 

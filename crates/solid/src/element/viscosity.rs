@@ -13,7 +13,7 @@
 //! `s` is the gradient of the deviatoric energy, the other is linear in the strain.
 
 use crate::Body;
-use crate::brick::{BrickStress, Within};
+use crate::element::hex8::{BrickStress, Within};
 use crate::vector::Vec3;
 
 /// Viscous history variables of all voxels.

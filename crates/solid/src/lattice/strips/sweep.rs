@@ -4,7 +4,7 @@ use pulp::Simd;
 
 use super::kernels::Kernel;
 use super::{Columns, Strip, Strips};
-use crate::lanes::{Lanes, Spans, Volumes, Wide};
+use crate::lattice::lanes::{Lanes, Spans, Volumes, Wide};
 
 /// Data of a sweep.
 ///

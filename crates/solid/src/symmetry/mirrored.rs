@@ -8,8 +8,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::assembly::{Visitor, check_indices};
-use crate::loads::{ExternalForce, Pressure, Vertices};
-use crate::terms::{Membranes, Strain, Term};
+use crate::loads::Pressure;
+use crate::loads::external_force::{ExternalForce, Vertices};
+use crate::term::{Strain, Term};
+use crate::terms::Membranes;
 use crate::vector::{Vec3, axpy};
 use crate::{Membrane, ProblemError};
 

@@ -1,5 +1,5 @@
 //! Positions, constants and rotated frames of a group of voxels, one in each lane; the formulas stand in
-//! [`crate::brick`].
+//! [`crate::element::hex8`].
 
 use pulp::Simd;
 
@@ -7,8 +7,8 @@ use super::number::{
     MOST_LANES, Nine, Number, Six, Three, apply, apply_transposed, cofactors, cross, dot, multiply,
     to_sym,
 };
-use crate::brick::{Brick, Filling, Warping};
-use crate::brick_energy::AXES;
+use crate::element::coordinates::AXES;
+use crate::element::hex8::{Brick, Filling, Warping};
 use crate::hyperelastic::{HyperelasticMaterial, Model};
 use crate::vector::Vec3;
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use pulp::{Simd, WithSimd};
 
 use super::{Columns, Kind, Strip, Strips, slabs};
-use crate::lanes::{Lanes, Spans, Volumes};
+use crate::lattice::lanes::{Lanes, Spans, Volumes};
 
 /// Pointers shared by threads: the slabs that run at the same time touch different slots and places.
 #[derive(Clone, Copy)]

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::{TOGETHER, Together};
-use crate::brick::{Brick, BrickMatrix, Carried, Faces, Filling, Warping};
+use crate::element::hex8::{Brick, BrickMatrix, Carried, Faces, Filling, Warping};
 use crate::hyperelastic::{Fiber, HyperelasticMaterial, Model};
 use crate::vector::Vec3;
 

@@ -17,7 +17,8 @@
 //! move along `n` and `t`: a uniform stress that leaves the face `n` free has only a part along `t` there, and meets it
 //! in `b eₜ` alone, which does not change along `t`, so that its work on both faces cancels. As their mean along `c`
 //! vanishes as well, uniform stress does no work on them except that of the lateral stress, which is zero: the patch
-//! test holds. The last one is that of [`crate::warping`] with `b` the axis of the clamp, and takes its place.
+//! test holds. The last one is that of [`crate::element::warping_modes`] with `b` the axis of the clamp, and takes its
+//! place.
 //!
 //! # Small strain
 //!
@@ -26,8 +27,8 @@
 //! `(A + k b bᵀ) q = −(B + k b cᵀ) s` ,  `k = K/2G` ,
 //!
 //! with `A` and `B` the mean products of the deviators of modes with modes and with the voxel's strains `s`, and `b`
-//! and `c` the mean changes of volume: one pressure for each voxel, as in [`crate::brick`]. So `q = Q s`, and with
-//! `P = A⁻¹B`, `r = A⁻¹b`, `β = bᵀr`,
+//! and `c` the mean changes of volume: one pressure for each voxel, as in [`crate::element::hex8`]. So `q = Q s`, and
+//! with `P = A⁻¹B`, `r = A⁻¹b`, `β = bᵀr`,
 //!
 //! `Q = −P − ζ r (cᵀ − bᵀP)` ,  `ζ = k/(1 + k β)` .
 //!
@@ -61,11 +62,12 @@
 
 use std::sync::OnceLock;
 
-use crate::brick_energy::{AXES, OFF, Rotated, SHAPE, Shaped};
-use crate::clamp_drivers::{Drivers, dot_all};
+use crate::element::coordinates::{AXES, OFF, SHAPE, Shaped};
+use crate::element::faces::{Clamped, across};
+use crate::element::generalized_strain::{Drivers, dot_all};
+use crate::element::rotated::Rotated;
 use crate::hyperelastic::Response;
 use crate::hyperelastic::symmetric::{Sym, determinant_response};
-use crate::warping::Faces;
 
 const SQRT_2: f64 = std::f64::consts::SQRT_2;
 
@@ -74,14 +76,6 @@ const POINTS: usize = 8;
 
 /// Largest number of modes: four for each of the two axes across the clamp's.
 const MODES: usize = 8;
-
-/// A voxel at a clamp: the axis of its held faces, its free faces across, and those of them under pressure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Clamped {
-    axis: usize,
-    free: [[bool; 2]; 3],
-    pressed: [[bool; 2]; 3],
-}
 
 /// Mode data that depend on the faces alone.
 struct Table {
@@ -121,30 +115,6 @@ struct Amplitudes<'a> {
 }
 
 impl Clamped {
-    /// Classifies a voxel with held faces on one axis; `None` if no face is free to draw in.
-    pub fn of(faces: &Faces) -> Option<Self> {
-        let has = |sides: [bool; 2]| sides.contains(&true);
-        let mut axes = (0..3).filter(|&axis| has(faces.held[axis]));
-        let (axis, further) = (axes.next()?, axes.next());
-        // A voxel whose face across the clamp is free, the end of a stub, warps as other free faces do.
-        if further.is_some() || has(faces.free[axis]) {
-            return None;
-        }
-        let mut own = Self {
-            axis,
-            free: [[false; 2]; 3],
-            pressed: [[false; 2]; 3],
-        };
-        for (n, t) in across(axis) {
-            // Modes of the faces `n` move the faces of `t`.
-            if !has(faces.stiff[t]) {
-                own.free[n] = faces.free[n];
-                own.pressed[n] = [0, 1].map(|side| faces.free[n][side] && faces.pressed[n][side]);
-            }
-        }
-        (own.free != own.pressed).then_some(own)
-    }
-
     fn table(self) -> &'static Table {
         static TABLES: [OnceLock<Table>; 3 << 8] = [const { OnceLock::new() }; 3 << 8];
         let place = across(self.axis)
@@ -238,12 +208,6 @@ impl Clamped {
         });
         Mode { along, strain }
     }
-}
-
-/// The two axes across an axis, each with the other of them.
-fn across(axis: usize) -> [(usize, usize); 2] {
-    let (_, j, k) = AXES[axis];
-    [(j, k), (k, j)]
 }
 
 fn gauss_point(g: usize) -> [f64; 3] {

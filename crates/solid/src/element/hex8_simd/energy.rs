@@ -1,5 +1,5 @@
 //! The energy's gradient and Hessian by the generalized coordinates, one voxel in each lane; the formulas stand in
-//! [`crate::brick_energy`], [`crate::warping`] and [`crate::hyperelastic`].
+//! [`crate::element::coordinates`], [`crate::element::warping_modes`] and [`crate::hyperelastic`].
 //!
 //! The mean of `det` over two points `S ± r Ĥ` is `det S + r² S : cof Ĥ` without remainder, so that the change of
 //! volume needs no points.
@@ -10,7 +10,7 @@ use pulp::Simd;
 
 use super::frame::Constants;
 use super::number::{Nine, Number, Six, Three, cofactors, dot, to_matrix, to_sym};
-use crate::brick_energy::{AXES, Axes, OFF, SHAPE};
+use crate::element::coordinates::{AXES, Axes, OFF, SHAPE};
 use crate::hyperelastic::Model;
 
 const HALF_ROOT: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -20,7 +20,7 @@ const SQRT_2: f64 = std::f64::consts::SQRT_2;
 const VOLUMES: [f64; 2] = [0.1, 10.0];
 /// Newton's method squares an error of a quarter to rounding.
 const ROOT_ITERATIONS: usize = 6;
-/// Stretch below which the scalar code continues the thickness ratios ([`crate::brick_thickness`]).
+/// Stretch below which the scalar code continues the thickness ratios ([`crate::element::thickness`]).
 pub(super) const LEAST_STRETCH: f64 = 0.2;
 
 /// A row of generalized coordinates, or of derivatives by them.
@@ -530,7 +530,7 @@ impl<S: Simd> Point<S> {
     }
 }
 
-/// The reliefs of [`crate::warping`] for each pair of axes and side: (pair, side, shear, across, along).
+/// The reliefs of [`crate::element::warping_modes`] for each pair of axes and side: (pair, side, shear, across, along).
 const RELIEFS: [(usize, usize, usize, usize, usize); 6] = [
     (0, 0, 3, 1, 2),
     (0, 1, 3, 2, 1),

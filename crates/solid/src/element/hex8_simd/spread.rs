@@ -1,5 +1,5 @@
 //! Forces and stiffness at the corners from stress and moduli in the rotated frame, one voxel in each lane; the
-//! formulas stand in [`crate::brick`].
+//! formulas stand in [`crate::element::hex8`].
 
 use pulp::Simd;
 
@@ -9,12 +9,13 @@ use super::number::{
     MOST_LANES, Nine, Number, Three, apply, axial, cross, cross_columns, dot, multiply, to_matrix,
     to_sym,
 };
-use crate::brick_energy::{AXES, SHAPE};
+use crate::element::coordinates::{AXES, SHAPE};
 
 /// Entries of the stiffness matrix of a voxel.
 pub(super) const ENTRIES: usize = 24 * 24;
 
-/// Stress of a group in the rotated frame, with the terms from the rotation of the frame (`y` in [`crate::brick`]).
+/// Stress of a group in the rotated frame, with the terms from the rotation of the frame (`y` in
+/// [`crate::element::hex8`]).
 struct Turned<S: Simd> {
     stress: Nine<S>,
     hourglass: [Three<S>; 3],

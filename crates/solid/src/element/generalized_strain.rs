@@ -1,7 +1,9 @@
-//! Drivers of the modes at a clamp: strains of the voxel, faded out where these are large ([`crate::clamped`]).
+//! Drivers of the modes at a clamp: strains of the voxel, faded out where these are large
+//! ([`crate::element::clamp_modes`]).
 
-use crate::brick_energy::{Rotated, SHAPE, Shaped};
-use crate::brick_thickness::positive;
+use crate::element::coordinates::{SHAPE, Shaped};
+use crate::element::rotated::Rotated;
+use crate::element::thickness::positive;
 
 /// All `d`, and `φ` with two derivatives by `ρ²`, the sum of their squares, and the derivatives of `ρ²`.
 pub(crate) struct Drivers {

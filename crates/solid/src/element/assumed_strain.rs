@@ -19,7 +19,7 @@
 
 use crate::Body;
 use crate::assembly::ElementsVisitor;
-use crate::terms::{Strain, Term};
+use crate::term::{Strain, Term};
 use crate::vector::Vec3;
 
 /// The strain of every element of a body, as plain data.

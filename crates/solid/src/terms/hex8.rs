@@ -1,10 +1,10 @@
-use super::{Strain, Term};
 use crate::assembly::{Elements, ElementsVisitor, Visitor};
 use crate::batches::{groups_in_order, in_order};
-use crate::brick::{Brick, BrickMatrix, Carried, Tangent, Within};
-use crate::brick_lanes::{TOGETHER, Together};
+use crate::element::hex8::{Brick, BrickMatrix, Carried, Tangent, Within};
+use crate::element::hex8_simd::{TOGETHER, Together};
+use crate::element::ties::Ties;
 use crate::hyperelastic::HyperelasticMaterial;
-use crate::ties::Ties;
+use crate::term::{Strain, Term};
 use crate::vector::Vec3;
 
 /// Batch sizes: voxels whose forces, or stiffness matrices of 4.6 kB, are kept until they are added.

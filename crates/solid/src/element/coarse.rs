@@ -2,14 +2,14 @@
 //!
 //! The mesh is that of the small voxels, so that searches for places need not change. A cube of `2 × 2 × 2` full ones
 //! of one material is one element with the eight outer corners; the vertices between these are hanging nodes, tied to
-//! them ([`crate::ties`]), in the cube and where it meets small voxels. Masses go from tied vertices to their masters:
-//! the mass and its center are kept.
+//! them ([`crate::element::ties`]), in the cube and where it meets small voxels. Masses go from tied vertices to their
+//! masters: the mass and its center are kept.
 
 use std::collections::HashSet;
 
-use crate::free_faces::is_full;
-use crate::ties::Ties;
-use crate::warping::Faces;
+use crate::element::faces::Faces;
+use crate::element::free_faces::is_full;
+use crate::element::ties::Ties;
 use crate::{Brick, Filling, ProblemError};
 
 /// Sum of the numbers of opposite corners.

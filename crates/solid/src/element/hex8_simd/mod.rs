@@ -1,9 +1,10 @@
 //! Several voxels at once, one in each SIMD lane: forces, stiffness and carried strains.
 //!
-//! The formulas are those of [`crate::brick`], whose scalar code is the reference and handles the rare cases: materials
-//! without a form in invariants, softening, fibers, voxels at clamps ([`crate::clamped`]), voxels that are inside out,
-//! pressed flat or blown up tenfold. Groups follow the list of voxels, whatever the number of threads. As in
-//! [`crate::lanes`] everything is inlined by force into the one function that the processor was chosen for.
+//! The formulas are those of [`crate::element::hex8`], whose scalar code is the reference and handles the rare cases:
+//! materials without a form in invariants, softening, fibers, voxels at clamps ([`crate::element::clamp_modes`]),
+//! voxels that are inside out, pressed flat or blown up tenfold. Groups follow the list of voxels, whatever the number
+//! of threads. As in [`crate::lattice::lanes`] everything is inlined by force into the one function that the processor
+//! was chosen for.
 
 mod energy;
 mod frame;
@@ -14,8 +15,8 @@ mod tests;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::brick::{Brick, BrickMatrix, BrickStrain, Carried, Pressure};
-use crate::brick_energy::SHAPE;
+use crate::element::coordinates::SHAPE;
+use crate::element::hex8::{Brick, BrickMatrix, BrickStrain, Carried, Pressure};
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::vector::Vec3;
 use energy::{Row, Shape, Square, Volume, add_deviatoric};

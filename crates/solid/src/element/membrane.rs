@@ -240,7 +240,7 @@ impl Membrane {
     }
 
     /// Adds the forces at `positions` of the stress at a `predicted` strain, extrapolated by its tangent to the present
-    /// strain ([`crate::mixed`]).
+    /// strain ([`crate::element::assumed_strain`]).
     pub fn add_predicted_forces(&self, predicted: Plane, positions: &[Vec3], forces: &mut [Vec3]) {
         let (tangents, strain) = self.strain(positions);
         let rest: Plane = std::array::from_fn(|k| strain[k] - predicted[k]);

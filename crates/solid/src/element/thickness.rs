@@ -1,6 +1,6 @@
 //! Thinning of the layers of a bent voxel, in proportion to their present shape.
 
-use crate::brick_energy::Axes;
+use crate::element::coordinates::Axes;
 use crate::hyperelastic::symmetric::Sym;
 
 /// A stretch along a voxel's axis below which thickness ratios are continued smoothly: a voxel pressed flat must not

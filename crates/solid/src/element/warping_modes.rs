@@ -40,88 +40,19 @@
 //! The mean stress at a free face has no shear there; in an isotropic material then `S` has none either, and `S̃ = S`:
 //! the patch test holds at any strain.
 
-use crate::brick_energy::{AXES, BrickStrain, OFF, Rotated, SHAPE, Shaped};
-use crate::brick_thickness::positive;
-use crate::clamped::Clamped;
+use crate::element::coordinates::{AXES, BrickStrain, OFF, SHAPE, Shaped};
+use crate::element::faces::Warping;
+use crate::element::rotated::Rotated;
+use crate::element::thickness::positive;
 use crate::hyperelastic::symmetric::{Response, Sym};
 
 const SQRT_2: f64 = std::f64::consts::SQRT_2;
 
-/// `c` of a plate: the rest of Reissner's factor 5/6.
-const PLATE: f64 = 1.0 / 6.0;
-
-/// The parts `cⱼ, cₖ` of the shear of each pair of axes by which free faces soften a voxel. Pairs are named by the axis
-/// that is not in them, `j` and `k` come after it in turn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Warping {
-    parts: [[f64; 2]; 3],
-    /// Lateral contraction at a clamp, in place of the parts.
-    pub(crate) clamped: Option<Clamped>,
-}
-
-/// Classification of the faces of a voxel at the two sides of each axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Faces {
-    /// Free faces: nothing is joined to them, and nothing holds them.
-    pub free: [[bool; 2]; 3],
-    /// Stiff faces, which must not move along their axis except with their corners.
-    pub stiff: [[bool; 2]; 3],
-    /// Faces held in full by a clamp or a stiffer material.
-    pub held: [[bool; 2]; 3],
-    /// Faces under pressure.
-    pub pressed: [[bool; 2]; 3],
-}
-
 impl Warping {
-    /// No warping: no free face.
-    pub const NONE: Self = Self {
-        parts: [[0.0; 2]; 3],
-        clamped: None,
-    };
-
-    /// The parts of each pair of axes.
-    pub(crate) fn parts(&self) -> [[f64; 2]; 3] {
-        self.parts
-    }
-
-    /// The warping of a full voxel of isotropic rubber.
-    pub fn of(faces: &Faces) -> Self {
-        let clamped = Clamped::of(faces);
-        if clamped.is_some() {
-            return Self {
-                clamped,
-                ..Self::NONE
-            };
-        }
-        let free = faces.free.map(|sides| sides.map(u8::from).iter().sum());
-        let stiff = faces.stiff.map(|[low, high]| low || high);
-        let parts = AXES.map(|(b, j, k)| {
-            // Modes of the faces of one axis move those of the other.
-            let counts = [(j, k), (k, j)].map(|(n, t)| if stiff[t] { 0 } else { free[n] });
-            let thin = [free[j], free[k]].map(|count| count == 2);
-            match thin {
-                [false, false] => condensed(counts),
-                _ if free[b] == 1 => condensed(counts),
-                [true, true] => [0.0; 2],
-                _ => std::array::from_fn(|side| {
-                    if thin[side] && counts[side] == 2 {
-                        PLATE
-                    } else {
-                        0.0
-                    }
-                }),
-            }
-        });
-        Self {
-            parts,
-            ..Self::NONE
-        }
-    }
-
     /// The relieved stretch, at which the isochoric energy is evaluated.
     fn relieved(&self, stretch: &Sym) -> Sym {
         let mut relieved = *stretch;
-        for (pair, (b, j, k)) in self.parts.iter().zip(AXES) {
+        for (pair, (b, j, k)) in self.parts().iter().zip(AXES) {
             relieved[OFF + b] *= (1.0 - pair[0] - pair[1]).sqrt();
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 relieved[n] -= part * Thinning::of(stretch, OFF + b, n, t).value;
@@ -136,7 +67,7 @@ impl Warping {
         for axis in 0..3 {
             slopes[axis][axis] = 1.0;
         }
-        for (pair, (b, j, k)) in self.parts.iter().zip(AXES) {
+        for (pair, (b, j, k)) in self.parts().iter().zip(AXES) {
             slopes[OFF + b][OFF + b] = (1.0 - pair[0] - pair[1]).sqrt();
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 let thinning = Thinning::of(stretch, OFF + b, n, t);
@@ -150,7 +81,7 @@ impl Warping {
 
     /// Adds the second derivatives of the relieved stretch, each component times its `force`.
     fn add_curvature(&self, stretch: &Sym, force: &Sym, hessian: &mut [[f64; SHAPE]; SHAPE]) {
-        for (pair, (b, j, k)) in self.parts.iter().zip(AXES) {
+        for (pair, (b, j, k)) in self.parts().iter().zip(AXES) {
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 let places = [OFF + b, n, t];
                 let curvature = Thinning::of(stretch, OFF + b, n, t).hessian();
@@ -219,13 +150,6 @@ impl Thinning {
             [by_s_b, by_a_b, by_b_b],
         ]
     }
-}
-
-/// `cⱼ, cₖ` for numbers of free faces.
-fn condensed([j, k]: [u8; 2]) -> [f64; 2] {
-    let [j, k] = [f64::from(j), f64::from(k)];
-    let determinant = (30.0 - 4.0 * j) * (30.0 - 4.0 * k) - 36.0 * j * k;
-    [(j, k), (k, j)].map(|(own, other)| own * 5.0 * (30.0 - 10.0 * other) / determinant)
 }
 
 impl Rotated {

@@ -1,7 +1,7 @@
 //! Vectors of three in several lanes at once, and edges and tetrahedra in them.
 //!
-//! The caller chooses the meaning of a lane: the next constraint along the grid ([`crate::strips`]), or the same
-//! constraint of another body of the same mesh.
+//! The caller chooses the meaning of a lane: the next constraint along the grid ([`crate::lattice::strips`]), or the
+//! same constraint of another body of the same mesh.
 //!
 //! Everything here and in the kernels is inlined by force and free of closures: code outside the one function that the
 //! processor was chosen for is compiled for the oldest processor, and calls of it would take ten times as long.

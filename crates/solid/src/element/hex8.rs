@@ -41,13 +41,18 @@
 //! elastic strain as well; the difference is of the order of `b (S − 1)`, and `b` is one of the voxel size.)
 //!
 //! If faces of a voxel are free, `W` sees less of its mean shear: `S̃` in place of `S`, see [`Warping`] and
-//! [`crate::warping`].
+//! [`crate::element::warping_modes`].
 //!
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
 //! derivatives of `R`, see [`Brick::stiffness`].
 
-pub use crate::brick_energy::{BrickStrain, BrickStress, Filling, Pressure};
-use crate::brick_energy::{Modes, Parted, Rotated, SHAPE};
+pub use crate::element::coordinates::{BrickStrain, BrickStress};
+use crate::element::coordinates::{Modes, SHAPE};
+pub use crate::element::faces::{Faces, Warping};
+use crate::element::hex8_energy::Parted;
+pub use crate::element::hex8_energy::Pressure;
+pub use crate::element::rotated::Filling;
+use crate::element::rotated::Rotated;
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::hyperelastic::symmetric::{to_matrix, to_sym};
 use crate::matrix::{
@@ -55,7 +60,6 @@ use crate::matrix::{
     solve_spd, transpose,
 };
 use crate::vector::{Vec3, add, axpy, scale, sub};
-pub use crate::warping::{Faces, Warping};
 
 /// Corner `c` of a cube lies at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
 const CORNERS: usize = 8;
@@ -143,7 +147,7 @@ pub struct BrickResponse {
     pub forces: [Vec3; CORNERS],
 }
 
-/// Strain and pressure of a voxel as unknowns of their own (mixed formulation, [`crate::mixed`]).
+/// Strain and pressure of a voxel as unknowns of their own (mixed formulation, [`crate::element::assumed_strain`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Carried {
     pub(crate) strain: BrickStrain,
@@ -358,7 +362,8 @@ impl Brick {
         self.spread_stress(&state, &stress, material)
     }
 
-    /// The forces of the stress extrapolated to `positions`: `Φ'(ê) + Φ''(ê, p̂)(e − ê)`; see [`crate::mixed`].
+    /// The forces of the stress extrapolated to `positions`: `Φ'(ê) + Φ''(ê, p̂)(e − ê)`; see
+    /// [`crate::element::assumed_strain`].
     pub fn predicted_forces(
         &self,
         material: &HyperelasticMaterial,
@@ -419,7 +424,7 @@ impl Brick {
     /// `Ω(T − [y]×) + dT − [dy]×` and `Ωsₘ + dsₘ`, with `G dy = axial(dN − dNᵀ) − dG y`.
     ///
     /// With `carried` strain and pressure, stress and moduli are evaluated at these, and only the frame is that of
-    /// `positions`; see [`crate::mixed`].
+    /// `positions`; see [`crate::element::assumed_strain`].
     pub fn stiffness(
         &self,
         material: &HyperelasticMaterial,

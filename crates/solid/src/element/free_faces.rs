@@ -1,4 +1,4 @@
-//! Free faces of hyperelastic voxels, which may warp ([`crate::warping`]).
+//! Free faces of hyperelastic voxels, which may warp ([`crate::element::warping_modes`]).
 //!
 //! A face is free if no other voxel has it, no membrane lies on it, and no clamp holds it on any axis (held along its
 //! normal, it is a plane of symmetry with material behind). As warping moves the adjacent faces too, those must not be
@@ -6,12 +6,12 @@
 //! fibers keep a face from warping as the rubber around them would: neither warps.
 //!
 //! At faces that a clamp holds in full, or another material that is much stiffer, the free ones beside them draw in as
-//! well ([`crate::clamped`]), except those under pressure.
+//! well ([`crate::element::clamp_modes`]), except those under pressure.
 
 use std::collections::HashSet;
 
+use crate::element::faces::Faces;
 use crate::hyperelastic::HyperelasticMaterial;
-use crate::warping::Faces;
 use crate::{Brick, Filling, Membrane};
 
 /// Tolerance for fraction and distribution of the material of a full voxel: a voxel at the edge of a box whose faces
