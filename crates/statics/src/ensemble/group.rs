@@ -11,7 +11,7 @@ use super::factor::{Factor, Solve};
 use super::lane::{Lane, Look};
 use super::layout::Layout;
 use super::tangent::{Advance, Forces, Tangent};
-use super::{Settled, Task};
+use super::task::{Settled, Task};
 use voxsoft_solid::Status;
 
 struct Count;
