@@ -1,7 +1,7 @@
 //! Reports of contact and of poses of rigid objects.
 
 use serde::{Deserialize, Serialize};
-use voxsoft_contact::touch::live::LiveTouch;
+use voxsoft_contact::surface_contact::live::LiveTouch;
 use voxsoft_solid::matrix::{Mat3, apply};
 use voxsoft_solid::vector::{Vec3, add, scale, sub};
 use voxsoft_solid::{Problem, Rigid};

@@ -1,7 +1,7 @@
 //! Contact field over the vertices of the body, for Python.
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use voxsoft_contact::touch::Touch;
+use voxsoft_contact::surface_contact::Touch;
 use voxsoft_solid::vector::Vec3;
 
 use crate::arrays::from_rows;

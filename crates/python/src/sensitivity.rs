@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering;
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use voxsoft_contact::touch::Touch;
+use voxsoft_contact::surface_contact::Touch;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Problem, RecordedContact};
 use voxsoft_statics::Varied;

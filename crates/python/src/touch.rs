@@ -5,10 +5,12 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use voxsoft_contact::skin::Skin;
-use voxsoft_contact::touch::bonds::{Bond, Side, Solid};
-use voxsoft_contact::touch::law::Laws;
-use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Carried, Description, Flip, Surface, Touch};
+use voxsoft_contact::surface::{Carried, Surface};
+use voxsoft_contact::surface_contact::bonds::Bond;
+use voxsoft_contact::surface_contact::law::Laws;
+use voxsoft_contact::surface_contact::rigid::Frame;
+use voxsoft_contact::surface_contact::tie::{Side, Solid};
+use voxsoft_contact::surface_contact::{Description, Flip, Touch};
 use voxsoft_player::Placed;
 use voxsoft_scene::Touching as Played;
 use voxsoft_solid::matrix::Mat3;

@@ -1,7 +1,7 @@
 //! Results of contact for Python.
 
 use pyo3::prelude::*;
-use voxsoft_contact::touch::PairReport;
+use voxsoft_contact::surface_contact::PairReport;
 use voxsoft_solid::vector::Vec3;
 
 /// Contact of two surfaces that touch.

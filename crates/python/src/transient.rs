@@ -3,7 +3,7 @@ use std::sync::{Arc, Mutex};
 
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
-use voxsoft_contact::touch::PairReport;
+use voxsoft_contact::surface_contact::PairReport;
 use voxsoft_solid::vector::{Vec3, axpy, dot};
 use voxsoft_solid::{Damping, Progress, State, elastic};
 use voxsoft_statics::Transient;

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use voxsoft_contact::touch::live::LiveTouch;
-use voxsoft_contact::touch::{Carried, Description, Surface};
+use voxsoft_contact::surface::{Carried, Surface};
+use voxsoft_contact::surface_contact::Description;
+use voxsoft_contact::surface_contact::live::LiveTouch;
 use voxsoft_player::{Placed, Touching as Played};
 use voxsoft_solid::{Problem, ProblemError, Rigid, Springs};
 

@@ -9,9 +9,11 @@ use common::touching::{
     NONE, YOUNG, add_box, add_rigid, corners_of, join, moved, pairs_at, touch_of,
 };
 use common::{block, rubber, vertices_where};
-use voxsoft_contact::touch::bonds::{Bond, Side, Solid};
-use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Description, Surface, Touch};
+use voxsoft_contact::surface::Surface;
+use voxsoft_contact::surface_contact::bonds::Bond;
+use voxsoft_contact::surface_contact::rigid::Frame;
+use voxsoft_contact::surface_contact::tie::{Side, Solid};
+use voxsoft_contact::surface_contact::{Description, Touch};
 use voxsoft_solid::balance::balance;
 use voxsoft_solid::conformance::check_term;
 use voxsoft_solid::matrix::IDENTITY;

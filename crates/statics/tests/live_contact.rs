@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use common::touching::{NONE, YOUNG, add_box, add_rigid, corners_of, join};
 use common::{block, rubber, vertices_where};
-use voxsoft_contact::touch::live::LiveTouch;
-use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Description, Surface};
+use voxsoft_contact::surface::Surface;
+use voxsoft_contact::surface_contact::Description;
+use voxsoft_contact::surface_contact::live::LiveTouch;
+use voxsoft_contact::surface_contact::rigid::Frame;
 use voxsoft_solid::matrix::IDENTITY;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{

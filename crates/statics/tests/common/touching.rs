@@ -1,7 +1,8 @@
 //! Bodies with contact.
 
-use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Carried, Description, PairReport, Surface, Touch};
+use voxsoft_contact::surface::{Carried, Surface};
+use voxsoft_contact::surface_contact::rigid::Frame;
+use voxsoft_contact::surface_contact::{Description, PairReport, Touch};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Clamp, History, Load, Mesh, Motion, Problem};
 use voxsoft_statics::Answer;

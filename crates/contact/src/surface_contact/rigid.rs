@@ -9,8 +9,8 @@ use voxsoft_solid::matrix::{IDENTITY, Mat3, multiply, transpose};
 use voxsoft_solid::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use voxsoft_solid::{ProblemError, Spring};
 
-use super::gap::unit;
-use super::surface::Carried;
+use crate::gap::unit;
+use crate::surface::Carried;
 
 /// Corners of a cube that make a regular tetrahedron.
 const CORNERS: [Vec3; 4] = [

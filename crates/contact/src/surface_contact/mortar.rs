@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use voxsoft_solid::vector::{Vec3, add, dot, norm, scale, sub};
 
-use super::bonds::{Side, Solid, Tie};
-use super::gap::{area, closest, normal};
-use super::{Carried, LEAST_AREA};
+use super::LEAST_AREA;
+use super::tie::{Side, Solid, Tie};
 use crate::bounds::Bounds;
+use crate::gap::{area, closest, normal};
 use crate::skin::Carriers;
+use crate::surface::Carried;
 use crate::tree::Tree;
 
 /// Largest product of the normals of bonded surfaces, which look at each other.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use voxsoft_solid::Contact;
 use voxsoft_solid::vector::Vec3;
 
-use super::surface::Sample;
+use super::sample::Sample;
 use super::{Touch, between};
 
 /// Distance within which a place counts as in a plane of symmetry, in voxels: edges cross there up to this tolerance,

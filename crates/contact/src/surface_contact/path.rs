@@ -6,14 +6,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 use voxsoft_solid::{Contact, ContactMemory};
 
-use super::bonds::Hold;
-use super::gap::{self, normal};
-use super::recording::Recording;
-use super::state::{Facing, Memory, State};
+use super::state::{Facing, Hold, Memory, Recording, State};
 use super::{
-    APART, BOUND, CREEP, Carried, DEEPEST, LOOKS, Meeting, PATIENCE, PRECISE, STICK, STIFFER,
-    STRAYED, Spot, Touch, listing,
+    APART, BOUND, CREEP, DEEPEST, LOOKS, Meeting, PATIENCE, PRECISE, STICK, STIFFER, STRAYED, Spot,
+    Touch, listing,
 };
+use crate::gap::{self, normal};
+use crate::surface::Carried;
 use crate::threads;
 
 /// Largest ratio of pairs in the sparsity pattern to pairs with stiffness, if these are [`MANY`]. Sliding samples pass

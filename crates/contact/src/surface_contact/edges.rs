@@ -9,10 +9,10 @@
 
 use voxsoft_solid::vector::{Vec3, add, dot, norm, scale, sub};
 
-use super::gap::{Crossing, crossing, normal, unit};
 use super::listing::{DEPTH, REACH};
 use super::state::{Facing, State};
 use super::{CLEARANCE, DEEPEST, Touch};
+use crate::gap::{Crossing, crossing, normal, unit};
 use crate::threads;
 
 /// Largest sine by which a face may lean over the normal of its edge: before the edge meets another one, where the
@@ -223,7 +223,8 @@ impl Touch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::touch::{Carried, Description, Surface};
+    use crate::surface::{Carried, Surface};
+    use crate::surface_contact::Description;
     use voxsoft_solid::Contact;
     use voxsoft_solid::conformance::check_term;
 

@@ -2,10 +2,10 @@
 //!
 //! # Gap
 //!
-//! Points of every surface search the closest triangle in front of them ([`gap`]), and edges the edges that they cross
-//! ([`edges`]). Both sides have samples, and each point stands for half of its area, so that neither is the master. A
-//! sample keeps its side: a triangle counts only if the sample was in front of it at the last accepted state, so that
-//! the far side of a thin wall is never mistaken for an obstacle.
+//! Points of every surface search the closest triangle in front of them ([`crate::gap`]), and edges the edges that they
+//! cross ([`edges`]). Both sides have samples, and each point stands for half of its area, so that neither is the
+//! master. A sample keeps its side: a triangle counts only if the sample was in front of it at the last accepted state,
+//! so that the far side of a thin wall is never mistaken for an obstacle.
 //!
 //! # Augmented Lagrangian
 //!
@@ -28,7 +28,6 @@ mod edges;
 mod facing;
 mod field;
 mod friction;
-pub(crate) mod gap;
 pub mod law;
 mod listing;
 pub mod live;
@@ -39,21 +38,23 @@ mod predicted;
 mod recording;
 mod report;
 pub mod rigid;
+mod sample;
 mod state;
-pub(crate) mod surface;
 mod term;
+pub mod tie;
 
 use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
 use voxsoft_solid::{Contact, ProblemError};
 
 use bonds::Bond;
 pub use field::{ContactField, Flip};
-use gap::normal;
 use law::Laws;
 pub use report::PairReport;
+use sample::Sample;
 use state::{Facing, State};
-use surface::Sample;
-pub use surface::{Carried, Surface};
+
+use crate::gap::{self, normal};
+use crate::surface::{Carried, Surface};
 
 /// Contact penalty in units of Young's modulus over the voxel size. The larger it is, the more each correction reduces
 /// the multiplier error; at 100, blocks of rubber held against bulging take ten times as many corrections.
@@ -257,7 +258,7 @@ impl Touch {
             surface.check(rest.len())?;
             let number = number as u32;
             let first = (points.len() as u32, triangles.len() as u32);
-            let own = surface::samples(surface, number, first, rest);
+            let own = sample::samples(surface, number, first, rest);
             let area: f64 = own.iter().map(|sample| sample.area).sum();
             least_area.push(LEAST_AREA * area / own.len().max(1) as f64);
             samples.extend(own);
@@ -275,7 +276,7 @@ impl Touch {
             }
         }
         // Points first, so that sample numbers equal point numbers.
-        samples.extend(surface::edges(&triangles, &surface_of));
+        samples.extend(sample::edges(&triangles, &surface_of));
         let mut touch = Self {
             description,
             samples,

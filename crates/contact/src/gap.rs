@@ -10,7 +10,7 @@ use voxsoft_solid::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 
 /// Closest point of a triangle to a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Closest {
+pub(crate) struct Closest {
     /// Barycentric coordinates.
     pub weights: [f64; 3],
     /// Vector from it to the point, m.
@@ -27,7 +27,7 @@ impl Closest {
 }
 
 /// Area of a triangle.
-pub(super) fn area(corners: [Vec3; 3]) -> f64 {
+pub(crate) fn area(corners: [Vec3; 3]) -> f64 {
     norm(doubled(corners)) / 2.0
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn doubled([a, b, c]: [Vec3; 3]) -> Vec3 {
 }
 
 /// Outward unit normal; zero for a degenerate triangle.
-pub(super) fn normal(corners: [Vec3; 3]) -> Vec3 {
+pub(crate) fn normal(corners: [Vec3; 3]) -> Vec3 {
     unit(doubled(corners))
 }
 
@@ -51,7 +51,7 @@ pub(crate) fn unit(a: Vec3) -> Vec3 {
 }
 
 /// Closest-point projection onto a triangle (Ericson, Real-Time Collision Detection, section 5.1.5).
-pub(super) fn closest(point: Vec3, [a, b, c]: [Vec3; 3]) -> Closest {
+pub(crate) fn closest(point: Vec3, [a, b, c]: [Vec3; 3]) -> Closest {
     let (ab, ac) = (sub(b, a), sub(c, a));
     let weights = || {
         let ap = sub(point, a);
@@ -100,7 +100,7 @@ pub(super) fn closest(point: Vec3, [a, b, c]: [Vec3; 3]) -> Closest {
 }
 
 /// Gradients of the barycentric coordinates in the plane of a triangle, 1/m.
-pub(super) fn barycentric_gradients([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
+pub(crate) fn barycentric_gradients([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
     let doubled = doubled([a, b, c]);
     let square = dot(doubled, doubled);
     // Each is the opposite edge, turned inward by a right angle, over twice the area.
@@ -109,7 +109,7 @@ pub(super) fn barycentric_gradients([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
 
 /// Crossing of two lines, such as edges of two surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Crossing {
+pub(crate) struct Crossing {
     /// Closest points of the lines, as parts of the ways between the given points.
     pub along: [f64; 2],
     /// Unit vector of the cross product of their directions.
@@ -130,7 +130,7 @@ const LEAST_SINE: f64 = 0.05;
 /// `s = −A·r`, `t = B·r`. When both move, the normal turns by `∂n = −(n·∂a) A − (n·∂b) B`, as that of a triangle does
 /// with the gradients of its coordinates: the formulas above hold with `−A, A` for the points of the first line and
 /// `−B, B` for those of the second.
-pub(super) fn crossing(first: [Vec3; 2], second: [Vec3; 2]) -> Option<Crossing> {
+pub(crate) fn crossing(first: [Vec3; 2], second: [Vec3; 2]) -> Option<Crossing> {
     let (a, b) = (sub(first[1], first[0]), sub(second[1], second[0]));
     let c = cross(a, b);
     let square = dot(c, c);
@@ -152,7 +152,7 @@ pub(super) fn crossing(first: [Vec3; 2], second: [Vec3; 2]) -> Option<Crossing> 
 }
 
 /// Affine coordinates of a point's foot in the plane of a triangle.
-pub(super) fn affine(point: Vec3, corners: [Vec3; 3]) -> [f64; 3] {
+pub(crate) fn affine(point: Vec3, corners: [Vec3; 3]) -> [f64; 3] {
     let gradients = barycentric_gradients(corners);
     let second = dot(gradients[1], sub(point, corners[0]));
     let third = dot(gradients[2], sub(point, corners[0]));

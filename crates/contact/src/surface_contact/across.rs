@@ -3,10 +3,10 @@
 use voxsoft_solid::Contact;
 use voxsoft_solid::vector::{Vec3, dot};
 
-use super::gap::{area, normal};
 use super::law::{Across, Law, Laws, Normal};
 use super::state::{Memory, State};
 use super::{Meeting, ROUNDING, Touch};
+use crate::gap::{area, normal};
 
 /// Smallest cosine between the normal of a triangle and the direction against which its contact presses: 60 degrees.
 const TOWARD: f64 = 0.5;

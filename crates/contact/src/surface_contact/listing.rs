@@ -3,9 +3,9 @@
 use voxsoft_solid::vector::{Vec3, dot};
 
 use super::Touch;
-use super::gap::{closest, normal};
 use super::state::State;
 use crate::bounds::Bounds;
+use crate::gap::{closest, normal};
 use crate::threads;
 use crate::tree::Tree;
 

@@ -3,31 +3,13 @@
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, sub};
 use voxsoft_solid::{Contact, Moment, RecordedContact};
 
-use super::gap::normal;
-use super::state::{Facing, Memory, State};
+use super::state::{Facing, Held, Memory, Recording, State};
 use super::{CREEP, Touch};
+use crate::gap::normal;
 
 /// Smallest cosine between the normal at an edge and that of the triangle there for which the facing turns with the
 /// triangle: 0.08 degrees. Surfaces in contact are so near that the normal to the closest point is rounded to 10⁻⁵.
 const FLUSH: f64 = 1.0 - 1e-6;
-
-/// Multipliers and facing of all samples at an equilibrium, before its correction.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Held {
-    now: Vec<Memory>,
-    facing: Vec<Option<Facing>>,
-    stick: f64,
-    extrapolated: Option<f64>,
-    precise: bool,
-}
-
-/// Recorded part of a path.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Recording {
-    accepted: Vec<Moment<Held>>,
-    /// Moments since the last accepted state.
-    pending: Vec<Moment<Held>>,
-}
 
 impl State {
     /// Records an equilibrium before its correction, if the path is recorded.

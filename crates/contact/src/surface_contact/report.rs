@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 
-use super::gap::normal;
 use super::state::State;
 use super::{Meeting, NEARLY, Touch};
+use crate::gap::normal;
 
 /// Largest gap of a point between pressed ones that counts as in contact, in voxels: facets of a ball of four voxels
 /// radius are a thirtieth of a voxel apart from it.

@@ -7,10 +7,10 @@ use voxsoft_solid::vector::{Vec3, dot, scale};
 use voxsoft_solid::{ProblemError, Strain, Term};
 
 use super::friction::Friction;
-use super::gap::{barycentric_gradients, crossing};
 use super::law::Normal;
 use super::state::{Facing, State};
 use super::{Meeting, Spot, Touch, edges};
+use crate::gap::{barycentric_gradients, crossing};
 
 /// Largest excess of a pressure over its multiplier that enters the geometric stiffness, in units of Young's modulus. A
 /// step that lets surfaces penetrate deeply causes spurious pressures, which would make the stiffness indefinite.

@@ -2,10 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use voxsoft_solid::Moment;
 use voxsoft_solid::vector::Vec3;
-
-use super::bonds::Hold;
-use super::recording::Recording;
 
 /// Multipliers and friction anchor of one contact sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -47,6 +45,33 @@ impl Facing {
             }
         }
     }
+}
+
+/// Multiplier and damage of one tie.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Hold {
+    /// Multiplier: the force on the first surface, N.
+    pub force: Vec3,
+    /// True once the tie is broken.
+    pub broken: bool,
+}
+
+/// Multipliers and facing of all samples at an equilibrium, before its correction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Held {
+    pub(super) now: Vec<Memory>,
+    pub(super) facing: Vec<Option<Facing>>,
+    pub(super) stick: f64,
+    pub(super) extrapolated: Option<f64>,
+    pub(super) precise: bool,
+}
+
+/// Recorded part of a path.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Recording {
+    pub(super) accepted: Vec<Moment<Held>>,
+    /// Moments since the last accepted state.
+    pub(super) pending: Vec<Moment<Held>>,
 }
 
 /// State of all samples.

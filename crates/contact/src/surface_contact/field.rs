@@ -6,8 +6,9 @@
 
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale};
 
-use super::gap::{area, normal, unit};
-use super::{Carried, Spot, Touch};
+use super::{Spot, Touch};
+use crate::gap::{area, normal, unit};
+use crate::surface::Carried;
 
 /// Smallest cosine between the normal of a triangle and the direction against which it is pressed: 60 degrees.
 const TOWARD: f64 = 0.5;
@@ -160,7 +161,8 @@ impl Touch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::touch::{Description, Surface};
+    use crate::surface::Surface;
+    use crate::surface_contact::Description;
     use voxsoft_solid::Contact;
 
     const CUBE: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];

@@ -3,9 +3,9 @@
 use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 
 use super::Touch;
-use super::gap::{Closest, closest, normal, unit};
 use super::listing;
 use super::state::{Facing, State};
+use crate::gap::{Closest, closest, normal, unit};
 
 /// Tolerance beside an edge within which a sample counts as flush with it, in voxels.
 const FLUSH: f64 = 1e-6;
@@ -200,7 +200,8 @@ impl Touch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::touch::{Carried, Description, Surface, listing};
+    use crate::surface::{Carried, Surface};
+    use crate::surface_contact::{Description, listing};
     use voxsoft_solid::vector::add;
 
     /// Prism of height 1 over an L of lengths 2 and width 1, its concave edge at (1, 1).

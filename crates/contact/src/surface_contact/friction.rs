@@ -2,10 +2,10 @@
 
 use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
 
-use super::gap::unit;
 use super::law::{Along, Law, Tangential};
 use super::state::{Memory, State};
 use super::{Spot, Touch};
+use crate::gap::unit;
 
 /// Friction on one sample.
 #[derive(Debug, Clone, Copy)]
@@ -47,8 +47,8 @@ impl Friction {
         }
     }
 
-    /// Friction of a sample at `point` with a slip penalty `k` (N/m), which moves along the axes that are `free`, by the
-    /// law and at the corners of the triangle of its anchor; `None` without a bound or an anchor.
+    /// Friction of a sample at `point` with a slip penalty `k` (N/m), which moves along the axes that are `free`, by
+    /// the law and at the corners of the triangle of its anchor; `None` without a bound or an anchor.
     pub(super) fn new<'a>(
         memory: &Memory,
         k: f64,

@@ -22,7 +22,8 @@ use voxsoft_solid::{Contact, ContactMemory, ProblemError, Term};
 use super::friction::Friction;
 use super::law::Normal;
 use super::state::{Memory, State};
-use super::{Description, LOOKS, Meeting, Touch, gap, listing};
+use super::{Description, LOOKS, Meeting, Touch, listing};
+use crate::gap;
 
 /// Contact penalty in units of Young's modulus over the voxel size, and slip penalty relative to it.
 const PENALTY: f64 = 8.0;
