@@ -17,6 +17,7 @@ mod materials;
 mod mesh;
 mod modes;
 mod player;
+mod problem_parts;
 mod sensitivity;
 mod shapes;
 mod simulate;
@@ -49,7 +50,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<touch_answer::PyObjectPose>()?;
     module.add_class::<touch_answer::PyTouchHistory>()?;
     module.add_class::<simulate::PyProblem>()?;
-    module.add_class::<simulate::PyProblemParts>()?;
+    module.add_class::<problem_parts::PyProblemParts>()?;
     module.add_class::<ensemble::PyEnsemble>()?;
     module.add_class::<fields::PyFields>()?;
     module.add_class::<display::PyOutline>()?;
