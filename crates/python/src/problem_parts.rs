@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use voxsoft_contact::surface_contact::Flip;

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
-    Body, Brick, Fluid, Load, Material, Membrane, Mesh, Problem, ProblemError, State, elastic,
+    Body, Fluid, Hex8, Load, Material, Membrane, Mesh, Problem, ProblemError, State, elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Status, Trial, relax, simulate};
 
@@ -144,23 +144,23 @@ impl PyProblem {
         let positions = self.positions(&positions)?;
         let now = self.now();
         let body = now.body();
-        let pressures = body.brick_term().pressures(&positions);
+        let pressures = body.hex8_term().pressures(&positions);
         let mut found = vec![f64::NAN; self.own()];
-        for (index, brick) in body.small_bricks().iter().enumerate() {
-            found[brick.vertices[0] as usize] = pressures[body.element_of(index)];
+        for (index, hex8) in body.small_hex8s().iter().enumerate() {
+            found[hex8.vertices[0] as usize] = pressures[body.element_of(index)];
         }
         Ok(PyArray1::from_vec(py, found))
     }
 
     /// Largest isochoric energy (J/m³) so far of each hyperelastic voxel, if any has the Mullins effect.
     fn peaks<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        let peaks = self.now().body().brick_term().peaks()?;
+        let peaks = self.now().body().hex8_term().peaks()?;
         Some(PyArray1::from_vec(py, peaks))
     }
 
     /// Sets the largest isochoric energies (J/m³) so far of hyperelastic voxels.
     fn set_peaks(&self, peaks: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
-        let (got, expected) = (peaks.len()?, self.now().body().bricks().len());
+        let (got, expected) = (peaks.len()?, self.now().body().hex8s().len());
         if got != expected {
             let what = "peaks of voxels";
             return Err(to_python(ProblemError::Length {
@@ -427,12 +427,12 @@ impl PyProblem {
     }
 
     /// Pressures in the order of hyperelastic voxels, read at the vertices at their lowest corners.
-    pub(crate) fn brick_pressures(&self, array: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
+    pub(crate) fn hex8_pressures(&self, array: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
         let array = array.as_array();
         let now = self.now();
-        let bricks = now.body().bricks();
-        let pressure = |brick: &Brick| array.get(brick.vertices[0] as usize).copied();
-        let found: Option<Vec<f64>> = bricks.iter().map(pressure).collect();
+        let hex8s = now.body().hex8s();
+        let pressure = |hex8: &Hex8| array.get(hex8.vertices[0] as usize).copied();
+        let found: Option<Vec<f64>> = hex8s.iter().map(pressure).collect();
         match found {
             Some(found) if found.iter().all(|p| p.is_finite()) => Ok(found),
             _ => Err(PyValueError::new_err(

@@ -16,7 +16,7 @@ use voxsoft_scene::Touching as Played;
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Body, Brick, Clamp, Contact, Images, Mesh, MirroredContact, Motion, Problem, ProblemError,
+    Body, Clamp, Contact, Hex8, Images, Mesh, MirroredContact, Motion, Problem, ProblemError,
     Rigid, Springs,
 };
 
@@ -383,10 +383,10 @@ impl TouchParts {
 
 /// Mean of Young's moduli, Pa: twice the energy at unit strain over the volume.
 fn mean_modulus(body: &Body) -> f64 {
-    let volume = |brick: &Brick| brick.volume(body.material_of(brick));
-    let bricks: f64 = body.bricks().iter().map(volume).sum();
+    let volume = |hex8: &Hex8| hex8.volume(body.material_of(hex8));
+    let hex8s: f64 = body.hex8s().iter().map(volume).sum();
     let tets: f64 = body.tets().iter().map(|tet| tet.volume).sum();
-    2.0 * body.unit_strain_energy() / (bricks + tets)
+    2.0 * body.unit_strain_energy() / (hex8s + tets)
 }
 
 fn frame_at(positions: &[Vec3], first: usize) -> [Vec3; 4] {

@@ -289,7 +289,7 @@ impl Problem {
     /// Tests whether the solution depends on the load path.
     pub fn depends_on_way(&self) -> bool {
         let contact = self.contact().is_some_and(Contact::depends_on_way);
-        let softens = self.body.brick_term().soften();
+        let softens = self.body.hex8_term().soften();
         contact || softens || self.loads.iter().any(|load| load.kind.depends_on_way())
     }
 

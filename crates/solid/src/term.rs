@@ -6,7 +6,7 @@ use crate::ProblemError;
 use crate::assembly::{
     Elements, ElementsVisitor, Visitor, add_product, add_row_sums, check_indices,
 };
-use crate::element::hex8::{Carried, Tangent};
+use crate::element::hex8::{Hex8AssumedStrain, Tangent};
 use crate::element::membrane::Plane;
 use crate::vector::Vec3;
 
@@ -83,26 +83,36 @@ pub trait Term: Debug + Send + Sync {
         });
     }
 
-    /// Predicts the strains after a step `moves` from `positions`, to first order, as carried by [`crate::element::assumed_strain`];
-    /// `None` for a term that is evaluated at the end of the step.
-    fn predict(&self, _positions: &[Vec3], _moves: &[Vec3]) -> Option<Strain> {
+    /// Predicts the strains after a step `moves` from `positions`, to first order, as carried by
+    /// [`crate::element::assumed_strain`]; `None` for a term that is evaluated at the end of the step.
+    fn predict(&self, _positions: &[Vec3], _moves: &[Vec3]) -> Option<AssumedStrain> {
         None
     }
 
     /// Adds the forces in N at `positions` of the stress of predicted strains.
-    fn add_predicted_forces(&self, _strain: &Strain, positions: &[Vec3], forces: &mut [Vec3]) {
+    fn add_predicted_forces(
+        &self,
+        _strain: &AssumedStrain,
+        positions: &[Vec3],
+        forces: &mut [Vec3],
+    ) {
         self.add_forces(positions, forces);
     }
 
     /// Visits the element matrices of the tangent in N/m at `positions` with the stress of predicted strains.
-    fn visit_predicted_stiffness(&self, _strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+    fn visit_predicted_stiffness(
+        &self,
+        _strain: &AssumedStrain,
+        positions: &[Vec3],
+        visit: Visitor<'_>,
+    ) {
         self.visit_stiffness(positions, visit);
     }
 
     /// Visits the element matrices of that tangent in batches of a size that the term chooses.
     fn visit_predicted_elements(
         &self,
-        strain: &Strain,
+        strain: &AssumedStrain,
         positions: &[Vec3],
         visit: ElementsVisitor<'_>,
     ) {
@@ -117,24 +127,24 @@ pub trait Term: Debug + Send + Sync {
 
     /// Updates carried strains by a step `moves` from `positions`; returns `false` if [`Term::predict`] there gives all
     /// that is needed.
-    fn carry(&self, _strain: &mut Strain, _positions: &[Vec3], _moves: &[Vec3]) -> bool {
+    fn update(&self, _strain: &mut AssumedStrain, _positions: &[Vec3], _moves: &[Vec3]) -> bool {
         false
     }
 }
 
-/// Predicted strains of all elements of a term, unknowns of their own ([`crate::element::assumed_strain`]): plain data that only the term
-/// can read.
+/// Predicted strains of all elements of a term, unknowns of their own ([`crate::element::assumed_strain`]): plain data
+/// that only the term can read.
 #[derive(Debug, Clone)]
-pub enum Strain {
+pub enum AssumedStrain {
     /// A number for each element: a change of length or of volume, a pressure.
     Numbers(Vec<f64>),
     /// The strain of each membrane.
     Planes(Vec<Plane>),
     /// Strain and pressure of each hyperelastic voxel.
-    Voxels(Vec<Carried>),
+    Voxels(Vec<Hex8AssumedStrain>),
 }
 
-impl Strain {
+impl AssumedStrain {
     /// The numbers of a term that predicts one for each element; empty for other terms.
     pub fn numbers(&self) -> &[f64] {
         match self {
@@ -150,7 +160,7 @@ impl Strain {
         }
     }
 
-    pub(crate) fn voxels(&self) -> Option<&[Carried]> {
+    pub(crate) fn voxels(&self) -> Option<&[Hex8AssumedStrain]> {
         match self {
             Self::Voxels(voxels) => Some(voxels),
             Self::Numbers(_) | Self::Planes(_) => None,

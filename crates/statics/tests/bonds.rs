@@ -19,7 +19,7 @@ use voxsoft_solid::conformance::check_term;
 use voxsoft_solid::matrix::IDENTITY;
 use voxsoft_solid::vector::{Vec3, norm, scale, sub};
 use voxsoft_solid::{
-    Body, Brick, Clamp, Contact, Load, Mesh, Problem, Progress, Springs, Status, Warping,
+    Body, Clamp, Contact, Hex8, Load, Mesh, Problem, Progress, Springs, Status, WarpingModes,
 };
 use voxsoft_statics::{Answer, Settings, solve};
 
@@ -115,12 +115,12 @@ fn bonded_faces_do_not_warp() {
     // Voxels in the middle of the bonded faces have no other outer face.
     for corner in [[4e-3; 3], [3e-3, 3e-3, 8e-3]] {
         let middle = |body: &Body| {
-            let lowest = |brick: &&Brick| body.rest()[brick.vertices[0] as usize];
-            let is_there = |brick: &&Brick| norm(sub(lowest(brick), corner)) < 1e-6;
-            *body.bricks().iter().find(is_there).unwrap()
+            let lowest = |hex8: &&Hex8| body.rest()[hex8.vertices[0] as usize];
+            let is_there = |hex8: &&Hex8| norm(sub(lowest(hex8), corner)) < 1e-6;
+            *body.hex8s().iter().find(is_there).unwrap()
         };
-        assert_eq!(middle(problem.body()).warping, Warping::NONE);
-        assert_ne!(middle(&apart).warping, Warping::NONE);
+        assert_eq!(middle(problem.body()).warping, WarpingModes::NONE);
+        assert_ne!(middle(&apart).warping, WarpingModes::NONE);
     }
 }
 

@@ -4,7 +4,7 @@ use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::element::hex8::Tangent;
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, dot, scale};
-use voxsoft_solid::{ProblemError, Strain, Term};
+use voxsoft_solid::{AssumedStrain, ProblemError, Term};
 
 use super::friction::Friction;
 use super::law::Normal;
@@ -83,11 +83,18 @@ impl Term for Touch {
         self.visit_stiffness_under(state, positions, believed, visit);
     }
 
-    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
-        Some(Strain::Numbers(self.predicted_pressures(positions, moves)))
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<AssumedStrain> {
+        Some(AssumedStrain::Numbers(
+            self.predicted_pressures(positions, moves),
+        ))
     }
 
-    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+    fn visit_predicted_stiffness(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        visit: Visitor<'_>,
+    ) {
         let pressures = strain.numbers();
         let predicted = |sample: usize, _| pressures[sample];
         self.visit_stiffness_under(&self.state, positions, predicted, visit);

@@ -19,17 +19,17 @@
 
 use crate::Body;
 use crate::assembly::ElementsVisitor;
-use crate::term::{Strain, Term};
+use crate::term::{AssumedStrain, Term};
 use crate::vector::Vec3;
 
 /// The strain of every element of a body, as plain data.
 #[derive(Debug, Clone)]
-pub struct Strains {
+pub struct AssumedStrains {
     /// Strains in the order of the body's terms; `None` for terms evaluated at the present strains.
-    terms: Vec<Option<Strain>>,
+    terms: Vec<Option<AssumedStrain>>,
 }
 
-impl Strains {
+impl AssumedStrains {
     /// Predicts the strains after a step `moves` from `positions`, to first order.
     pub fn predict(body: &Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
         let predict = |term: &dyn Term| term.predict(positions, moves);
@@ -41,9 +41,9 @@ impl Strains {
     /// The strains at `positions` with prescribed pressures in the hyperelastic voxels, in Pa, positive in tension:
     /// such as those of larger voxels there.
     pub fn with_pressures(body: &Body, positions: &[Vec3], pressures: &[f64]) -> Self {
-        let bricks = body.brick_term();
-        let is_bricks = |term: &dyn Term| term.name() == bricks.name();
-        let with = |term| is_bricks(term).then(|| bricks.with_pressures(positions, pressures));
+        let hex8s = body.hex8_term();
+        let is_hex8s = |term: &dyn Term| term.name() == hex8s.name();
+        let with = |term| is_hex8s(term).then(|| hex8s.with_pressures(positions, pressures));
         Self {
             terms: body.terms().map(with).collect(),
         }
@@ -51,11 +51,11 @@ impl Strains {
 
     /// Predicts the strains after a further step.
     #[must_use]
-    pub fn carry(mut self, body: &Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
+    pub fn update(mut self, body: &Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
         for (term, strain) in body.terms().zip(&mut self.terms) {
             let goes_on = strain
                 .as_mut()
-                .is_some_and(|strain| term.carry(strain, positions, moves));
+                .is_some_and(|strain| term.update(strain, positions, moves));
             if !goes_on {
                 *strain = term.predict(positions, moves);
             }

@@ -62,9 +62,9 @@
 
 use std::sync::OnceLock;
 
-use crate::element::coordinates::{AXES, OFF, SHAPE, Shaped};
-use crate::element::faces::{Clamped, across};
-use crate::element::generalized_strain::{Drivers, dot_all};
+use crate::element::coordinates::{AXES, OFF, STRAIN_COMPONENTS, StrainFunction};
+use crate::element::faces::{ClampModes, across};
+use crate::element::generalized_strain::{GeneralizedStrains, dot_all};
 use crate::element::rotated::Rotated;
 use crate::hyperelastic::Response;
 use crate::hyperelastic::symmetric::{Sym, determinant_response};
@@ -81,8 +81,8 @@ const MODES: usize = 8;
 struct Table {
     modes: Vec<Mode>,
     /// `P` at zero thinning, and its derivative by the thinning.
-    plain: Vec<[f64; SHAPE]>,
-    thinned: Vec<[f64; SHAPE]>,
+    plain: Vec<[f64; STRAIN_COMPONENTS]>,
+    thinned: Vec<[f64; STRAIN_COMPONENTS]>,
     /// `r`.
     spread: Vec<f64>,
     /// `b` and `β`.
@@ -98,23 +98,23 @@ struct Mode {
 
 /// Condensation at a given ν: `Q`, `ζ` and the coefficients of `θ`.
 struct Follow {
-    rows: [[f64; SHAPE]; MODES],
+    rows: [[f64; STRAIN_COMPONENTS]; MODES],
     relief: f64,
-    volume: [f64; SHAPE],
+    volume: [f64; STRAIN_COMPONENTS],
 }
 
 /// The amplitudes `q` with their derivatives by the voxel's coordinates.
 struct Amplitudes<'a> {
     table: &'a Table,
     follow: &'a Follow,
-    drivers: &'a Drivers,
+    strains: &'a GeneralizedStrains,
     value: [f64; MODES],
-    slope: [[f64; SHAPE]; MODES],
+    slope: [[f64; STRAIN_COMPONENTS]; MODES],
     /// `y`, if it is part of them.
-    relief: Option<&'a Shaped>,
+    relief: Option<&'a StrainFunction>,
 }
 
-impl Clamped {
+impl ClampModes {
     fn table(self) -> &'static Table {
         static TABLES: [OnceLock<Table>; 3 << 8] = [const { OnceLock::new() }; 3 << 8];
         let place = across(self.axis)
@@ -142,8 +142,8 @@ impl Clamped {
             .map(|mode| {
                 let own = |g: usize| mode.strain[g];
                 let with = modes.iter().map(|other| mean(&own, &|g| other.strain[g]));
-                let plain = (0..SHAPE).map(|k| mean(&own, &strain(0.0, k)));
-                let whole = (0..SHAPE).map(|k| mean(&own, &strain(1.0, k)));
+                let plain = (0..STRAIN_COMPONENTS).map(|k| mean(&own, &strain(0.0, k)));
+                let whole = (0..STRAIN_COMPONENTS).map(|k| mean(&own, &strain(1.0, k)));
                 with.chain(plain).chain(whole).collect()
             })
             .collect();
@@ -152,12 +152,16 @@ impl Clamped {
         }
         eliminate(&mut system);
         let part = |row: &Vec<f64>, start: usize| std::array::from_fn(|k| row[start + k]);
-        let plain: Vec<[f64; SHAPE]> = system.iter().map(|row| part(row, count)).collect();
+        let plain: Vec<[f64; STRAIN_COMPONENTS]> =
+            system.iter().map(|row| part(row, count)).collect();
         let thinned = system.iter().zip(&plain).map(|(row, plain)| {
-            let whole: [f64; SHAPE] = part(row, count + SHAPE);
+            let whole: [f64; STRAIN_COMPONENTS] = part(row, count + STRAIN_COMPONENTS);
             std::array::from_fn(|k| whole[k] - plain[k])
         });
-        let spread: Vec<f64> = system.iter().map(|row| row[count + 2 * SHAPE]).collect();
+        let spread: Vec<f64> = system
+            .iter()
+            .map(|row| row[count + 2 * STRAIN_COMPONENTS])
+            .collect();
         Table {
             thinned: thinned.collect(),
             yielding: volume.iter().zip(&spread).map(|(b, r)| b * r).sum(),
@@ -289,13 +293,13 @@ impl Table {
         // k = (1 + 2κ)/3(1 − κ) with κ = ν/(1 − ν).
         let stiff = 1.0 + 2.0 * thinning;
         let relief = stiff / (3.0 * (1.0 - thinning) + stiff * self.yielding);
-        let mut rows = [[0.0; SHAPE]; MODES];
+        let mut rows = [[0.0; STRAIN_COMPONENTS]; MODES];
         for ((row, plain), thinned) in rows.iter_mut().zip(&self.plain).zip(&self.thinned) {
             *row = std::array::from_fn(|k| -(plain[k] + thinning * thinned[k]));
         }
         let missing = self.volume_of(&rows);
         for (row, spread) in rows.iter_mut().zip(&self.spread) {
-            for k in 0..SHAPE {
+            for k in 0..STRAIN_COMPONENTS {
                 row[k] -= relief * spread * missing[k];
             }
         }
@@ -307,7 +311,7 @@ impl Table {
     }
 
     /// `cᵀ + bᵀQ`.
-    fn volume_of(&self, rows: &[[f64; SHAPE]; MODES]) -> [f64; SHAPE] {
+    fn volume_of(&self, rows: &[[f64; STRAIN_COMPONENTS]; MODES]) -> [f64; STRAIN_COMPONENTS] {
         std::array::from_fn(|k| {
             let own = if k < 3 { 1.0 } else { 0.0 };
             let theirs = rows.iter().zip(&self.volume);
@@ -335,13 +339,13 @@ impl<'a> Amplitudes<'a> {
     fn of(
         table: &'a Table,
         follow: &'a Follow,
-        drivers: &'a Drivers,
-        relief: Option<&'a Shaped>,
+        strains: &'a GeneralizedStrains,
+        relief: Option<&'a StrainFunction>,
     ) -> Self {
-        let (mut value, mut slope) = ([0.0; MODES], [[0.0; SHAPE]; MODES]);
+        let (mut value, mut slope) = ([0.0; MODES], [[0.0; STRAIN_COMPONENTS]; MODES]);
         for m in 0..table.modes.len() {
             let row = &follow.rows[m];
-            (value[m], slope[m]) = drivers.faded(row);
+            (value[m], slope[m]) = strains.faded(row);
             if let Some(relief) = relief {
                 value[m] += table.spread[m] * relief.value;
                 for (sum, own) in slope[m].iter_mut().zip(&relief.gradient) {
@@ -352,7 +356,7 @@ impl<'a> Amplitudes<'a> {
         Self {
             table,
             follow,
-            drivers,
+            strains,
             value,
             slope,
             relief,
@@ -360,8 +364,8 @@ impl<'a> Amplitudes<'a> {
     }
 
     /// The strain of all modes at a Gauss point, and its derivatives (rows) by the coordinates.
-    fn strain(&self, state: &Rotated, g: usize) -> (Sym, [Sym; SHAPE]) {
-        let (mut strain, mut slopes) = ([0.0; 6], [[0.0; 6]; SHAPE]);
+    fn strain(&self, state: &Rotated, g: usize) -> (Sym, [Sym; STRAIN_COMPONENTS]) {
+        let (mut strain, mut slopes) = ([0.0; 6], [[0.0; 6]; STRAIN_COMPONENTS]);
         for (m, mode) in self.table.modes.iter().enumerate() {
             let scale = state.stretch[mode.along];
             for (k, &own) in mode.strain[g].iter().enumerate() {
@@ -383,21 +387,21 @@ impl<'a> Amplitudes<'a> {
         &self,
         state: &Rotated,
         force: &[f64; MODES],
-        hessian: &mut [[f64; SHAPE]; SHAPE],
+        hessian: &mut [[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
     ) {
         // Forces on the `d`, and on `y`.
-        let (mut pull, mut press) = ([0.0; SHAPE], 0.0);
+        let (mut pull, mut press) = ([0.0; STRAIN_COMPONENTS], 0.0);
         for (m, mode) in self.table.modes.iter().enumerate() {
             let scaled = force[m] * state.stretch[mode.along];
             press += scaled * self.table.spread[m];
-            for k in 0..SHAPE {
+            for k in 0..STRAIN_COMPONENTS {
                 let both = force[m] * self.slope[m][k];
                 hessian[mode.along][k] += both;
                 hessian[k][mode.along] += both;
                 pull[k] += scaled * self.follow.rows[m][k];
             }
         }
-        self.drivers.add_faded_curvatures(&pull, hessian);
+        self.strains.add_faded_curvatures(&pull, hessian);
         if let Some(relief) = self.relief {
             let own = relief.hessian.as_flattened();
             for (sum, own) in hessian.as_flattened_mut().iter_mut().zip(own) {
@@ -412,24 +416,29 @@ impl Rotated {
     /// by that factor.
     pub(crate) fn clamped_mean(
         &self,
-        clamped: Clamped,
+        clamped: ClampModes,
         thinning: f64,
         second: Option<f64>,
         function: impl Fn(&Sym) -> Response,
-    ) -> Shaped {
+    ) -> StrainFunction {
         let table = clamped.table();
-        let (follow, drivers) = (table.follow(thinning), Drivers::of(self));
-        let plain = Amplitudes::of(table, &follow, &drivers, None);
+        let (follow, strains) = (table.follow(thinning), GeneralizedStrains::of(self));
+        let plain = Amplitudes::of(table, &follow, &strains, None);
         let relief = self.relief(&plain, thinning, second.is_some()).1;
-        let amplitudes = Amplitudes::of(table, &follow, &drivers, Some(&relief));
+        let amplitudes = Amplitudes::of(table, &follow, &strains, Some(&relief));
         self.mean_with(&amplitudes, thinning, second, function)
     }
 
     /// `J`, with its Hessian if `second`.
-    pub(crate) fn clamped_volume(&self, clamped: Clamped, thinning: f64, second: bool) -> Shaped {
+    pub(crate) fn clamped_volume(
+        &self,
+        clamped: ClampModes,
+        thinning: f64,
+        second: bool,
+    ) -> StrainFunction {
         let table = clamped.table();
-        let (follow, drivers) = (table.follow(thinning), Drivers::of(self));
-        let plain = Amplitudes::of(table, &follow, &drivers, None);
+        let (follow, strains) = (table.follow(thinning), GeneralizedStrains::of(self));
+        let plain = Amplitudes::of(table, &follow, &strains, None);
         let (mut volume, relief) = self.relief(&plain, thinning, second);
         let beta = table.yielding;
         volume.value += beta * relief.value;
@@ -444,34 +453,39 @@ impl Rotated {
     }
 
     /// `J₁` and `y`.
-    fn relief(&self, plain: &Amplitudes<'_>, thinning: f64, second: bool) -> (Shaped, Shaped) {
+    fn relief(
+        &self,
+        plain: &Amplitudes<'_>,
+        thinning: f64,
+        second: bool,
+    ) -> (StrainFunction, StrainFunction) {
         let volume = self.mean_with(plain, thinning, second.then_some(1.0), |at| {
             determinant_response(at, second)
         });
         // θ: the part of the voxel's own strains, and that of the `q`.
-        let drivers = plain.drivers;
-        let own: [f64; SHAPE] = std::array::from_fn(|k| if k < 3 { -1.0 } else { 0.0 });
+        let strains = plain.strains;
+        let own: [f64; STRAIN_COMPONENTS] = std::array::from_fn(|k| if k < 3 { -1.0 } else { 0.0 });
         let theirs = std::array::from_fn(|k| -plain.follow.volume[k] - own[k]);
-        let (faded, slopes) = drivers.faded(&theirs);
-        let by_own = drivers.slopes(&own);
-        let left: [f64; SHAPE] =
+        let (faded, slopes) = strains.faded(&theirs);
+        let by_own = strains.slopes(&own);
+        let left: [f64; STRAIN_COMPONENTS] =
             std::array::from_fn(|k| volume.gradient[k] + by_own[k] + slopes[k]);
-        let rest = volume.value - 1.0 + dot_all(&own, &drivers.values()) + faded;
+        let rest = volume.value - 1.0 + dot_all(&own, &strains.values()) + faded;
         let [value, slope, turn] = levelling(rest).map(|x| -plain.follow.relief * x);
-        let mut relief = Shaped::zero();
+        let mut relief = StrainFunction::zero();
         relief.value = value;
         relief.gradient = left.map(|x| slope * x);
         if second {
             relief.hessian = volume.hessian;
-            drivers.add_curvatures(&own, &mut relief.hessian);
-            drivers.add_faded_curvatures(&theirs, &mut relief.hessian);
+            strains.add_curvatures(&own, &mut relief.hessian);
+            strains.add_faded_curvatures(&theirs, &mut relief.hessian);
             for (row, own) in relief.hessian.iter_mut().zip(&left) {
                 for (entry, other) in row.iter_mut().zip(&left) {
                     *entry = slope * *entry + turn * own * other;
                 }
             }
         }
-        drivers.fade(&mut relief, second);
+        strains.fade(&mut relief, second);
         (volume, relief)
     }
 
@@ -481,11 +495,11 @@ impl Rotated {
         thinning: f64,
         second: Option<f64>,
         function: impl Fn(&Sym) -> Response,
-    ) -> Shaped {
+    ) -> StrainFunction {
         let variations = AXES.map(|axes| self.variation(axes, thinning));
         let bent: [_; 3] = std::array::from_fn(|n| variations[n].slopes(AXES[n], thinning));
         let weight = 1.0 / POINTS as f64;
-        let mut mean = Shaped::zero();
+        let mut mean = StrainFunction::zero();
         let (mut moments, mut force) = ([[0.0; 6]; 3], [0.0; MODES]);
         for g in 0..POINTS {
             let at = gauss_point(g);
@@ -521,7 +535,7 @@ impl Rotated {
             for (sum, mode) in force.iter_mut().zip(&amplitudes.table.modes) {
                 *sum += dot(&mode.strain[g], &stress);
             }
-            for column in 0..SHAPE {
+            for column in 0..STRAIN_COMPONENTS {
                 let turned: Sym =
                     std::array::from_fn(|k| weight * dot(&response.tangent[k], &slopes[column]));
                 for row in 0..=column {
@@ -530,7 +544,7 @@ impl Rotated {
             }
         }
         if let Some(curvature) = second {
-            for column in 0..SHAPE {
+            for column in 0..STRAIN_COMPONENTS {
                 for row in 0..column {
                     mean.hessian[column][row] = mean.hessian[row][column];
                 }
@@ -546,7 +560,7 @@ impl Rotated {
     }
 
     /// The smallest volume ratio among the Gauss points.
-    pub(crate) fn smallest_clamped_volume(&self, clamped: Clamped, thinning: f64) -> f64 {
+    pub(crate) fn smallest_clamped_volume(&self, clamped: ClampModes, thinning: f64) -> f64 {
         let smallest = std::cell::Cell::new(f64::INFINITY);
         self.clamped_mean(clamped, thinning, None, |at| {
             let response = determinant_response(at, false);

@@ -7,10 +7,10 @@
 
 use std::collections::HashSet;
 
-use crate::element::faces::Faces;
+use crate::element::faces::FaceConditions;
 use crate::element::free_faces::is_full;
 use crate::element::ties::Ties;
-use crate::{Brick, Filling, ProblemError};
+use crate::{Filling, Hex8, ProblemError};
 
 /// Sum of the numbers of opposite corners.
 const ACROSS: usize = 7;
@@ -19,7 +19,7 @@ const ACROSS: usize = 7;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Coarse {
     /// The small voxels; empty where each is an element of its own.
-    pub small: Vec<Brick>,
+    pub small: Vec<Hex8>,
     /// The element of each small voxel.
     pub element: Vec<u32>,
     /// Members of each element: one small voxel, or eight in the order of corners.
@@ -35,10 +35,10 @@ enum Members {
 impl Coarse {
     /// Builds elements and ties from small voxels, those of each group forming one cube.
     pub fn of(
-        small: Vec<Brick>,
+        small: Vec<Hex8>,
         groups: &[[u32; 8]],
         vertices: usize,
-    ) -> Result<(Self, Vec<Brick>, Ties), ProblemError> {
+    ) -> Result<(Self, Vec<Hex8>, Ties), ProblemError> {
         let mut group_of: Vec<Option<usize>> = vec![None; small.len()];
         let mut cubes = Vec::with_capacity(groups.len());
         for (index, group) in groups.iter().enumerate() {
@@ -65,7 +65,7 @@ impl Coarse {
         }
         let (mut elements, mut members) = (Vec::new(), Vec::new());
         let mut element = vec![u32::MAX; small.len()];
-        for (index, brick) in small.iter().enumerate() {
+        for (index, hex8) in small.iter().enumerate() {
             if element[index] != u32::MAX {
                 continue;
             }
@@ -75,17 +75,17 @@ impl Coarse {
                 cube.iter()
                     .for_each(|member| element[*member as usize] = own);
                 let fraction = cube.map(|member| small[member as usize].fraction);
-                elements.push(Brick {
+                elements.push(Hex8 {
                     vertices: outer(&cube),
-                    side: 2.0 * brick.side,
+                    side: 2.0 * hex8.side,
                     fraction: fraction.iter().sum::<f64>() / 8.0,
                     filling: Filling::FULL,
-                    ..*brick
+                    ..*hex8
                 });
                 members.push(Members::Eight(cube));
             } else {
                 element[index] = own;
-                elements.push(*brick);
+                elements.push(*hex8);
                 members.push(Members::One(index as u32));
             }
         }
@@ -103,11 +103,11 @@ impl Coarse {
     }
 
     /// The faces of each element, merged from those of the small voxels.
-    pub fn merged(&self, faces: &[Option<Faces>]) -> Vec<Option<Faces>> {
+    pub fn merged(&self, faces: &[Option<FaceConditions>]) -> Vec<Option<FaceConditions>> {
         let each = self.members.iter().map(|members| match members {
             Members::One(index) => faces[*index as usize],
             Members::Eight(cube) => {
-                let all: Option<Vec<Faces>> =
+                let all: Option<Vec<FaceConditions>> =
                     cube.iter().map(|index| faces[*index as usize]).collect();
                 all.map(|all| face_of_cube(&all))
             }
@@ -118,8 +118,8 @@ impl Coarse {
 
 /// Merges the faces of a cube: a face is free, or held in full, where its four parts are; it is stiff or under pressure
 /// where one of them is.
-fn face_of_cube(all: &[Faces]) -> Faces {
-    let mut own = Faces::default();
+fn face_of_cube(all: &[FaceConditions]) -> FaceConditions {
+    let mut own = FaceConditions::default();
     for axis in 0..3 {
         for side in 0..2 {
             let on_face = |corner: &usize| corner >> (2 - axis) & 1 == side;
@@ -135,28 +135,28 @@ fn face_of_cube(all: &[Faces]) -> Faces {
 
 /// The voxels of a group in the order of the corners of their cube; `None` if they do not form one, full and of one
 /// material.
-fn in_order(small: &[Brick], group: &[u32; 8]) -> Option<[u32; 8]> {
+fn in_order(small: &[Hex8], group: &[u32; 8]) -> Option<[u32; 8]> {
     let first = small.get(group[0] as usize)?;
-    let bricks = group.map(|index| small.get(index as usize));
-    let alike = |brick: &&Brick| brick.material == first.material && is_full(brick);
-    if !bricks.iter().all(|brick| brick.as_ref().is_some_and(alike)) {
+    let hex8s = group.map(|index| small.get(index as usize));
+    let alike = |hex8: &&Hex8| hex8.material == first.material && is_full(hex8);
+    if !hex8s.iter().all(|hex8| hex8.as_ref().is_some_and(alike)) {
         return None;
     }
-    let each = || bricks.iter().flatten();
+    let each = || hex8s.iter().flatten();
     // The vertex in the middle is a corner of all of them.
-    let is_middle = |vertex: &u32| each().all(|brick| brick.vertices.contains(vertex));
+    let is_middle = |vertex: &u32| each().all(|hex8| hex8.vertices.contains(vertex));
     let middle = *first.vertices.iter().find(|vertex| is_middle(vertex))?;
     let mut found = [u32::MAX; 8];
-    for (brick, index) in each().zip(group) {
-        let at_middle = brick.vertices.iter().position(|v| *v == middle)?;
+    for (hex8, index) in each().zip(group) {
+        let at_middle = hex8.vertices.iter().position(|v| *v == middle)?;
         found[ACROSS - at_middle] = *index;
     }
-    let nodes: HashSet<u32> = each().flat_map(|brick| brick.vertices).collect();
+    let nodes: HashSet<u32> = each().flat_map(|hex8| hex8.vertices).collect();
     (!found.contains(&u32::MAX) && nodes.len() == 27).then_some(found)
 }
 
 /// The ties of the vertices of a cube that are not its corners.
-fn ties_of(members: [Brick; 8]) -> Vec<(u32, Vec<u32>)> {
+fn ties_of(members: [Hex8; 8]) -> Vec<(u32, Vec<u32>)> {
     let corner = |c: usize| members[c].vertices[c];
     let mut found = Vec::with_capacity(19);
     let mut seen = HashSet::new();

@@ -13,33 +13,33 @@ pub(crate) const OFF: usize = 3;
 pub(crate) type Modes = [Vec3; 7];
 
 /// The generalized coordinates that the energy depends on: `S` (Mandel) and `p̂₁ … p̂₃`.
-pub(crate) const SHAPE: usize = 15;
+pub(crate) const STRAIN_COMPONENTS: usize = 15;
 
 /// The stress of a voxel in its rotated frame: the gradient of the energy by the generalized coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BrickStress {
+pub struct Hex8Stress {
     pub(crate) stress: Sym,
     pub(crate) hourglass: [Vec3; 3],
 }
 
 /// The strain of a voxel in its rotated frame: the generalized coordinates themselves.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BrickStrain {
+pub struct Hex8Strain {
     pub(crate) stretch: Sym,
     pub(crate) hourglass: [Vec3; 3],
 }
 
-impl BrickStrain {
+impl Hex8Strain {
     /// All coordinates in one row.
-    pub(crate) fn row(&self) -> [f64; SHAPE] {
-        let mut row = [0.0; SHAPE];
+    pub(crate) fn row(&self) -> [f64; STRAIN_COMPONENTS] {
+        let mut row = [0.0; STRAIN_COMPONENTS];
         row[..6].copy_from_slice(&self.stretch);
         row[6..].copy_from_slice(self.hourglass.as_flattened());
         row
     }
 }
 
-impl BrickStress {
+impl Hex8Stress {
     /// No stress.
     pub const ZERO: Self = Self {
         stress: [0.0; 6],
@@ -66,7 +66,7 @@ impl BrickStress {
     }
 
     /// Adds a row of increments.
-    pub(crate) fn plus(mut self, row: &[f64; SHAPE]) -> Self {
+    pub(crate) fn plus(mut self, row: &[f64; STRAIN_COMPONENTS]) -> Self {
         for k in 0..6 {
             self.stress[k] += row[k];
         }
@@ -90,18 +90,18 @@ pub(crate) fn dot6(a: &Sym, b: &Sym) -> f64 {
 }
 
 /// A function of all generalized coordinates.
-pub(crate) struct Shaped {
+pub(crate) struct StrainFunction {
     pub value: f64,
-    pub gradient: [f64; SHAPE],
-    pub hessian: [[f64; SHAPE]; SHAPE],
+    pub gradient: [f64; STRAIN_COMPONENTS],
+    pub hessian: [[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
 }
 
-impl Shaped {
+impl StrainFunction {
     pub(crate) fn zero() -> Self {
         Self {
             value: 0.0,
-            gradient: [0.0; SHAPE],
-            hessian: [[0.0; SHAPE]; SHAPE],
+            gradient: [0.0; STRAIN_COMPONENTS],
+            hessian: [[0.0; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
         }
     }
 }

@@ -8,15 +8,15 @@ const PLATE: f64 = 1.0 / 6.0;
 /// The parts `cⱼ, cₖ` of the shear of each pair of axes by which free faces soften a voxel. Pairs are named by the axis
 /// that is not in them, `j` and `k` come after it in turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Warping {
+pub struct WarpingModes {
     parts: [[f64; 2]; 3],
     /// Lateral contraction at a clamp, in place of the parts.
-    pub(crate) clamped: Option<Clamped>,
+    pub(crate) clamped: Option<ClampModes>,
 }
 
 /// Classification of the faces of a voxel at the two sides of each axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Faces {
+pub struct FaceConditions {
     /// Free faces: nothing is joined to them, and nothing holds them.
     pub free: [[bool; 2]; 3],
     /// Stiff faces, which must not move along their axis except with their corners.
@@ -27,7 +27,7 @@ pub struct Faces {
     pub pressed: [[bool; 2]; 3],
 }
 
-impl Warping {
+impl WarpingModes {
     /// No warping: no free face.
     pub const NONE: Self = Self {
         parts: [[0.0; 2]; 3],
@@ -40,8 +40,8 @@ impl Warping {
     }
 
     /// The warping of a full voxel of isotropic rubber.
-    pub fn of(faces: &Faces) -> Self {
-        let clamped = Clamped::of(faces);
+    pub fn of(faces: &FaceConditions) -> Self {
+        let clamped = ClampModes::of(faces);
         if clamped.is_some() {
             return Self {
                 clamped,
@@ -83,15 +83,15 @@ fn condensed([j, k]: [u8; 2]) -> [f64; 2] {
 
 /// A voxel at a clamp: the axis of its held faces, its free faces across, and those of them under pressure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Clamped {
+pub(crate) struct ClampModes {
     pub(crate) axis: usize,
     pub(crate) free: [[bool; 2]; 3],
     pub(crate) pressed: [[bool; 2]; 3],
 }
 
-impl Clamped {
+impl ClampModes {
     /// Classifies a voxel with held faces on one axis; `None` if no face is free to draw in.
-    pub fn of(faces: &Faces) -> Option<Self> {
+    pub fn of(faces: &FaceConditions) -> Option<Self> {
         let has = |sides: [bool; 2]| sides.contains(&true);
         let mut axes = (0..3).filter(|&axis| has(faces.held[axis]));
         let (axis, further) = (axes.next()?, axes.next());

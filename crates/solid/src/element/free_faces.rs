@@ -10,9 +10,9 @@
 
 use std::collections::HashSet;
 
-use crate::element::faces::Faces;
+use crate::element::faces::FaceConditions;
 use crate::hyperelastic::HyperelasticMaterial;
-use crate::{Brick, Filling, Membrane};
+use crate::{Filling, Hex8, Membrane};
 
 /// Tolerance for fraction and distribution of the material of a full voxel: a voxel at the edge of a box whose faces
 /// are on the grid loses 1/3072 where its fill is measured.
@@ -34,25 +34,25 @@ const HOLDS: f64 = 2.0;
 /// The faces of each voxel; `None` for voxels that do not warp. `voxels` are all cubes of the body, `held` the axes of
 /// each vertex that clamps hold, `pressed` the triangles under pressure.
 pub(crate) fn faces_of(
-    bricks: &[Brick],
+    hex8s: &[Hex8],
     materials: &[HyperelasticMaterial],
     voxels: &[[u32; 8]],
     membranes: &[Membrane],
     held: &[[bool; 3]],
     pressed: &[[u32; 3]],
-) -> Vec<Option<Faces>> {
-    let behind = neighbors(bricks, materials, voxels, held.len());
+) -> Vec<Option<FaceConditions>> {
+    let behind = neighbors(hex8s, materials, voxels, held.len());
     let pressed: HashSet<[u32; 3]> = pressed.iter().map(|&triangle| sorted(triangle)).collect();
     let layers: HashSet<[u32; 3]> = membranes.iter().map(|m| sorted(m.vertices())).collect();
-    let each = |(brick, behind): (&Brick, &[[Behind; 2]; 3])| {
-        let fibers = !materials[brick.material as usize].fibers().is_empty();
-        if fibers || !is_full(brick) {
+    let each = |(hex8, behind): (&Hex8, &[[Behind; 2]; 3])| {
+        let fibers = !materials[hex8.material as usize].fibers().is_empty();
+        if fibers || !is_full(hex8) {
             return None;
         }
-        let mut faces = Faces::default();
+        let mut faces = FaceConditions::default();
         for axis in 0..3 {
             for side in 0..2 {
-                let corners = face(brick.vertices, axis, side);
+                let corners = face(hex8.vertices, axis, side);
                 let axes = corners.map(|v| held[v as usize]);
                 let all = |axis: usize| axes.iter().all(|held| held[axis]);
                 let held = [0, 1, 2].map(all);
@@ -68,12 +68,12 @@ pub(crate) fn faces_of(
         }
         Some(faces)
     };
-    bricks.iter().zip(&behind).map(each).collect()
+    hex8s.iter().zip(&behind).map(each).collect()
 }
 
 /// The neighbor behind each face. A cube is found by its lowest corner, which no other has.
 fn neighbors(
-    bricks: &[Brick],
+    hex8s: &[Hex8],
     materials: &[HyperelasticMaterial],
     voxels: &[[u32; 8]],
     vertices: usize,
@@ -83,23 +83,23 @@ fn neighbors(
     for (index, voxel) in voxels.iter().enumerate() {
         cube_at[voxel[0] as usize] = index as u32;
     }
-    let mut brick_of = vec![NONE; voxels.len()];
-    for (index, brick) in bricks.iter().enumerate() {
-        brick_of[cube_at[brick.vertices[0] as usize] as usize] = index as u32;
+    let mut hex8_of = vec![NONE; voxels.len()];
+    for (index, hex8) in hex8s.iter().enumerate() {
+        hex8_of[cube_at[hex8.vertices[0] as usize] as usize] = index as u32;
     }
-    let mut behind = vec![[[Behind::Nothing; 2]; 3]; bricks.len()];
+    let mut behind = vec![[[Behind::Nothing; 2]; 3]; hex8s.len()];
     for (cube, voxel) in voxels.iter().enumerate() {
         for axis in 0..3 {
             let next = cube_at[voxel[corner_beyond(axis)] as usize];
             if next == NONE || face(*voxel, axis, 1) != face(voxels[next as usize], axis, 0) {
                 continue;
             }
-            let [low, high] = [brick_of[cube], brick_of[next as usize]];
-            for (brick, other, side) in [(low, high, 1), (high, low, 0)] {
-                if brick != NONE {
-                    let other = (other != NONE).then(|| bricks[other as usize].material);
-                    let own = bricks[brick as usize].material;
-                    behind[brick as usize][axis][side] = what_is(materials, own, other);
+            let [low, high] = [hex8_of[cube], hex8_of[next as usize]];
+            for (hex8, other, side) in [(low, high, 1), (high, low, 0)] {
+                if hex8 != NONE {
+                    let other = (other != NONE).then(|| hex8s[other as usize].material);
+                    let own = hex8s[hex8 as usize].material;
+                    behind[hex8 as usize][axis][side] = what_is(materials, own, other);
                 }
             }
         }
@@ -134,14 +134,14 @@ fn face(vertices: [u32; 8], axis: usize, side: usize) -> [u32; 4] {
 }
 
 /// Tests whether a voxel is full to rounding.
-pub(crate) fn is_full(brick: &Brick) -> bool {
+pub(crate) fn is_full(hex8: &Hex8) -> bool {
     let near = |value: f64, full: f64| (value - full).abs() < FULL_SLACK;
     let Filling {
         shift,
         spread,
         products,
-    } = brick.filling;
-    near(brick.fraction, 1.0)
+    } = hex8.filling;
+    near(hex8.fraction, 1.0)
         && [shift, products]
             .as_flattened()
             .iter()

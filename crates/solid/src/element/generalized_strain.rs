@@ -1,20 +1,20 @@
 //! Drivers of the modes at a clamp: strains of the voxel, faded out where these are large
 //! ([`crate::element::clamp_modes`]).
 
-use crate::element::coordinates::{SHAPE, Shaped};
+use crate::element::coordinates::{STRAIN_COMPONENTS, StrainFunction};
 use crate::element::rotated::Rotated;
 use crate::element::thickness::positive;
 
 /// All `d`, and `φ` with two derivatives by `ρ²`, the sum of their squares, and the derivatives of `ρ²`.
-pub(crate) struct Drivers {
-    each: [Driver; SHAPE],
+pub(crate) struct GeneralizedStrains {
+    each: [GeneralizedStrain; STRAIN_COMPONENTS],
     fading: [f64; 3],
-    square: [f64; SHAPE],
+    square: [f64; STRAIN_COMPONENTS],
 }
 
 /// One of the `d`: its value, and its derivatives by its own coordinate and by the stretch (index, along an axis) that
 /// normalizes it.
-struct Driver {
+struct GeneralizedStrain {
     value: f64,
     by_own: f64,
     by_stretch: Option<(usize, f64)>,
@@ -23,13 +23,16 @@ struct Driver {
     stretch_stretch: f64,
 }
 
-impl Drivers {
+impl GeneralizedStrains {
     pub(crate) fn of(state: &Rotated) -> Self {
-        let each = std::array::from_fn(|place| Driver::of(state, place));
-        let square = each.iter().map(|d: &Driver| d.value * d.value).sum::<f64>();
+        let each = std::array::from_fn(|place| GeneralizedStrain::of(state, place));
+        let square = each
+            .iter()
+            .map(|d: &GeneralizedStrain| d.value * d.value)
+            .sum::<f64>();
         let mut own = Self {
             fading: fading(square),
-            square: [0.0; SHAPE],
+            square: [0.0; STRAIN_COMPONENTS],
             each,
         };
         let twice = own.values().map(|d| 2.0 * d);
@@ -37,16 +40,19 @@ impl Drivers {
         own
     }
 
-    pub(crate) fn values(&self) -> [f64; SHAPE] {
+    pub(crate) fn values(&self) -> [f64; STRAIN_COMPONENTS] {
         std::array::from_fn(|place| self.each[place].value)
     }
 
     /// The derivatives of a linear combination of the `d` with these coefficients.
-    pub(crate) fn slopes(&self, coefficients: &[f64; SHAPE]) -> [f64; SHAPE] {
-        let mut slopes = [0.0; SHAPE];
-        for (place, (driver, factor)) in self.each.iter().zip(coefficients).enumerate() {
-            slopes[place] += factor * driver.by_own;
-            if let Some((stretch, by)) = driver.by_stretch {
+    pub(crate) fn slopes(
+        &self,
+        coefficients: &[f64; STRAIN_COMPONENTS],
+    ) -> [f64; STRAIN_COMPONENTS] {
+        let mut slopes = [0.0; STRAIN_COMPONENTS];
+        for (place, (strain, factor)) in self.each.iter().zip(coefficients).enumerate() {
+            slopes[place] += factor * strain.by_own;
+            if let Some((stretch, by)) = strain.by_stretch {
                 slopes[stretch] += factor * by;
             }
         }
@@ -56,21 +62,24 @@ impl Drivers {
     /// Adds the second derivatives of a linear combination of the `d`.
     pub(crate) fn add_curvatures(
         &self,
-        coefficients: &[f64; SHAPE],
-        hessian: &mut [[f64; SHAPE]; SHAPE],
+        coefficients: &[f64; STRAIN_COMPONENTS],
+        hessian: &mut [[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
     ) {
-        for (place, (driver, factor)) in self.each.iter().zip(coefficients).enumerate() {
-            hessian[place][place] += factor * driver.own_own;
-            if let Some((stretch, _)) = driver.by_stretch {
-                hessian[place][stretch] += factor * driver.own_stretch;
-                hessian[stretch][place] += factor * driver.own_stretch;
-                hessian[stretch][stretch] += factor * driver.stretch_stretch;
+        for (place, (strain, factor)) in self.each.iter().zip(coefficients).enumerate() {
+            hessian[place][place] += factor * strain.own_own;
+            if let Some((stretch, _)) = strain.by_stretch {
+                hessian[place][stretch] += factor * strain.own_stretch;
+                hessian[stretch][place] += factor * strain.own_stretch;
+                hessian[stretch][stretch] += factor * strain.stretch_stretch;
             }
         }
     }
 
     /// A linear combination of the `φ d`, and its derivatives.
-    pub(crate) fn faded(&self, coefficients: &[f64; SHAPE]) -> (f64, [f64; SHAPE]) {
+    pub(crate) fn faded(
+        &self,
+        coefficients: &[f64; STRAIN_COMPONENTS],
+    ) -> (f64, [f64; STRAIN_COMPONENTS]) {
         let [factor, first, _] = self.fading;
         let whole = dot_all(coefficients, &self.values());
         let mut slopes = self.slopes(coefficients);
@@ -83,20 +92,20 @@ impl Drivers {
     /// Adds the second derivatives of a linear combination of the `φ d`.
     pub(crate) fn add_faded_curvatures(
         &self,
-        coefficients: &[f64; SHAPE],
-        hessian: &mut [[f64; SHAPE]; SHAPE],
+        coefficients: &[f64; STRAIN_COMPONENTS],
+        hessian: &mut [[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
     ) {
         let [factor, first, second] = self.fading;
         let whole = dot_all(coefficients, &self.values());
         let slopes = self.slopes(coefficients);
         // With ρ² = Σ d²: those of `φ` are φ″ ∂ρ² ⊗ ∂ρ² + 2φ′ Σ (∂d ⊗ ∂d + d ∂²d).
         let twice = 2.0 * first * whole;
-        let combined: [f64; SHAPE] =
+        let combined: [f64; STRAIN_COMPONENTS] =
             std::array::from_fn(|k| factor * coefficients[k] + twice * self.each[k].value);
         self.add_curvatures(&combined, hessian);
         self.add_squares(twice, hessian);
-        for row in 0..SHAPE {
-            for column in 0..SHAPE {
+        for row in 0..STRAIN_COMPONENTS {
+            for column in 0..STRAIN_COMPONENTS {
                 let (a, b) = (self.square[row], self.square[column]);
                 hessian[row][column] +=
                     first * (a * slopes[column] + slopes[row] * b) + second * whole * a * b;
@@ -105,25 +114,29 @@ impl Drivers {
     }
 }
 
-impl Drivers {
+impl GeneralizedStrains {
     /// Adds `factor Σ ∂d ⊗ ∂d`.
-    fn add_squares(&self, factor: f64, hessian: &mut [[f64; SHAPE]; SHAPE]) {
-        for (place, driver) in self.each.iter().enumerate() {
-            let (stretch, by) = driver.by_stretch.unwrap_or((place, 0.0));
-            hessian[place][place] += factor * driver.by_own * driver.by_own;
-            hessian[place][stretch] += factor * driver.by_own * by;
-            hessian[stretch][place] += factor * driver.by_own * by;
+    fn add_squares(
+        &self,
+        factor: f64,
+        hessian: &mut [[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
+    ) {
+        for (place, strain) in self.each.iter().enumerate() {
+            let (stretch, by) = strain.by_stretch.unwrap_or((place, 0.0));
+            hessian[place][place] += factor * strain.by_own * strain.by_own;
+            hessian[place][stretch] += factor * strain.by_own * by;
+            hessian[stretch][place] += factor * strain.by_own * by;
             hessian[stretch][stretch] += factor * by * by;
         }
     }
 
     /// Multiplies a function of the coordinates by `φ`, including its second derivatives if `second`.
-    pub(crate) fn fade(&self, of: &mut Shaped, second: bool) {
+    pub(crate) fn fade(&self, of: &mut StrainFunction, second: bool) {
         let [factor, slope, turn] = self.fading;
         if second {
             let twice = 2.0 * slope * of.value;
-            for row in 0..SHAPE {
-                for column in 0..SHAPE {
+            for row in 0..STRAIN_COMPONENTS {
+                for column in 0..STRAIN_COMPONENTS {
                     let (a, b) = (self.square[row], self.square[column]);
                     let entry = &mut of.hessian[row][column];
                     *entry = factor * *entry
@@ -142,7 +155,7 @@ impl Drivers {
     }
 }
 
-pub(crate) fn dot_all(a: &[f64; SHAPE], b: &[f64; SHAPE]) -> f64 {
+pub(crate) fn dot_all(a: &[f64; STRAIN_COMPONENTS], b: &[f64; STRAIN_COMPONENTS]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
@@ -160,7 +173,7 @@ fn fading(square: f64) -> [f64; 3] {
     [factor, first, second]
 }
 
-impl Driver {
+impl GeneralizedStrain {
     fn of(state: &Rotated, place: usize) -> Self {
         if place < 3 {
             let [stretch, slope, turn] = positive(state.stretch[place]);

@@ -13,7 +13,7 @@
 //! Along each axis, say ζ, the stretch varies linearly, `S ± Ĥ_ζ` at `ζ = ±1`, with
 //!
 //! - `H₁₁ = p̂₂·e₁`, `H₂₂ = p̂₁·e₂`: bending. The shear `γ₁₃ ∝ ξ` that comes with the mode is left out: it is the
-//!   parasitic shear that locks a full brick.
+//!   parasitic shear that locks a full hexahedron.
 //! - `H₃₃/S₃₃ = −ν/(1−ν) (H₁₁/S₁₁ + H₂₂/S₂₂)`: a plate that bends is free to change its thickness, in
 //!   proportion to its present shape.
 //! - `H₁₂ = (p̂₁·e₁ + p̂₂·e₂)/2`: twist.
@@ -40,15 +40,15 @@
 //! with half the difference `b₃` of the free stretches at `ζ = ±1` over their mean. (`b₃ S` would be right for large
 //! elastic strain as well; the difference is of the order of `b (S − 1)`, and `b` is one of the voxel size.)
 //!
-//! If faces of a voxel are free, `W` sees less of its mean shear: `S̃` in place of `S`, see [`Warping`] and
+//! If faces of a voxel are free, `W` sees less of its mean shear: `S̃` in place of `S`, see [`WarpingModes`] and
 //! [`crate::element::warping_modes`].
 //!
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
-//! derivatives of `R`, see [`Brick::stiffness`].
+//! derivatives of `R`, see [`Hex8::stiffness`].
 
-pub use crate::element::coordinates::{BrickStrain, BrickStress};
-use crate::element::coordinates::{Modes, SHAPE};
-pub use crate::element::faces::{Faces, Warping};
+pub use crate::element::coordinates::{Hex8Strain, Hex8Stress};
+use crate::element::coordinates::{Modes, STRAIN_COMPONENTS};
+pub use crate::element::faces::{FaceConditions, WarpingModes};
 use crate::element::hex8_energy::Parted;
 pub use crate::element::hex8_energy::Pressure;
 pub use crate::element::rotated::Filling;
@@ -77,7 +77,7 @@ const SIGNS: [[f64; CORNERS]; 7] = [
 
 /// A hyperelastic voxel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Brick {
+pub struct Hex8 {
     /// The eight vertices; corner `c` at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
     pub vertices: [u32; CORNERS],
     /// Its material, an index into the list of the body.
@@ -89,7 +89,7 @@ pub struct Brick {
     /// Distribution of the material in the cube.
     pub filling: Filling,
     /// Warping of its free faces.
-    pub warping: Warping,
+    pub warping: WarpingModes,
     /// The largest isochoric energy (J/m³) so far, the memory of softening.
     pub peak: f64,
 }
@@ -113,7 +113,7 @@ pub struct Within {
     /// The viscous share of `s`.
     pub share: f64,
     /// The viscous stress that does not depend on the end of the step.
-    pub stress: BrickStress,
+    pub stress: Hex8Stress,
 }
 
 impl Within {
@@ -122,11 +122,11 @@ impl Within {
         Self {
             pressure: Pressure::of(material),
             share: 0.0,
-            stress: BrickStress::ZERO,
+            stress: Hex8Stress::ZERO,
         }
     }
 
-    fn stress_of(&self, parts: &Parted) -> BrickStress {
+    fn stress_of(&self, parts: &Parted) -> Hex8Stress {
         parts
             .other
             .plus_scaled(1.0 + self.share, &parts.deviatoric)
@@ -134,9 +134,9 @@ impl Within {
     }
 }
 
-/// Result of [`Brick::respond`].
+/// Result of [`Hex8::respond`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BrickResponse {
+pub struct Hex8Response {
     /// The elastic energy in J, with `p²/2K` for the change of volume.
     pub elastic: f64,
     /// The potential of the forces in J.
@@ -149,16 +149,16 @@ pub struct BrickResponse {
 
 /// Strain and pressure of a voxel as unknowns of their own (mixed formulation, [`crate::element::assumed_strain`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Carried {
-    pub(crate) strain: BrickStrain,
+pub struct Hex8AssumedStrain {
+    pub(crate) strain: Hex8Strain,
     /// The pressure law: the carried pressure is that of the strain with this shift.
     pub(crate) pressure: Pressure,
 }
 
-impl Carried {
+impl Hex8AssumedStrain {
     /// Placeholder of zero strain and pressure, for buffers that are filled later.
     pub(crate) const NOTHING: Self = Self {
-        strain: BrickStrain {
+        strain: Hex8Strain {
             stretch: [0.0; 6],
             hourglass: [[0.0; 3]; 3],
         },
@@ -170,7 +170,7 @@ impl Carried {
 }
 
 /// A dense stiffness matrix of a voxel; row and column `3 corner + axis`.
-pub type BrickMatrix = [[f64; 24]; 24];
+pub type Hex8Matrix = [[f64; 24]; 24];
 
 /// Matrix of the spin of `R` when `F₀` changes: with `B = Rᵀ dF₀`, `Rᵀ dR = [w]×` and `G w = axial(B − Bᵀ)`,
 /// `G = tr S − S`.
@@ -189,7 +189,7 @@ fn add_outer(matrix: &mut Mat3, a: Vec3, b: Vec3) {
     }
 }
 
-impl Brick {
+impl Hex8 {
     /// The side in m of the stress-free voxel now: swollen by λ it stores λ³ W(F/λ), which is the energy of a cube λ
     /// times as large.
     #[inline(always)]
@@ -277,7 +277,7 @@ impl Brick {
             .smallest_volume(material.thinning())
     }
 
-    /// The Cauchy stress in Pa of the mean deformation, `R (T − [y]×) S Rᵀ / J` in the notation of [`Brick::forces`];
+    /// The Cauchy stress in Pa of the mean deformation, `R (T − [y]×) S Rᵀ / J` in the notation of [`Hex8::forces`];
     /// bending modes do not contribute, except through their share in the softening.
     pub fn cauchy_stress(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> Mat3 {
         let mut modes = self.modes(material, positions);
@@ -299,7 +299,7 @@ impl Brick {
         turned.map(|row| row.map(|x| x / volume))
     }
 
-    /// The elastic forces on the corners in N, minus the gradient of [`Brick::energy`].
+    /// The elastic forces on the corners in N, minus the gradient of [`Hex8::energy`].
     ///
     /// With `T = ∂Φ/∂S`, `sₘ = ∂Φ/∂p̂ₘ` and `N = T S + Σ sₘ ⊗ p̂ₘ`, the gradient by `F₀` is
     /// `R (T − [y]×)`, `G y = axial(N − Nᵀ)`, and that by `pₘ` is `R sₘ`; in a cut voxel the `pₘ` have a part in `F₀`
@@ -316,11 +316,11 @@ impl Brick {
         material: &HyperelasticMaterial,
         positions: &[Vec3],
         within: &Within,
-    ) -> BrickResponse {
+    ) -> Hex8Response {
         let state = self.rotated(material, positions);
         let parts = state.response(material, within.pressure);
         let work = within.stress.along(&state.stretch, &state.hourglass);
-        BrickResponse {
+        Hex8Response {
             elastic: self.volume(material) * parts.elastic,
             potential: self.volume(material)
                 * ((1.0 + within.share) * parts.deviatoric_energy + parts.other_energy + work),
@@ -334,7 +334,7 @@ impl Brick {
         &self,
         material: &HyperelasticMaterial,
         positions: &[Vec3],
-    ) -> BrickStress {
+    ) -> Hex8Stress {
         self.rotated(material, positions).deviatoric(material)
     }
 
@@ -352,7 +352,7 @@ impl Brick {
         &self,
         material: &HyperelasticMaterial,
         positions: &[Vec3],
-        viscous: impl FnOnce(&BrickStress) -> BrickStress,
+        viscous: impl FnOnce(&Hex8Stress) -> Hex8Stress,
     ) -> [Vec3; CORNERS] {
         let state = self.rotated(material, positions);
         let deviatoric = state.deviatoric(material);
@@ -367,7 +367,7 @@ impl Brick {
     pub fn predicted_forces(
         &self,
         material: &HyperelasticMaterial,
-        carried: &Carried,
+        carried: &Hex8AssumedStrain,
         positions: &[Vec3],
     ) -> [Vec3; CORNERS] {
         let state = self.rotated(material, positions);
@@ -384,7 +384,7 @@ impl Brick {
     fn spread_stress(
         &self,
         state: &Rotated,
-        gradient: &BrickStress,
+        gradient: &Hex8Stress,
         material: &HyperelasticMaterial,
     ) -> [Vec3; CORNERS] {
         let stress = to_matrix(&gradient.stress);
@@ -429,30 +429,30 @@ impl Brick {
         &self,
         material: &HyperelasticMaterial,
         positions: &[Vec3],
-        carried: Option<&Carried>,
-    ) -> BrickMatrix {
+        carried: Option<&Hex8AssumedStrain>,
+    ) -> Hex8Matrix {
         let mut within = Within::elastic(material);
         carried.inspect(|state| within.pressure = state.pressure);
         let strain = carried.map(|state| &state.strain);
         self.stiffness_within(material, positions, strain, &within, Tangent::Exact)
     }
 
-    /// Variant of [`Brick::stiffness`] within a step, with or without the geometric part.
+    /// Variant of [`Hex8::stiffness`] within a step, with or without the geometric part.
     pub fn stiffness_within(
         &self,
         material: &HyperelasticMaterial,
         positions: &[Vec3],
-        strain: Option<&BrickStrain>,
+        strain: Option<&Hex8Strain>,
         within: &Within,
         tangent: Tangent,
-    ) -> BrickMatrix {
+    ) -> Hex8Matrix {
         let state = self.rotated(material, positions);
         let other = strain.map_or_else(
             || state.with_strain(&state.strain()),
             |s| state.with_strain(s),
         );
         let (gradient, curvature) = match tangent {
-            Tangent::Stressless => (BrickStress::ZERO, 0.0),
+            Tangent::Stressless => (Hex8Stress::ZERO, 0.0),
             Tangent::Exact => {
                 let parts = other.response(material, within.pressure);
                 (within.stress_of(&parts), 1.0)
@@ -473,7 +473,7 @@ impl Brick {
         let mut rotated = [[0.0; 18]; 18];
         for column in 0..18 {
             let (mode, axis) = (column / 3, column % 3);
-            let mut change = [0.0; SHAPE];
+            let mut change = [0.0; STRAIN_COMPONENTS];
             let mut omega = [[0.0; 3]; 3];
             let mut stretch_change = [[0.0; 3]; 3];
             if mode < 3 {
@@ -493,7 +493,7 @@ impl Brick {
             }
             let response = times(&hessian, &change);
             let stress_change = to_matrix(&std::array::from_fn(|k| response[k]));
-            let part = |values: &[f64; SHAPE], m: usize| {
+            let part = |values: &[f64; STRAIN_COMPONENTS], m: usize| {
                 std::array::from_fn::<f64, 3, _>(|k| values[6 + 3 * m + k])
             };
             let mut couple_change = plus(
@@ -526,21 +526,23 @@ impl Brick {
 
     /// Predicts strain and pressure after a step `moves` from `positions`, to first order, from the values carried
     /// `before` (by default those of `positions`).
-    pub fn carry(
+    pub fn update(
         &self,
         material: &HyperelasticMaterial,
-        before: Option<&Carried>,
+        before: Option<&Hex8AssumedStrain>,
         positions: &[Vec3],
         moves: &[Vec3],
-    ) -> Carried {
+    ) -> Hex8AssumedStrain {
         let state = self.rotated(material, positions);
         let strain = self.predict_strain(material, &state, moves);
         let from = before.map_or_else(|| state.strain(), |carried| carried.strain);
-        let volume = |strain: &BrickStrain| state.with_strain(strain).volume_slope(material);
+        let volume = |strain: &Hex8Strain| state.with_strain(strain).volume_slope(material);
         let ((start, slope), (end, _)) = (volume(&from), volume(&strain));
         let (new, old) = (strain.row(), from.row());
-        let along: f64 = (0..SHAPE).map(|k| slope[k] * (new[k] - old[k])).sum();
-        Carried {
+        let along: f64 = (0..STRAIN_COMPONENTS)
+            .map(|k| slope[k] * (new[k] - old[k]))
+            .sum();
+        Hex8AssumedStrain {
             strain,
             pressure: Pressure {
                 shift: start + along - end,
@@ -555,11 +557,11 @@ impl Brick {
         material: &HyperelasticMaterial,
         positions: &[Vec3],
         pressure: f64,
-    ) -> Carried {
+    ) -> Hex8AssumedStrain {
         let state = self.rotated(material, positions);
         let own = Pressure::of(material);
         let there = state.response(material, own).pressure;
-        Carried {
+        Hex8AssumedStrain {
             strain: state.strain(),
             pressure: Pressure {
                 shift: (pressure - there) / own.stiffness,
@@ -574,7 +576,7 @@ impl Brick {
         material: &HyperelasticMaterial,
         state: &Rotated,
         moves: &[Vec3],
-    ) -> BrickStrain {
+    ) -> Hex8Strain {
         let stretch = to_matrix(&state.stretch);
         let direction = self.modes(material, moves);
         let b: Mat3 = std::array::from_fn(|i| {
@@ -600,7 +602,7 @@ impl Brick {
         material: &HyperelasticMaterial,
         rotated: &[[f64; 18]; 18],
         rotation: &Mat3,
-    ) -> BrickMatrix {
+    ) -> Hex8Matrix {
         let bilinear = material.young() / 9.0;
         let back = transpose(rotation);
         let mut blocks = [[[[0.0; 3]; 3]; 7]; 7];
@@ -652,7 +654,10 @@ impl Brick {
 }
 
 /// A matrix times a row of coordinates.
-fn times(matrix: &[[f64; SHAPE]; SHAPE], row: &[f64; SHAPE]) -> [f64; SHAPE] {
+fn times(
+    matrix: &[[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
+    row: &[f64; STRAIN_COMPONENTS],
+) -> [f64; STRAIN_COMPONENTS] {
     std::array::from_fn(|k| matrix[k].iter().zip(row).map(|(h, c)| h * c).sum())
 }
 

@@ -1,7 +1,7 @@
 //! The energy of a voxel in its rotated frame, with gradient and Hessian; the formula stands in
 //! [`crate::element::hex8`].
 
-use crate::element::coordinates::{AXES, BrickStress, SHAPE, Shaped, place};
+use crate::element::coordinates::{AXES, Hex8Stress, STRAIN_COMPONENTS, StrainFunction, place};
 use crate::element::rotated::Rotated;
 use crate::hyperelastic::symmetric::{
     Sym, determinant_response, isochoric, isochoric_stress, to_matrix,
@@ -39,10 +39,10 @@ pub(crate) struct Parted {
     /// The elastic energy of the material at that pressure.
     pub elastic: f64,
     pub deviatoric_energy: f64,
-    pub deviatoric: BrickStress,
+    pub deviatoric: Hex8Stress,
     /// Energy of the mean change of volume and of the bilinear mode; `other` leaves out the latter's gradient.
     pub other_energy: f64,
-    pub other: BrickStress,
+    pub other: Hex8Stress,
     /// The pressure in Pa, positive in tension.
     pub pressure: f64,
 }
@@ -66,7 +66,7 @@ impl Rotated {
     }
 
     /// The mean volume ratio over the six points, with its Hessian if `second`.
-    fn volume(&self, thinning: f64, second: bool) -> Shaped {
+    fn volume(&self, thinning: f64, second: bool) -> StrainFunction {
         match self.warping.clamped {
             Some(clamped) => self.clamped_volume(clamped, thinning, second),
             None => self.mean(thinning, second, |at| determinant_response(at, second)),
@@ -74,20 +74,20 @@ impl Rotated {
     }
 
     /// The mean volume ratio and its gradient by the generalized coordinates.
-    pub fn volume_slope(&self, material: &HyperelasticMaterial) -> (f64, [f64; SHAPE]) {
+    pub fn volume_slope(&self, material: &HyperelasticMaterial) -> (f64, [f64; STRAIN_COMPONENTS]) {
         let volume = self.volume(material.thinning(), false);
         (volume.value, volume.gradient)
     }
 
     /// The isochoric energy with its gradient, softened if the material softens.
-    fn isochoric(&self, material: &HyperelasticMaterial) -> Shaped {
+    fn isochoric(&self, material: &HyperelasticMaterial) -> StrainFunction {
         let mut mean = self.virgin(material);
         self.soften(material, false, &mut mean);
         mean
     }
 
     /// The isochoric energy of virgin material, with its gradient.
-    pub fn virgin(&self, material: &HyperelasticMaterial) -> Shaped {
+    pub fn virgin(&self, material: &HyperelasticMaterial) -> StrainFunction {
         let thinning = material.thinning();
         self.warped_mean(thinning, None, |at| stress_only(material, at))
     }
@@ -103,7 +103,7 @@ impl Rotated {
     ///
     /// Strain that grows and falls in proportion has the same `W/P` everywhere, and with it the same `η`, up to `m`:
     /// for a voxel that bends, a peak at each of its points would change the result in second order only.
-    fn soften(&self, material: &HyperelasticMaterial, second: bool, mean: &mut Shaped) {
+    fn soften(&self, material: &HyperelasticMaterial, second: bool, mean: &mut StrainFunction) {
         let Some(mullins) = material.mullins() else {
             return;
         };
@@ -141,7 +141,7 @@ impl Rotated {
         let thinning = material.thinning();
         let bulk = material.bulk();
         let mean = self.isochoric(material);
-        let mut deviatoric = BrickStress::ZERO.plus(&mean.gradient);
+        let mut deviatoric = Hex8Stress::ZERO.plus(&mean.gradient);
         let mut energy = mean.value;
         for fiber in material.fibers_now() {
             energy += fiber::energy(&fiber, &self.stretch);
@@ -162,17 +162,21 @@ impl Rotated {
             deviatoric_energy: energy,
             deviatoric,
             other_energy: bilinear + 0.5 * value * value / pressure.stiffness,
-            other: BrickStress::ZERO.plus(&volume.gradient.map(|slope| value * slope)),
+            other: Hex8Stress::ZERO.plus(&volume.gradient.map(|slope| value * slope)),
             pressure: value,
         }
     }
 
-    pub fn gradient(&self, material: &HyperelasticMaterial) -> BrickStress {
+    pub fn gradient(&self, material: &HyperelasticMaterial) -> Hex8Stress {
         self.gradient_of(material, &self.isochoric(material))
     }
 
     /// The gradient with a given isochoric part.
-    pub fn gradient_of(&self, material: &HyperelasticMaterial, mean: &Shaped) -> BrickStress {
+    pub fn gradient_of(
+        &self,
+        material: &HyperelasticMaterial,
+        mean: &StrainFunction,
+    ) -> Hex8Stress {
         let volume = self.volume(material.thinning(), false);
         let pressure = material.bulk() * (volume.value - 1.0);
         self.deviatoric_of(material, mean)
@@ -180,13 +184,13 @@ impl Rotated {
     }
 
     /// The gradient without the part of the mean change of volume.
-    pub fn deviatoric(&self, material: &HyperelasticMaterial) -> BrickStress {
+    pub fn deviatoric(&self, material: &HyperelasticMaterial) -> Hex8Stress {
         self.deviatoric_of(material, &self.isochoric(material))
     }
 
-    fn deviatoric_of(&self, material: &HyperelasticMaterial, mean: &Shaped) -> BrickStress {
+    fn deviatoric_of(&self, material: &HyperelasticMaterial, mean: &StrainFunction) -> Hex8Stress {
         let thinning = material.thinning();
-        let mut gradient = BrickStress::ZERO.plus(&mean.gradient);
+        let mut gradient = Hex8Stress::ZERO.plus(&mean.gradient);
         for fiber in material.fibers_now() {
             fiber::add_stress(&fiber, &self.stretch, &mut gradient.stress);
         }
@@ -210,7 +214,7 @@ impl Rotated {
         share: f64,
         pressure: Pressure,
         curvature: f64,
-    ) -> [[f64; SHAPE]; SHAPE] {
+    ) -> [[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS] {
         let thinning = material.thinning();
         let bulk = material.bulk();
         let volume = self.volume(thinning, true);

@@ -1,9 +1,9 @@
 //! A voxel in its rotated frame: its generalized coordinates, the stretch at its points, and means over these.
 
 use crate::element::coordinates::{
-    AXES, Axes, BrickStrain, Modes, OFF, SHAPE, Shaped, dot6, place,
+    AXES, Axes, Hex8Strain, Modes, OFF, STRAIN_COMPONENTS, StrainFunction, dot6, place,
 };
-use crate::element::faces::Warping;
+use crate::element::faces::WarpingModes;
 use crate::element::thickness::Thickness;
 use crate::hyperelastic::Response;
 use crate::hyperelastic::symmetric::{Sym, to_sym};
@@ -64,7 +64,7 @@ impl Filling {
 /// Arguments of the energy of one voxel: its modes in the rotated frame.
 pub(crate) struct Rotated {
     pub filling: Filling,
-    pub warping: Warping,
+    pub warping: WarpingModes,
     pub rotation: Mat3,
     pub stretch: Sym,
     pub hourglass: [Vec3; 3],
@@ -76,15 +76,15 @@ pub(crate) struct Rotated {
 }
 
 impl Rotated {
-    pub fn strain(&self) -> BrickStrain {
-        BrickStrain {
+    pub fn strain(&self) -> Hex8Strain {
+        Hex8Strain {
             stretch: self.stretch,
             hourglass: self.hourglass,
         }
     }
 
     /// This state with another strain in the same frame.
-    pub fn with_strain(&self, strain: &BrickStrain) -> Self {
+    pub fn with_strain(&self, strain: &Hex8Strain) -> Self {
         Self {
             filling: self.filling,
             warping: self.warping,
@@ -97,7 +97,13 @@ impl Rotated {
         }
     }
 
-    pub fn of(modes: &Modes, filling: Filling, warping: Warping, bent: Vec3, peak: f64) -> Self {
+    pub fn of(
+        modes: &Modes,
+        filling: Filling,
+        warping: WarpingModes,
+        bent: Vec3,
+        peak: f64,
+    ) -> Self {
         let gradient: Mat3 = std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]));
         let (rotation, stretch) = polar(&gradient);
         Self {
@@ -154,8 +160,8 @@ impl Rotated {
         thinning: f64,
         second: bool,
         function: impl Fn(&Sym) -> Response,
-    ) -> Shaped {
-        let mut mean = Shaped::zero();
+    ) -> StrainFunction {
+        let mut mean = StrainFunction::zero();
         for axes in AXES {
             let variation = self.variation(axes, thinning);
             let reach = self.filling.spread[axes.0];
@@ -241,7 +247,7 @@ impl Variation {
         (n, i, j): Axes,
         thinning: f64,
         moment: f64,
-        hessian: &mut [[f64; SHAPE]; SHAPE],
+        hessian: &mut [[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
     ) {
         let t = &self.thickness;
         let factor = -thinning * moment;

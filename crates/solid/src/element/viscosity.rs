@@ -13,7 +13,7 @@
 //! `s` is the gradient of the deviatoric energy, the other is linear in the strain.
 
 use crate::Body;
-use crate::element::hex8::{BrickStress, Within};
+use crate::element::hex8::{Hex8Stress, Within};
 use crate::vector::Vec3;
 
 /// Viscous history variables of all voxels.
@@ -21,21 +21,21 @@ use crate::vector::Vec3;
 pub struct Viscosity {
     retardation: f64,
     /// Stress `s` after the last step; `None` where no rate is known: at first and after a jump.
-    before: Option<Vec<BrickStress>>,
-    branches: Vec<Vec<BrickStress>>,
+    before: Option<Vec<Hex8Stress>>,
+    branches: Vec<Vec<Hex8Stress>>,
 }
 
 impl Viscosity {
     /// No history, with the retardation time in s of Kelvin–Voigt damping.
     pub fn new(body: &Body, retardation: f64) -> Self {
-        let branches = |brick| {
-            let branches = body.material_of(brick).branches();
-            branches.map(|_| BrickStress::ZERO).collect()
+        let branches = |hex8| {
+            let branches = body.material_of(hex8).branches();
+            branches.map(|_| Hex8Stress::ZERO).collect()
         };
         Self {
             retardation,
             before: None,
-            branches: body.bricks().iter().map(branches).collect(),
+            branches: body.hex8s().iter().map(branches).collect(),
         }
     }
 
@@ -55,50 +55,50 @@ impl Viscosity {
     pub fn restart(&mut self) {
         self.before = None;
         for branches in &mut self.branches {
-            branches.fill(BrickStress::ZERO);
+            branches.fill(Hex8Stress::ZERO);
         }
     }
 
     /// Adds the forces (N) of all voxels, elastic and viscous, after `h` seconds since the last call.
     pub fn add_forces(&mut self, body: &Body, positions: &[Vec3], h: f64, forces: &mut [Vec3]) {
         let fresh = self.before.is_none();
-        let count = body.bricks().len();
+        let count = body.hex8s().len();
         let before = self
             .before
-            .get_or_insert_with(|| vec![BrickStress::ZERO; count]);
+            .get_or_insert_with(|| vec![Hex8Stress::ZERO; count]);
         let retardation = self.retardation;
-        for (index, brick) in body.bricks().iter().enumerate() {
-            let material = body.material_of(brick);
+        for (index, hex8) in body.hex8s().iter().enumerate() {
+            let material = body.material_of(hex8);
             let before = &mut before[index];
             let branches = &mut self.branches[index];
-            let viscous = |now: &BrickStress| {
+            let viscous = |now: &Hex8Stress| {
                 let last = std::mem::replace(before, *now);
                 if fresh {
                     return branches
                         .iter()
-                        .fold(BrickStress::ZERO, |sum, q| sum.plus_scaled(1.0, q));
+                        .fold(Hex8Stress::ZERO, |sum, q| sum.plus_scaled(1.0, q));
                 }
                 let change = now.plus_scaled(-1.0, &last);
-                let mut sum = BrickStress::ZERO.plus_scaled(retardation / h, &change);
+                let mut sum = Hex8Stress::ZERO.plus_scaled(retardation / h, &change);
                 for (q, branch) in branches.iter_mut().zip(material.branches()) {
                     *q = after(q, branch, h, &change);
                     sum = sum.plus_scaled(1.0, q);
                 }
                 sum
             };
-            let corners = brick.viscous_forces(material, positions, viscous);
-            brick.add_to(&corners, forces);
+            let corners = hex8.viscous_forces(material, positions, viscous);
+            hex8.add_to(&corners, forces);
         }
     }
 
     /// Adds the viscous stress over a step of `step` seconds from `positions`.
     pub fn start(&mut self, body: &Body, positions: &[Vec3], step: f64, within: &mut [Within]) {
         let before = self.before.get_or_insert_with(|| stresses(body, positions));
-        let bricks = body.bricks().iter().zip(before).zip(&self.branches);
-        for (((brick, before), branches), within) in bricks.zip(within) {
+        let hex8s = body.hex8s().iter().zip(before).zip(&self.branches);
+        for (((hex8, before), branches), within) in hex8s.zip(within) {
             let mut share = self.retardation / step;
-            let mut stress = BrickStress::ZERO;
-            let material = body.material_of(brick);
+            let mut stress = Hex8Stress::ZERO;
+            let material = body.material_of(hex8);
             for (q, (stiffness, time)) in branches.iter().zip(material.branches()) {
                 let half = half_decay(step, time);
                 share += stiffness * half;
@@ -113,10 +113,10 @@ impl Viscosity {
     pub fn end(&mut self, body: &Body, positions: &[Vec3], step: f64) {
         let now = stresses(body, positions);
         if let Some(before) = &self.before {
-            let bricks = body.bricks().iter().zip(before).zip(&now);
-            for (((brick, before), now), branches) in bricks.zip(&mut self.branches) {
+            let hex8s = body.hex8s().iter().zip(before).zip(&now);
+            for (((hex8, before), now), branches) in hex8s.zip(&mut self.branches) {
                 let change = now.plus_scaled(-1.0, before);
-                for (q, branch) in branches.iter_mut().zip(body.material_of(brick).branches()) {
+                for (q, branch) in branches.iter_mut().zip(body.material_of(hex8).branches()) {
                     *q = after(q, branch, step, &change);
                 }
             }
@@ -131,18 +131,18 @@ fn half_decay(step: f64, time: f64) -> f64 {
 }
 
 /// Stress of a branch `(γ, τ)` after a step in which `s` has changed.
-fn after(q: &BrickStress, branch: (f64, f64), step: f64, change: &BrickStress) -> BrickStress {
+fn after(q: &Hex8Stress, branch: (f64, f64), step: f64, change: &Hex8Stress) -> Hex8Stress {
     let (stiffness, time) = branch;
     let half = half_decay(step, time);
-    BrickStress::ZERO
+    Hex8Stress::ZERO
         .plus_scaled(half * half, q)
         .plus_scaled(stiffness * half, change)
 }
 
-fn stresses(body: &Body, positions: &[Vec3]) -> Vec<BrickStress> {
+fn stresses(body: &Body, positions: &[Vec3]) -> Vec<Hex8Stress> {
     let positions = &*body.ties().seen(positions);
-    let bricks = body.bricks().iter();
-    bricks
-        .map(|brick| brick.deviatoric_stress(body.material_of(brick), positions))
+    let hex8s = body.hex8s().iter();
+    hex8s
+        .map(|hex8| hex8.deviatoric_stress(body.material_of(hex8), positions))
         .collect()
 }

@@ -40,15 +40,15 @@
 //! The mean stress at a free face has no shear there; in an isotropic material then `S` has none either, and `S̃ = S`:
 //! the patch test holds at any strain.
 
-use crate::element::coordinates::{AXES, BrickStrain, OFF, SHAPE, Shaped};
-use crate::element::faces::Warping;
+use crate::element::coordinates::{AXES, Hex8Strain, OFF, STRAIN_COMPONENTS, StrainFunction};
+use crate::element::faces::WarpingModes;
 use crate::element::rotated::Rotated;
 use crate::element::thickness::positive;
 use crate::hyperelastic::symmetric::{Response, Sym};
 
 const SQRT_2: f64 = std::f64::consts::SQRT_2;
 
-impl Warping {
+impl WarpingModes {
     /// The relieved stretch, at which the isochoric energy is evaluated.
     fn relieved(&self, stretch: &Sym) -> Sym {
         let mut relieved = *stretch;
@@ -80,7 +80,12 @@ impl Warping {
     }
 
     /// Adds the second derivatives of the relieved stretch, each component times its `force`.
-    fn add_curvature(&self, stretch: &Sym, force: &Sym, hessian: &mut [[f64; SHAPE]; SHAPE]) {
+    fn add_curvature(
+        &self,
+        stretch: &Sym,
+        force: &Sym,
+        hessian: &mut [[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
+    ) {
         for (pair, (b, j, k)) in self.parts().iter().zip(AXES) {
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 let places = [OFF + b, n, t];
@@ -160,15 +165,15 @@ impl Rotated {
         thinning: f64,
         second: Option<f64>,
         function: impl Fn(&Sym) -> Response,
-    ) -> Shaped {
+    ) -> StrainFunction {
         let warping = self.warping;
         if let Some(clamped) = warping.clamped {
             return self.clamped_mean(clamped, thinning, second, function);
         }
-        if warping == Warping::NONE {
+        if warping == WarpingModes::NONE {
             return self.mean(thinning, second.is_some(), function);
         }
-        let relieved = self.with_strain(&BrickStrain {
+        let relieved = self.with_strain(&Hex8Strain {
             stretch: warping.relieved(&self.stretch),
             hourglass: self.hourglass,
         });
@@ -181,7 +186,7 @@ impl Rotated {
                 let own: Sym = std::array::from_fn(|k| row[k]);
                 row[..6].copy_from_slice(&through(&slopes, &own));
             }
-            let columns: [Sym; SHAPE] = std::array::from_fn(|column| {
+            let columns: [Sym; STRAIN_COMPONENTS] = std::array::from_fn(|column| {
                 through(&slopes, &std::array::from_fn(|k| mean.hessian[k][column]))
             });
             for (column, values) in columns.iter().enumerate() {

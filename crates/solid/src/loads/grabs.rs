@@ -192,7 +192,7 @@ pub fn shortest_edge(problem: &Problem) -> f64 {
     let rest = body.rest();
     let lengths = body.edges().iter().map(|edge| edge.length);
     let sides = body
-        .bricks()
+        .hex8s()
         .iter()
         .map(|b| b.free_side(body.material_of(b)));
     let triangles = body.membranes().iter().flat_map(|membrane| {

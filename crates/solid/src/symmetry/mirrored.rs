@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::assembly::{Visitor, check_indices};
 use crate::loads::Pressure;
 use crate::loads::external_force::{ExternalForce, Vertices};
-use crate::term::{Strain, Term};
+use crate::term::{AssumedStrain, Term};
 use crate::terms::Membranes;
 use crate::vector::{Vec3, axpy};
 use crate::{Membrane, ProblemError};
@@ -169,30 +169,40 @@ impl<T: Term> Term for Mirrored<T> {
         images.add_to(&found, product);
     }
 
-    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<AssumedStrain> {
         let images = &self.images;
         self.elements
             .predict(&images.seen(positions), &images.seen(moves))
     }
 
-    fn add_predicted_forces(&self, strain: &Strain, positions: &[Vec3], forces: &mut [Vec3]) {
+    fn add_predicted_forces(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        forces: &mut [Vec3],
+    ) {
         let mut found = vec![[0.0; 3]; self.images.of.len()];
         self.elements
             .add_predicted_forces(strain, &self.images.seen(positions), &mut found);
         self.images.add_to(&found, forces);
     }
 
-    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+    fn visit_predicted_stiffness(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        visit: Visitor<'_>,
+    ) {
         let images = &self.images;
         let mut seen = |corners: &[u32], matrix: &[f64]| images.visit(corners, matrix, visit);
         self.elements
             .visit_predicted_stiffness(strain, &images.seen(positions), &mut seen);
     }
 
-    fn carry(&self, strain: &mut Strain, positions: &[Vec3], moves: &[Vec3]) -> bool {
+    fn update(&self, strain: &mut AssumedStrain, positions: &[Vec3], moves: &[Vec3]) -> bool {
         let images = &self.images;
         self.elements
-            .carry(strain, &images.seen(positions), &images.seen(moves))
+            .update(strain, &images.seen(positions), &images.seen(moves))
     }
 }
 

@@ -8,7 +8,7 @@ use std::any::Any;
 
 use crate::assembly::Visitor;
 use crate::element::hex8::Tangent;
-use crate::term::{Strain, Term};
+use crate::term::{AssumedStrain, Term};
 use crate::vector::Vec3;
 use crate::{Contact, ContactMemory, Images, ProblemError};
 
@@ -81,26 +81,36 @@ impl<C: Contact + Clone> Term for MirroredContact<C> {
         (self.contact).visit_tangent(&seen, tangent, &mut self.seen(visit));
     }
 
-    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<AssumedStrain> {
         let images = &self.images;
         (self.contact).predict(&images.seen(positions), &images.seen(moves))
     }
 
-    fn add_predicted_forces(&self, strain: &Strain, positions: &[Vec3], forces: &mut [Vec3]) {
+    fn add_predicted_forces(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        forces: &mut [Vec3],
+    ) {
         let seen = self.images.seen(positions);
         self.add_seen(forces, |found| {
             (self.contact).add_predicted_forces(strain, &seen, found);
         });
     }
 
-    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+    fn visit_predicted_stiffness(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        visit: Visitor<'_>,
+    ) {
         let seen = self.images.seen(positions);
         (self.contact).visit_predicted_stiffness(strain, &seen, &mut self.seen(visit));
     }
 
-    fn carry(&self, strain: &mut Strain, positions: &[Vec3], moves: &[Vec3]) -> bool {
+    fn update(&self, strain: &mut AssumedStrain, positions: &[Vec3], moves: &[Vec3]) -> bool {
         let images = &self.images;
-        (self.contact).carry(strain, &images.seen(positions), &images.seen(moves))
+        (self.contact).update(strain, &images.seen(positions), &images.seen(moves))
     }
 }
 

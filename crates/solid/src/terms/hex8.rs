@@ -1,10 +1,10 @@
 use crate::assembly::{Elements, ElementsVisitor, Visitor};
 use crate::batches::{groups_in_order, in_order};
-use crate::element::hex8::{Brick, BrickMatrix, Carried, Tangent, Within};
+use crate::element::hex8::{Hex8, Hex8AssumedStrain, Hex8Matrix, Tangent, Within};
 use crate::element::hex8_simd::{TOGETHER, Together};
 use crate::element::ties::Ties;
 use crate::hyperelastic::HyperelasticMaterial;
-use crate::term::{Strain, Term};
+use crate::term::{AssumedStrain, Term};
 use crate::vector::Vec3;
 
 /// Batch sizes: voxels whose forces, or stiffness matrices of 4.6 kB, are kept until they are added.
@@ -13,10 +13,10 @@ const STIFFNESS_BATCH: usize = 512;
 
 /// All hyperelastic voxels of a body.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Bricks {
+pub struct Hex8s {
     /// Voxels of one color after the other.
-    pub bricks: Vec<Brick>,
-    /// The materials to which [`Brick::material`] refers.
+    pub hex8s: Vec<Hex8>,
+    /// The materials to which [`Hex8::material`] refers.
     pub materials: Vec<HyperelasticMaterial>,
     /// Ties of their vertices that follow others (hanging nodes).
     pub(crate) ties: Ties,
@@ -26,20 +26,16 @@ pub struct Bricks {
     within: Option<Vec<Within>>,
 }
 
-impl Bricks {
+impl Hex8s {
     /// Voxels in their initial state.
-    pub(crate) fn new(
-        bricks: Vec<Brick>,
-        materials: Vec<HyperelasticMaterial>,
-        ties: Ties,
-    ) -> Self {
-        let soften = |brick: &Brick| {
-            let material: &HyperelasticMaterial = &materials[brick.material as usize];
+    pub(crate) fn new(hex8s: Vec<Hex8>, materials: Vec<HyperelasticMaterial>, ties: Ties) -> Self {
+        let soften = |hex8: &Hex8| {
+            let material: &HyperelasticMaterial = &materials[hex8.material as usize];
             material.mullins().is_some()
         };
         Self {
-            softens: bricks.iter().any(soften),
-            bricks,
+            softens: hex8s.iter().any(soften),
+            hex8s,
             materials,
             ties,
             within: None,
@@ -59,8 +55,8 @@ impl Bricks {
     /// The elastic energy in J, without a viscous potential.
     pub(crate) fn elastic_energy(&self, positions: &[Vec3]) -> f64 {
         let positions = &*self.ties.seen(positions);
-        let energy = |brick: &Brick| brick.energy(self.material_of(brick), positions);
-        self.bricks.iter().map(energy).sum()
+        let energy = |hex8: &Hex8| hex8.energy(self.material_of(hex8), positions);
+        self.hex8s.iter().map(energy).sum()
     }
 
     /// Tests whether any voxel softens.
@@ -70,38 +66,38 @@ impl Bricks {
 
     /// The peaks: the largest isochoric energy (J/m³) so far of each voxel, if any softens.
     pub fn peaks(&self) -> Option<Vec<f64>> {
-        let peaks = self.bricks.iter().map(|brick| brick.peak);
+        let peaks = self.hex8s.iter().map(|hex8| hex8.peak);
         self.softens.then(|| peaks.collect())
     }
 
     /// Sets the peaks (J/m³) of all voxels.
     pub(crate) fn set_peaks(&mut self, peaks: &[f64]) {
-        for (brick, peak) in self.bricks.iter_mut().zip(peaks) {
-            brick.peak = *peak;
+        for (hex8, peak) in self.hex8s.iter_mut().zip(peaks) {
+            hex8.peak = *peak;
         }
     }
 
     /// The peaks (J/m³) after accepting a state at `positions`.
     pub(crate) fn peaks_after(&self, positions: &[Vec3]) -> Vec<f64> {
         let positions = &*self.ties.seen(positions);
-        let mut peaks = Vec::with_capacity(self.bricks.len());
+        let mut peaks = Vec::with_capacity(self.hex8s.len());
         self.each(
             FORCE_BATCH,
-            |_, brick| brick.virgin_energy(self.material_of(brick), positions),
-            |_, brick, energy| peaks.push(brick.peak.max(energy)),
+            |_, hex8| hex8.virgin_energy(self.material_of(hex8), positions),
+            |_, hex8, energy| peaks.push(hex8.peak.max(energy)),
         );
         peaks
     }
 
     /// The peaks (J/m³) of a body that has not been strained.
     pub(crate) fn first_peaks(&self) -> Vec<f64> {
-        let first = |brick: &Brick| self.material_of(brick).first_peak();
-        self.bricks.iter().map(first).collect()
+        let first = |hex8: &Hex8| self.material_of(hex8).first_peak();
+        self.hex8s.iter().map(first).collect()
     }
 
     /// The material of a voxel.
-    pub fn material_of(&self, brick: &Brick) -> &HyperelasticMaterial {
-        &self.materials[brick.material as usize]
+    pub fn material_of(&self, hex8: &Hex8) -> &HyperelasticMaterial {
+        &self.materials[hex8.material as usize]
     }
 
     /// The response within a time step: the elastic energy and the potential of the forces in J; adds the forces in N
@@ -117,12 +113,12 @@ impl Bricks {
         let (mut elastic, mut potential) = (0.0, 0.0);
         self.each(
             FORCE_BATCH,
-            |i, brick| brick.respond(self.material_of(brick), positions, &within[i]),
-            |i, brick, response| {
+            |i, hex8| hex8.respond(self.material_of(hex8), positions, &within[i]),
+            |i, hex8, response| {
                 elastic += response.elastic;
                 potential += response.potential;
                 pressures[i] = response.pressure;
-                brick.add_to(&response.forces, forces);
+                hex8.add_to(&response.forces, forces);
             },
         );
         self.ties.hand_over(forces);
@@ -140,13 +136,13 @@ impl Bricks {
         let positions = &*self.ties.seen(positions);
         self.each(
             STIFFNESS_BATCH,
-            |i, brick| {
-                let material = self.material_of(brick);
-                brick.stiffness_within(material, positions, None, &within[i], tangent)
+            |i, hex8| {
+                let material = self.material_of(hex8);
+                hex8.stiffness_within(material, positions, None, &within[i], tangent)
             },
-            |_, brick, matrix| {
+            |_, hex8, matrix| {
                 self.ties
-                    .visit(&brick.vertices, matrix.as_flattened(), visit);
+                    .visit(&hex8.vertices, matrix.as_flattened(), visit);
             },
         );
     }
@@ -154,22 +150,22 @@ impl Bricks {
     /// The pressure in each voxel in Pa, positive in tension.
     pub fn pressures(&self, positions: &[Vec3]) -> Vec<f64> {
         let positions = &*self.ties.seen(positions);
-        let pressure = |brick: &Brick| {
-            let material = self.material_of(brick);
+        let pressure = |hex8: &Hex8| {
+            let material = self.material_of(hex8);
             let within = Within::elastic(material);
-            brick.respond(material, positions, &within).pressure
+            hex8.respond(material, positions, &within).pressure
         };
-        self.bricks.iter().map(pressure).collect()
+        self.hex8s.iter().map(pressure).collect()
     }
 
     /// The strains at `positions` with prescribed pressures in Pa, one for each voxel.
-    pub(crate) fn with_pressures(&self, positions: &[Vec3], pressures: &[f64]) -> Strain {
+    pub(crate) fn with_pressures(&self, positions: &[Vec3], pressures: &[f64]) -> AssumedStrain {
         let positions = &*self.ties.seen(positions);
-        let pairs = self.bricks.iter().zip(pressures);
-        let state = |(brick, &pressure): (&Brick, &f64)| {
-            brick.with_pressure(self.material_of(brick), positions, pressure)
+        let pairs = self.hex8s.iter().zip(pressures);
+        let state = |(hex8, &pressure): (&Hex8, &f64)| {
+            hex8.with_pressure(self.material_of(hex8), positions, pressure)
         };
-        Strain::Voxels(pairs.map(state).collect())
+        AssumedStrain::Voxels(pairs.map(state).collect())
     }
 
     /// The voxels from `first` on, with their carried strains.
@@ -178,11 +174,11 @@ impl Bricks {
         first: usize,
         count: usize,
         positions: &'a [Vec3],
-        carried: Option<&'a [Carried]>,
+        carried: Option<&'a [Hex8AssumedStrain]>,
     ) -> Together<'a> {
         let range = first..first + count;
         Together {
-            bricks: &self.bricks[range.clone()],
+            hex8s: &self.hex8s[range.clone()],
             materials: &self.materials,
             positions,
             carried: carried.map(|states| &states[range]),
@@ -194,10 +190,15 @@ impl Bricks {
         self.add_forces_of(positions, None, forces);
     }
 
-    fn add_forces_of(&self, positions: &[Vec3], carried: Option<&[Carried]>, forces: &mut [Vec3]) {
+    fn add_forces_of(
+        &self,
+        positions: &[Vec3],
+        carried: Option<&[Hex8AssumedStrain]>,
+        forces: &mut [Vec3],
+    ) {
         let positions = &*self.ties.seen(positions);
         groups_in_order(
-            self.bricks.len(),
+            self.hex8s.len(),
             FORCE_BATCH,
             TOGETHER,
             &[[0.0; 3]; 8],
@@ -206,8 +207,8 @@ impl Bricks {
                     .forces(out);
             },
             |first, all| {
-                for (brick, corners) in self.bricks[first..].iter().zip(all) {
-                    brick.add_to(corners, forces);
+                for (hex8, corners) in self.hex8s[first..].iter().zip(all) {
+                    hex8.add_to(corners, forces);
                 }
             },
         );
@@ -218,13 +219,13 @@ impl Bricks {
     fn visit_elements_of(
         &self,
         positions: &[Vec3],
-        carried: Option<&[Carried]>,
+        carried: Option<&[Hex8AssumedStrain]>,
         visit: ElementsVisitor<'_>,
     ) {
         let positions = &*self.ties.seen(positions);
-        let mut order: Vec<u32> = (0..self.bricks.len() as u32).collect();
-        order.sort_by_key(|&index| self.bricks[index as usize].vertices[0]);
-        let empty: BrickMatrix = [[0.0; 24]; 24];
+        let mut order: Vec<u32> = (0..self.hex8s.len() as u32).collect();
+        order.sort_by_key(|&index| self.hex8s[index as usize].vertices[0]);
+        let empty: Hex8Matrix = [[0.0; 24]; 24];
         let mut vertices = Vec::new();
         groups_in_order(
             order.len(),
@@ -235,10 +236,10 @@ impl Bricks {
                 let last = out.len() - 1;
                 let own: [usize; TOGETHER] =
                     std::array::from_fn(|place| order[first + place.min(last)] as usize);
-                let bricks = own.map(|index| self.bricks[index]);
+                let hex8s = own.map(|index| self.hex8s[index]);
                 let states = carried.map(|states| own.map(|index| states[index]));
                 let together = Together {
-                    bricks: &bricks[..=last],
+                    hex8s: &hex8s[..=last],
                     materials: &self.materials,
                     positions,
                     carried: states.as_ref().map(|states| &states[..=last]),
@@ -248,7 +249,7 @@ impl Bricks {
             |first, matrices| {
                 vertices.clear();
                 for &index in &order[first..first + matrices.len()] {
-                    vertices.extend_from_slice(&self.bricks[index as usize].vertices);
+                    vertices.extend_from_slice(&self.hex8s[index as usize].vertices);
                 }
                 let elements = Elements {
                     width: 8,
@@ -260,23 +261,23 @@ impl Bricks {
         );
     }
 
-    /// Predicts strains after a step `moves`, see [`Brick::carry`].
+    /// Predicts strains after a step `moves`, see [`Hex8::update`].
     fn carried(
         &self,
         positions: &[Vec3],
-        before: Option<&[Carried]>,
+        before: Option<&[Hex8AssumedStrain]>,
         moves: &[Vec3],
-    ) -> Vec<Carried> {
+    ) -> Vec<Hex8AssumedStrain> {
         let (positions, moves) = (&*self.ties.seen(positions), &*self.ties.seen(moves));
-        let mut states = Vec::with_capacity(self.bricks.len());
+        let mut states = Vec::with_capacity(self.hex8s.len());
         groups_in_order(
-            self.bricks.len(),
+            self.hex8s.len(),
             FORCE_BATCH,
             TOGETHER,
-            &Carried::NOTHING,
+            &Hex8AssumedStrain::NOTHING,
             |first, out| {
                 self.together(first, out.len(), positions, before)
-                    .carry(moves, out);
+                    .update(moves, out);
             },
             |_, all| states.extend_from_slice(all),
         );
@@ -287,26 +288,26 @@ impl Bricks {
     fn each<U: Send>(
         &self,
         batch: usize,
-        work: impl Fn(usize, &Brick) -> U + Sync,
-        mut take: impl FnMut(usize, &Brick, U),
+        work: impl Fn(usize, &Hex8) -> U + Sync,
+        mut take: impl FnMut(usize, &Hex8, U),
     ) {
         in_order(
-            self.bricks.len(),
+            self.hex8s.len(),
             batch,
-            |i| work(i, &self.bricks[i]),
-            |i, result| take(i, &self.bricks[i], result),
+            |i| work(i, &self.hex8s[i]),
+            |i, result| take(i, &self.hex8s[i], result),
         );
     }
 }
 
-impl Term for Bricks {
+impl Term for Hex8s {
     fn name(&self) -> &'static str {
         "hyperelastic voxels"
     }
 
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
-        for brick in &self.bricks {
-            self.ties.visit_pattern(&brick.vertices, visit);
+        for hex8 in &self.hex8s {
+            self.ties.visit_pattern(&hex8.vertices, visit);
         }
     }
 
@@ -315,14 +316,14 @@ impl Term for Bricks {
             return self.elastic_energy(positions);
         };
         let mut forces = vec![[0.0; 3]; positions.len()];
-        let mut pressures = vec![0.0; self.bricks.len()];
+        let mut pressures = vec![0.0; self.hex8s.len()];
         self.respond(positions, within, &mut forces, &mut pressures)
             .1
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
         if let Some(within) = &self.within {
-            let mut pressures = vec![0.0; self.bricks.len()];
+            let mut pressures = vec![0.0; self.hex8s.len()];
             self.respond(positions, within, forces, &mut pressures);
             return;
         }
@@ -356,17 +357,27 @@ impl Term for Bricks {
         self.visit_elements_of(positions, None, visit);
     }
 
-    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<AssumedStrain> {
         // A viscous stress is that of the positions themselves.
         let elastic = self.within.is_none();
-        elastic.then(|| Strain::Voxels(self.carried(positions, None, moves)))
+        elastic.then(|| AssumedStrain::Voxels(self.carried(positions, None, moves)))
     }
 
-    fn add_predicted_forces(&self, strain: &Strain, positions: &[Vec3], forces: &mut [Vec3]) {
+    fn add_predicted_forces(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        forces: &mut [Vec3],
+    ) {
         self.add_forces_of(positions, strain.voxels(), forces);
     }
 
-    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+    fn visit_predicted_stiffness(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        visit: Visitor<'_>,
+    ) {
         self.visit_predicted_elements(strain, positions, &mut |elements| {
             elements
                 .iter()
@@ -376,15 +387,15 @@ impl Term for Bricks {
 
     fn visit_predicted_elements(
         &self,
-        strain: &Strain,
+        strain: &AssumedStrain,
         positions: &[Vec3],
         visit: ElementsVisitor<'_>,
     ) {
         self.visit_elements_of(positions, strain.voxels(), visit);
     }
 
-    fn carry(&self, strain: &mut Strain, positions: &[Vec3], moves: &[Vec3]) -> bool {
-        *strain = Strain::Voxels(self.carried(positions, strain.voxels(), moves));
+    fn update(&self, strain: &mut AssumedStrain, positions: &[Vec3], moves: &[Vec3]) -> bool {
+        *strain = AssumedStrain::Voxels(self.carried(positions, strain.voxels(), moves));
         true
     }
 }

@@ -18,8 +18,8 @@ use crate::Mirrored;
 use crate::term::Term;
 
 pub use edges::{Edge, Edges};
-pub use hex8::Bricks;
 pub(crate) use hex8::FORCE_BATCH;
+pub use hex8::Hex8s;
 pub use membranes::Membranes;
 pub use springs::{Spring, Springs};
 pub(crate) use tets::volume_hessian;

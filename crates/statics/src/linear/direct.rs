@@ -12,7 +12,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
-use voxsoft_solid::element::assumed_strain::Strains;
+use voxsoft_solid::element::assumed_strain::AssumedStrains;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Load, Problem, elastic};
 
@@ -184,7 +184,7 @@ impl DirectSystem {
         problem: &Problem,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
-        strains: Option<&Strains>,
+        strains: Option<&AssumedStrains>,
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
@@ -455,9 +455,9 @@ impl DirectSystem {
 /// Marks vertices without voxels or tetrahedra: those of objects and springs.
 fn of_no_element(body: &Body) -> Vec<bool> {
     let mut marks = vec![true; body.rest().len()];
-    let bricks = body.bricks().iter().flat_map(|brick| brick.vertices);
+    let hex8s = body.hex8s().iter().flat_map(|hex8| hex8.vertices);
     let tets = body.tets().iter().flat_map(|tet| tet.vertices);
-    for vertex in bricks.chain(tets) {
+    for vertex in hex8s.chain(tets) {
         marks[vertex as usize] = false;
     }
     marks

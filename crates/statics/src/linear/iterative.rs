@@ -4,7 +4,7 @@
 //! dimensions grow with its powers 4/3 and 2.
 
 use voxsoft_solid::assembly::Elements;
-use voxsoft_solid::element::assumed_strain::Strains;
+use voxsoft_solid::element::assumed_strain::AssumedStrains;
 use voxsoft_solid::vector::{Vec3, axpy, dot};
 use voxsoft_solid::{Load, Problem, Term, elastic};
 
@@ -87,7 +87,7 @@ impl IterativeSystem {
         means: Means,
     ) -> Result<Option<Self>, FactorError> {
         let body = problem.body();
-        let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.small_bricks().len();
+        let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.small_hex8s().len();
         let loads = problem.loads().iter();
         let local = body.attached().all(Term::is_local)
             && loads.map(|load| &load.kind).all(|kind| kind.is_local());
@@ -134,7 +134,7 @@ impl IterativeSystem {
         problem: &Problem,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
-        strains: Option<&Strains>,
+        strains: Option<&AssumedStrains>,
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {

@@ -31,8 +31,8 @@ pub(crate) fn pattern(problem: &Problem) -> BlockMatrix {
     if body.ties().is_empty() {
         body.voxels().iter().for_each(|v| elements.push(v));
     } else {
-        let bricks = body.brick_term();
-        bricks.visit_pattern(&mut |vertices| elements.push(vertices));
+        let hex8s = body.hex8_term();
+        hex8s.visit_pattern(&mut |vertices| elements.push(vertices));
     }
     for term in body.terms_beyond_voxels() {
         term.visit_pattern(&mut |vertices| elements.push(vertices));

@@ -1,6 +1,6 @@
 //! Tangent of a problem on its free coordinates: choice between direct and iterative solver.
 
-use voxsoft_solid::element::assumed_strain::Strains;
+use voxsoft_solid::element::assumed_strain::AssumedStrains;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Load, Problem, Ties};
 
@@ -83,7 +83,7 @@ impl System {
         problem: &Problem,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
-        strains: Option<&Strains>,
+        strains: Option<&AssumedStrains>,
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {

@@ -12,7 +12,7 @@
 //! only contact needs, on the residual. The file is long because both methods share the evaluation of a state and the
 //! steps.
 
-use voxsoft_solid::element::assumed_strain::Strains;
+use voxsoft_solid::element::assumed_strain::AssumedStrains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale};
 use voxsoft_solid::{Observer, Problem};
 
@@ -206,7 +206,7 @@ pub(crate) struct Place<'a> {
     pub positions: &'a [Vec3],
     pub point: Point,
     pub unknown: Unknown,
-    pub strains: Option<&'a Strains>,
+    pub strains: Option<&'a AssumedStrains>,
     /// Prescribed displacement increments of held coordinates.
     pub jump: Option<&'a [Vec3]>,
 }
@@ -373,7 +373,7 @@ impl<C: Constraint> Newton<'_, '_, C> {
         &self,
         now: &'p Iterate,
         seen: &'p Seen,
-        strains: Option<&'p Strains>,
+        strains: Option<&'p AssumedStrains>,
     ) -> Place<'p> {
         Place {
             positions: &now.positions,
@@ -469,7 +469,7 @@ impl<C: Constraint> Newton<'_, '_, C> {
     /// Mixed iterations, with strains as unknowns. If they diverge, `now` is their best state.
     fn mixed(&mut self, now: &mut Iterate) -> Result<Seen, Failure> {
         let mut at = now.clone();
-        let mut strains: Option<Strains> = None;
+        let mut strains: Option<AssumedStrains> = None;
         let (mut best, mut lowest, mut since_lowest) = (f64::INFINITY, f64::INFINITY, 0);
         for iteration in 0..=MIXED_ITERATIONS {
             let seen = self.look(&at.positions, at.factor)?;
@@ -519,8 +519,8 @@ impl<C: Constraint> Newton<'_, '_, C> {
             }
             let body = self.equilibrium.problem.body();
             strains = Some(match strains.take() {
-                Some(strains) => strains.carry(body, &at.positions, &moves),
-                None => Strains::predict(body, &at.positions, &moves),
+                Some(strains) => strains.update(body, &at.positions, &moves),
+                None => AssumedStrains::predict(body, &at.positions, &moves),
             });
             at.shift(&moves, 1.0);
             at.factor += step.change;

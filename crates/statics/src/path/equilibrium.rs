@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
-use voxsoft_solid::element::assumed_strain::Strains;
+use voxsoft_solid::element::assumed_strain::AssumedStrains;
 use voxsoft_solid::matrix::axial;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
-use voxsoft_solid::{Body, Brick, Fluid, Observer, Problem, Progress, elastic};
+use voxsoft_solid::{Body, Fluid, Hex8, Observer, Problem, Progress, elastic};
 
 use crate::inertia::Inertia;
 use crate::linear::error::FactorError;
@@ -214,7 +214,7 @@ impl Equilibrium {
     /// Net forces on free coordinates with the elastic forces that `strains` predict.
     pub fn predicted_forces(
         &self,
-        strains: &Strains,
+        strains: &AssumedStrains,
         positions: &[Vec3],
         point: Point,
     ) -> Vec<f64> {
@@ -333,7 +333,7 @@ impl Equilibrium {
     ) -> Result<Found, Failure> {
         let opening = self.opening.take();
         let mut strains =
-            opening.map(|p| Strains::with_pressures(self.problem.body(), positions, &p));
+            opening.map(|p| AssumedStrains::with_pressures(self.problem.body(), positions, &p));
         let stiff = self.problem.fluid().filter(|fluid| fluid.is_stiff());
         let mut carried = stiff.map(Fluid::last_pressures);
         let is_stiff = carried.is_some();
@@ -414,8 +414,8 @@ impl Equilibrium {
             }
             let body = self.problem.body();
             strains = Some(match strains.take() {
-                Some(strains) => strains.carry(body, positions, &moves),
-                None => Strains::predict(body, positions, &moves),
+                Some(strains) => strains.update(body, positions, &moves),
+                None => AssumedStrains::predict(body, positions, &moves),
             });
             let stiff = self.problem.fluid().filter(|_| is_stiff);
             carried = stiff.map(|fluid| {
@@ -659,11 +659,11 @@ impl Equilibrium {
     /// Tests that no voxel is inverted or nearly so.
     pub fn is_sound(&self, positions: &[Vec3]) -> bool {
         let body = self.problem.body();
-        let ratio = |brick: &Brick| {
-            let deformation = brick.deformation(body.material_of(brick), positions);
+        let ratio = |hex8: &Hex8| {
+            let deformation = hex8.deformation(body.material_of(hex8), positions);
             voxsoft_solid::matrix::determinant(&deformation)
         };
-        body.bricks().iter().all(|brick| ratio(brick) > 0.1)
+        body.hex8s().iter().all(|hex8| ratio(hex8) > 0.1)
             && positions.iter().flatten().all(|x| x.is_finite())
     }
 
@@ -726,9 +726,8 @@ fn largest_turn(body: &Body, positions: &[Vec3], moves: &[Vec3]) -> f64 {
         .zip(moves)
         .map(|(x, m)| add(*x, *m))
         .collect();
-    let turn =
-        |brick: &Brick| norm(axial(&brick.deformation(body.material_of(brick), &moved))) / 2.0;
-    body.bricks().iter().map(turn).fold(0.0, f64::max)
+    let turn = |hex8: &Hex8| norm(axial(&hex8.deformation(body.material_of(hex8), &moved))) / 2.0;
+    body.hex8s().iter().map(turn).fold(0.0, f64::max)
 }
 
 /// Farthest motion of a vertex by a clamp, m.

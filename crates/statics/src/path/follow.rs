@@ -19,7 +19,7 @@ use crate::path::{arc_length, volume};
 pub struct Start {
     /// Positions in m.
     pub positions: Vec<Vec3>,
-    /// Pressures in the hyperelastic voxels in Pa, positive in tension, in the order of [`voxsoft_solid::Bricks`];
+    /// Pressures in the hyperelastic voxels in Pa, positive in tension, in the order of [`voxsoft_solid::Hex8s`];
     /// `None` for those of the positions.
     pub pressures: Option<Vec<f64>>,
 }

@@ -10,7 +10,7 @@ use pulp::Simd;
 
 use super::frame::Constants;
 use super::number::{Nine, Number, Six, Three, cofactors, dot, to_matrix, to_sym};
-use crate::element::coordinates::{AXES, Axes, OFF, SHAPE};
+use crate::element::coordinates::{AXES, Axes, OFF, STRAIN_COMPONENTS};
 use crate::hyperelastic::Model;
 
 const HALF_ROOT: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -24,9 +24,9 @@ const ROOT_ITERATIONS: usize = 6;
 pub(super) const LEAST_STRETCH: f64 = 0.2;
 
 /// A row of generalized coordinates, or of derivatives by them.
-pub(super) type Row<S> = [Number<S>; SHAPE];
+pub(super) type Row<S> = [Number<S>; STRAIN_COMPONENTS];
 /// A matrix of such rows, as a Hessian.
-pub(super) type Square<S> = [Row<S>; SHAPE];
+pub(super) type Square<S> = [Row<S>; STRAIN_COMPONENTS];
 
 /// The coordinates that an energy depends on.
 #[derive(Clone, Copy)]
@@ -43,7 +43,7 @@ const fn place(mode: usize, axis: usize) -> usize {
 impl<S: Simd> Shape<S> {
     #[inline(always)]
     pub fn row(&self) -> Row<S> {
-        let mut row = [self.stretch[0]; SHAPE];
+        let mut row = [self.stretch[0]; STRAIN_COMPONENTS];
         row[..6].copy_from_slice(&self.stretch);
         row[6..].copy_from_slice(self.hourglass.as_flattened());
         row
@@ -254,7 +254,7 @@ impl<S: Simd> Volume<S> {
         let matrix = to_matrix(&shape.stretch);
         let cofactor = cofactors(&matrix);
         let mut value = dot(&matrix[0], &cofactor[0]);
-        let mut gradient = [zero; SHAPE];
+        let mut gradient = [zero; STRAIN_COMPONENTS];
         gradient[..6].copy_from_slice(&to_sym(&cofactor));
         for axes in AXES {
             let variation = Variation::of(shape, axes, constants.thinning);
@@ -361,7 +361,7 @@ pub(super) fn add_deviatoric<S: Simd>(
             stretch: relieved,
             hourglass: shape.hourglass,
         };
-        let mut own = [constants.bulk.all(0.0); SHAPE];
+        let mut own = [constants.bulk.all(0.0); STRAIN_COMPONENTS];
         add_isochoric(constants, &seen, &mut own, hessian.as_deref_mut(), sound);
         let force = [own[0], own[1], own[2], own[3], own[4], own[5]];
         if let Some(hessian) = hessian.as_deref_mut() {
@@ -370,7 +370,7 @@ pub(super) fn add_deviatoric<S: Simd>(
                 let seen = [row[0], row[1], row[2], row[3], row[4], row[5]];
                 row[..6].copy_from_slice(&through_relief(&slopes, &seen));
             }
-            for column in 0..SHAPE {
+            for column in 0..STRAIN_COMPONENTS {
                 let mut seen = force;
                 for k in 0..6 {
                     seen[k] = hessian[k][column];
@@ -383,7 +383,7 @@ pub(super) fn add_deviatoric<S: Simd>(
             add_relief_curvature(constants, &shape.stretch, &force, hessian);
         }
         own[..6].copy_from_slice(&through_relief(&slopes, &force));
-        for k in 0..SHAPE {
+        for k in 0..STRAIN_COMPONENTS {
             gradient[k] += own[k];
         }
     } else {

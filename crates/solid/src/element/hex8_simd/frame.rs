@@ -8,7 +8,7 @@ use super::number::{
     to_sym,
 };
 use crate::element::coordinates::AXES;
-use crate::element::hex8::{Brick, Filling, Warping};
+use crate::element::hex8::{Filling, Hex8, WarpingModes};
 use crate::hyperelastic::{HyperelasticMaterial, Model};
 use crate::vector::Vec3;
 
@@ -75,64 +75,63 @@ pub(super) fn has_lanes(material: &HyperelasticMaterial) -> bool {
 #[inline(always)]
 fn gather<S: Simd>(
     simd: S,
-    bricks: &[&Brick; MOST_LANES],
-    value: impl Fn(&Brick) -> f64,
+    hex8s: &[&Hex8; MOST_LANES],
+    value: impl Fn(&Hex8) -> f64,
 ) -> Number<S> {
     let mut lanes = [0.0; MOST_LANES];
     for lane in 0..S::F64_LANES {
-        lanes[lane] = value(bricks[lane]);
+        lanes[lane] = value(hex8s[lane]);
     }
     Number::load(simd, &lanes)
 }
 
 impl<S: Simd> Constants<S> {
     #[inline(always)]
-    pub fn of(simd: S, bricks: &[&Brick; MOST_LANES], materials: &[HyperelasticMaterial]) -> Self {
-        let of_material = |brick: &Brick| &materials[brick.material as usize];
-        let lanes = || bricks[..S::F64_LANES].iter();
+    pub fn of(simd: S, hex8s: &[&Hex8; MOST_LANES], materials: &[HyperelasticMaterial]) -> Self {
+        let of_material = |hex8: &Hex8| &materials[hex8.material as usize];
+        let lanes = || hex8s[..S::F64_LANES].iter();
         let zero = Number::splat(simd, 0.0);
         let (mut spread, mut shift, mut products, mut series) =
             ([zero; 3], [zero; 3], [zero; 3], [zero; 3]);
         let mut warping = [[zero; 2]; 3];
         for axis in 0..3 {
-            spread[axis] = gather(simd, bricks, |brick| brick.filling.spread[axis]);
-            shift[axis] = gather(simd, bricks, |brick| brick.filling.shift[axis]);
-            products[axis] = gather(simd, bricks, |brick| brick.filling.products[axis]);
-            series[axis] = gather(simd, bricks, |brick| match of_material(brick).model() {
+            spread[axis] = gather(simd, hex8s, |hex8| hex8.filling.spread[axis]);
+            shift[axis] = gather(simd, hex8s, |hex8| hex8.filling.shift[axis]);
+            products[axis] = gather(simd, hex8s, |hex8| hex8.filling.products[axis]);
+            series[axis] = gather(simd, hex8s, |hex8| match of_material(hex8).model() {
                 Model::NeoHookean { c10 } => [*c10, 0.0, 0.0][axis],
                 Model::Yeoh { c } => c[axis],
                 _ => 0.0,
             });
             for side in 0..2 {
-                warping[axis][side] =
-                    gather(simd, bricks, |brick| brick.warping.parts()[axis][side]);
+                warping[axis][side] = gather(simd, hex8s, |hex8| hex8.warping.parts()[axis][side]);
             }
         }
-        let is_gent = |brick: &&Brick| matches!(of_material(brick).model(), Model::Gent { .. });
+        let is_gent = |hex8: &&Hex8| matches!(of_material(hex8).model(), Model::Gent { .. });
         let gent = lanes().any(is_gent).then(|| {
             [
-                gather(simd, bricks, |brick| match of_material(brick).model() {
+                gather(simd, hex8s, |hex8| match of_material(hex8).model() {
                     Model::Gent { shear, .. } => *shear,
                     _ => 0.0,
                 }),
-                gather(simd, bricks, |brick| match of_material(brick).model() {
+                gather(simd, hex8s, |hex8| match of_material(hex8).model() {
                     Model::Gent { limit, .. } => *limit,
                     _ => FAR,
                 }),
             ]
         });
         Self {
-            volume: gather(simd, bricks, |brick| brick.volume(of_material(brick))),
-            side: gather(simd, bricks, |brick| brick.free_side(of_material(brick))),
+            volume: gather(simd, hex8s, |hex8| hex8.volume(of_material(hex8))),
+            side: gather(simd, hex8s, |hex8| hex8.free_side(of_material(hex8))),
             spread,
             shift,
             products,
             warping,
-            is_cut: lanes().any(|brick| brick.filling != Filling::FULL),
-            is_warped: lanes().any(|brick| brick.warping != Warping::NONE),
-            thinning: gather(simd, bricks, |brick| of_material(brick).thinning()),
-            bulk: gather(simd, bricks, |brick| of_material(brick).bulk()),
-            young: gather(simd, bricks, |brick| of_material(brick).young()),
+            is_cut: lanes().any(|hex8| hex8.filling != Filling::FULL),
+            is_warped: lanes().any(|hex8| hex8.warping != WarpingModes::NONE),
+            thinning: gather(simd, hex8s, |hex8| of_material(hex8).thinning()),
+            bulk: gather(simd, hex8s, |hex8| of_material(hex8).bulk()),
+            young: gather(simd, hex8s, |hex8| of_material(hex8).young()),
             series,
             gent,
         }
@@ -140,20 +139,15 @@ impl<S: Simd> Constants<S> {
 
     /// The columns of the mean gradient over the material, and the hourglass modes.
     #[inline(always)]
-    pub fn modes(
-        &self,
-        simd: S,
-        bricks: &[&Brick; MOST_LANES],
-        positions: &[Vec3],
-    ) -> LaneModes<S> {
+    pub fn modes(&self, simd: S, hex8s: &[&Hex8; MOST_LANES], positions: &[Vec3]) -> LaneModes<S> {
         let zero = Number::splat(simd, 0.0);
         let mut modes = [[zero; 3]; 7];
         let factor = (self.side * 4.0).inverse();
         for axis in 0..3 {
             let mut corners = [zero; 8];
             for corner in 0..8 {
-                corners[corner] = gather(simd, bricks, |brick| {
-                    positions[brick.vertices[corner] as usize][axis]
+                corners[corner] = gather(simd, hex8s, |hex8| {
+                    positions[hex8.vertices[corner] as usize][axis]
                 });
             }
             let sums = butterflies(corners, true);

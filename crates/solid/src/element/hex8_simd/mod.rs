@@ -15,8 +15,8 @@ mod tests;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::element::coordinates::SHAPE;
-use crate::element::hex8::{Brick, BrickMatrix, BrickStrain, Carried, Pressure};
+use crate::element::coordinates::STRAIN_COMPONENTS;
+use crate::element::hex8::{Hex8, Hex8AssumedStrain, Hex8Matrix, Hex8Strain, Pressure};
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::vector::Vec3;
 use energy::{Row, Shape, Square, Volume, add_deviatoric};
@@ -32,34 +32,34 @@ pub(crate) const TOGETHER: usize = 8;
 /// Voxels that are evaluated together, with their positions.
 #[derive(Clone, Copy)]
 pub(crate) struct Together<'a> {
-    pub bricks: &'a [Brick],
+    pub hex8s: &'a [Hex8],
     pub materials: &'a [HyperelasticMaterial],
     pub positions: &'a [Vec3],
     /// Strain and pressure of each voxel as unknowns of their own.
-    pub carried: Option<&'a [Carried]>,
+    pub carried: Option<&'a [Hex8AssumedStrain]>,
 }
 
 impl<'a> Together<'a> {
-    fn material(&self, brick: &Brick) -> &'a HyperelasticMaterial {
-        &self.materials[brick.material as usize]
+    fn material(&self, hex8: &Hex8) -> &'a HyperelasticMaterial {
+        &self.materials[hex8.material as usize]
     }
 
-    fn has_lanes(&self, brick: &Brick) -> bool {
-        brick.warping.clamped.is_none() && has_lanes(self.material(brick))
+    fn has_lanes(&self, hex8: &Hex8) -> bool {
+        hex8.warping.clamped.is_none() && has_lanes(self.material(hex8))
     }
 
-    /// Sets the stiffness matrix of each voxel, see [`Brick::stiffness`].
-    pub fn stiffness(self, out: &mut [BrickMatrix]) {
+    /// Sets the stiffness matrix of each voxel, see [`Hex8::stiffness`].
+    pub fn stiffness(self, out: &mut [Hex8Matrix]) {
         Arch::new().dispatch(Run(self, Stiffness(out)));
     }
 
-    /// Sets the forces on the corners of each voxel, see [`Brick::forces`] and [`Brick::predicted_forces`].
+    /// Sets the forces on the corners of each voxel, see [`Hex8::forces`] and [`Hex8::predicted_forces`].
     pub fn forces(self, out: &mut [[Vec3; 8]]) {
         Arch::new().dispatch(Run(self, Forces(out)));
     }
 
-    /// Sets the carried strain and pressure of each voxel after a step `moves`, see [`Brick::carry`].
-    pub fn carry(self, moves: &[Vec3], out: &mut [Carried]) {
+    /// Sets the carried strain and pressure of each voxel after a step `moves`, see [`Hex8::update`].
+    pub fn update(self, moves: &[Vec3], out: &mut [Hex8AssumedStrain]) {
         Arch::new().dispatch(Run(self, Carry(moves, out)));
     }
 }
@@ -84,7 +84,7 @@ trait Question {
 struct Group<'a, S: Simd> {
     simd: S,
     together: &'a Together<'a>,
-    bricks: [&'a Brick; MOST_LANES],
+    hex8s: [&'a Hex8; MOST_LANES],
     constants: Constants<S>,
     frame: Frame<S>,
 }
@@ -97,23 +97,23 @@ impl<Q: Question> WithSimd for Run<'_, Q> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self(together, mut question) = self;
-        let bricks = together.bricks;
-        for first in (0..bricks.len()).step_by(S::F64_LANES) {
-            let count = S::F64_LANES.min(bricks.len() - first);
+        let hex8s = together.hex8s;
+        for first in (0..hex8s.len()).step_by(S::F64_LANES) {
+            let count = S::F64_LANES.min(hex8s.len() - first);
             let mut sound = [0.0; MOST_LANES];
-            let own = &bricks[first..first + count];
-            if own.iter().any(|brick| together.has_lanes(brick)) {
+            let own = &hex8s[first..first + count];
+            if own.iter().any(|hex8| together.has_lanes(hex8)) {
                 // The last group repeats its last voxel.
                 let mut lanes = [&own[count - 1]; MOST_LANES];
-                for (lane, brick) in lanes.iter_mut().zip(own) {
-                    *lane = brick;
+                for (lane, hex8) in lanes.iter_mut().zip(own) {
+                    *lane = hex8;
                 }
                 let constants = Constants::of(simd, &lanes, together.materials);
                 let modes = constants.modes(simd, &lanes, together.positions);
                 let group = Group {
                     simd,
                     together: &together,
-                    bricks: lanes,
+                    hex8s: lanes,
                     constants,
                     frame: Frame::of(&modes),
                 };
@@ -141,20 +141,23 @@ impl<S: Simd> Group<'_, S> {
             };
             return (shape, zero);
         };
-        let mut lanes = [[0.0; MOST_LANES]; SHAPE + 1];
+        let mut lanes = [[0.0; MOST_LANES]; STRAIN_COMPONENTS + 1];
         for lane in 0..S::F64_LANES {
             let state = &carried[first + lane.min(count - 1)];
             let row = state.strain.row();
-            for k in 0..SHAPE {
+            for k in 0..STRAIN_COMPONENTS {
                 lanes[k][lane] = row[k];
             }
-            lanes[SHAPE][lane] = state.pressure.shift;
+            lanes[STRAIN_COMPONENTS][lane] = state.pressure.shift;
         }
-        let mut row = [zero; SHAPE];
-        for k in 0..SHAPE {
+        let mut row = [zero; STRAIN_COMPONENTS];
+        for k in 0..STRAIN_COMPONENTS {
             row[k] = Number::load(self.simd, &lanes[k]);
         }
-        (Shape::of_row(&row), Number::load(self.simd, &lanes[SHAPE]))
+        (
+            Shape::of_row(&row),
+            Number::load(self.simd, &lanes[STRAIN_COMPONENTS]),
+        )
     }
 
     /// The gradient without that of the mean change of volume, the volume ratio, and the Hessian at a shift of the
@@ -170,12 +173,12 @@ impl<S: Simd> Group<'_, S> {
         let constants = &self.constants;
         let volume = Volume::of(constants, shape);
         let pressure = constants.bulk * (volume.value + shift + -1.0);
-        let mut gradient = [Number::splat(self.simd, 0.0); SHAPE];
+        let mut gradient = [Number::splat(self.simd, 0.0); STRAIN_COMPONENTS];
         add_deviatoric(constants, shape, &mut gradient, Some(hessian), sound);
         Volume::add_hessian(constants, shape, pressure, hessian);
-        for k in 0..SHAPE {
+        for k in 0..STRAIN_COMPONENTS {
             let slope = constants.bulk * volume.gradient[k];
-            for l in 0..SHAPE {
+            for l in 0..STRAIN_COMPONENTS {
                 hessian[k][l] = slope.times_plus(volume.gradient[l], hessian[k][l]);
             }
         }
@@ -186,12 +189,12 @@ impl<S: Simd> Group<'_, S> {
 /// Adds `factor` times a row.
 #[inline(always)]
 fn add_scaled<S: Simd>(sum: &mut Row<S>, factor: Number<S>, row: &Row<S>) {
-    for k in 0..SHAPE {
+    for k in 0..STRAIN_COMPONENTS {
         sum[k] = factor.times_plus(row[k], sum[k]);
     }
 }
 
-struct Stiffness<'a>(&'a mut [BrickMatrix]);
+struct Stiffness<'a>(&'a mut [Hex8Matrix]);
 
 impl Question for Stiffness<'_> {
     #[inline(always)]
@@ -204,7 +207,7 @@ impl Question for Stiffness<'_> {
     ) {
         let mut sound = group.frame.sound;
         let (shape, shift) = group.strain(first, count);
-        let mut hessian = [[Number::splat(group.simd, 0.0); SHAPE]; SHAPE];
+        let mut hessian = [[Number::splat(group.simd, 0.0); STRAIN_COMPONENTS]; STRAIN_COMPONENTS];
         let (mut gradient, volume, pressure) =
             group.moduli(&shape, shift, &mut hessian, &mut sound);
         add_scaled(&mut gradient, pressure, &volume.gradient);
@@ -228,9 +231,9 @@ impl Question for Stiffness<'_> {
 
     #[inline(never)]
     fn plainly(&mut self, together: &Together<'_>, index: usize) {
-        let brick = &together.bricks[index];
+        let hex8 = &together.hex8s[index];
         let carried = together.carried.map(|states| &states[index]);
-        self.0[index] = brick.stiffness(together.material(brick), together.positions, carried);
+        self.0[index] = hex8.stiffness(together.material(hex8), together.positions, carried);
     }
 }
 
@@ -250,7 +253,7 @@ impl Question for Forces<'_> {
         let zero = Number::splat(group.simd, 0.0);
         let (shape, shift) = group.strain(first, count);
         let gradient = if group.together.carried.is_some() {
-            let mut hessian = [[zero; SHAPE]; SHAPE];
+            let mut hessian = [[zero; STRAIN_COMPONENTS]; STRAIN_COMPONENTS];
             let (mut gradient, volume, _) = group.moduli(&shape, shift, &mut hessian, &mut sound);
             let pressure = constants.bulk * (volume.value + -1.0);
             add_scaled(&mut gradient, pressure, &volume.gradient);
@@ -260,7 +263,7 @@ impl Question for Forces<'_> {
             };
             let (now, then) = (now.row(), shape.row());
             let mut change = now;
-            for k in 0..SHAPE {
+            for k in 0..STRAIN_COMPONENTS {
                 change[k] = now[k] - then[k];
             }
             let response = times(&hessian, &change);
@@ -268,7 +271,7 @@ impl Question for Forces<'_> {
             gradient
         } else {
             let volume = Volume::of(constants, &shape);
-            let mut gradient = [zero; SHAPE];
+            let mut gradient = [zero; STRAIN_COMPONENTS];
             add_deviatoric(constants, &shape, &mut gradient, None, &mut sound);
             let pressure = constants.bulk * (volume.value + -1.0);
             add_scaled(&mut gradient, pressure, &volume.gradient);
@@ -287,16 +290,16 @@ impl Question for Forces<'_> {
 
     #[inline(never)]
     fn plainly(&mut self, together: &Together<'_>, index: usize) {
-        let brick = &together.bricks[index];
-        let (material, positions) = (together.material(brick), together.positions);
+        let hex8 = &together.hex8s[index];
+        let (material, positions) = (together.material(hex8), together.positions);
         self.0[index] = match together.carried {
-            Some(states) => brick.predicted_forces(material, &states[index], positions),
-            None => brick.forces(material, positions),
+            Some(states) => hex8.predicted_forces(material, &states[index], positions),
+            None => hex8.forces(material, positions),
         };
     }
 }
 
-struct Carry<'a>(&'a [Vec3], &'a mut [Carried]);
+struct Carry<'a>(&'a [Vec3], &'a mut [Hex8AssumedStrain]);
 
 impl Question for Carry<'_> {
     #[inline(always)]
@@ -315,7 +318,7 @@ impl Question for Carry<'_> {
         let (from, _) = group.strain(first, count);
         let stretch = to_matrix(&frame.stretch);
         let spin = Spin::of(&stretch, &mut sound);
-        let direction = constants.modes(group.simd, &group.bricks, self.0);
+        let direction = constants.modes(group.simd, &group.hex8s, self.0);
         let mut b = [[zero; 3]; 3];
         for k in 0..3 {
             let column = apply_transposed(&frame.rotation, &direction[k]);
@@ -353,17 +356,17 @@ impl Question for Carry<'_> {
         let (start, end) = (Volume::of(constants, &from), Volume::of(constants, &to));
         let (old, new) = (from.row(), to.row());
         let mut step = new;
-        for k in 0..SHAPE {
+        for k in 0..STRAIN_COMPONENTS {
             step[k] = new[k] - old[k];
         }
         let shift = start.value + dot(&start.gradient, &step) - end.value;
-        let mut lanes = [[0.0; MOST_LANES]; SHAPE + 1];
-        for k in 0..SHAPE {
+        let mut lanes = [[0.0; MOST_LANES]; STRAIN_COMPONENTS + 1];
+        for k in 0..STRAIN_COMPONENTS {
             new[k].store(&mut lanes[k]);
         }
-        shift.store(&mut lanes[SHAPE]);
+        shift.store(&mut lanes[STRAIN_COMPONENTS]);
         for lane in 0..count {
-            let mut strain = BrickStrain {
+            let mut strain = Hex8Strain {
                 stretch: [0.0; 6],
                 hourglass: [[0.0; 3]; 3],
             };
@@ -373,11 +376,11 @@ impl Question for Carry<'_> {
             for (k, entry) in strain.hourglass.as_flattened_mut().iter_mut().enumerate() {
                 *entry = lanes[6 + k][lane];
             }
-            self.1[first + lane] = Carried {
+            self.1[first + lane] = Hex8AssumedStrain {
                 strain,
                 pressure: Pressure {
-                    shift: lanes[SHAPE][lane],
-                    ..Pressure::of(group.together.material(group.bricks[lane]))
+                    shift: lanes[STRAIN_COMPONENTS][lane],
+                    ..Pressure::of(group.together.material(group.hex8s[lane]))
                 },
             };
         }
@@ -386,9 +389,9 @@ impl Question for Carry<'_> {
 
     #[inline(never)]
     fn plainly(&mut self, together: &Together<'_>, index: usize) {
-        let brick = &together.bricks[index];
+        let hex8 = &together.hex8s[index];
         let before = together.carried.map(|states| &states[index]);
-        let material = together.material(brick);
-        self.1[index] = brick.carry(material, before, together.positions, self.0);
+        let material = together.material(hex8);
+        self.1[index] = hex8.update(material, before, together.positions, self.0);
     }
 }

@@ -9,7 +9,7 @@ use super::number::{
     MOST_LANES, Nine, Number, Three, apply, axial, cross, cross_columns, dot, multiply, to_matrix,
     to_sym,
 };
-use crate::element::coordinates::{AXES, SHAPE};
+use crate::element::coordinates::{AXES, STRAIN_COMPONENTS};
 
 /// Entries of the stiffness matrix of a voxel.
 pub(super) const ENTRIES: usize = 24 * 24;
@@ -113,7 +113,7 @@ pub(super) fn forces<S: Simd>(
 #[inline(always)]
 pub(super) fn times<S: Simd>(matrix: &Square<S>, row: &Row<S>) -> Row<S> {
     let mut product = *row;
-    for k in 0..SHAPE {
+    for k in 0..STRAIN_COMPONENTS {
         product[k] = dot(&matrix[k], row);
     }
     product
@@ -179,7 +179,7 @@ fn rotated_blocks<S: Simd>(
     let zero = now.y[0].all(0.0);
     let mut blocks = [[[[zero; 3]; 3]; 7]; 7];
     // Changes due to the spin alone, for a change of `F₀` in one pair of axes.
-    let mut spun = [[zero; SHAPE]; 3];
+    let mut spun = [[zero; STRAIN_COMPONENTS]; 3];
     let mut responses = spun;
     let mut spun_skewed = [now.skewed; 3];
     let mut spun_hourglass = [now.hourglass; 3];
@@ -200,7 +200,7 @@ fn rotated_blocks<S: Simd>(
     }
     for mode in 0..3 {
         for axis in 0..3 {
-            let mut change = [zero; SHAPE];
+            let mut change = [zero; STRAIN_COMPONENTS];
             let mut response = change;
             let mut first = [[zero; 3]; 3];
             let mut second = [[zero; 3]; 3];
@@ -210,14 +210,14 @@ fn rotated_blocks<S: Simd>(
                 (6 - axis - mode, std::f64::consts::FRAC_1_SQRT_2)
             };
             if axis == mode {
-                for c in 0..SHAPE {
+                for c in 0..STRAIN_COMPONENTS {
                     response[c] = hessian[c][component];
                 }
             } else {
                 let k = 3 - axis - mode;
                 let sign = zero.all(if axis == (mode + 1) % 3 { 1.0 } else { -1.0 });
                 let size = zero.all(size);
-                for c in 0..SHAPE {
+                for c in 0..STRAIN_COMPONENTS {
                     change[c] = sign * spun[k][c];
                     response[c] = size.times_plus(hessian[c][component], sign * responses[k][c]);
                 }

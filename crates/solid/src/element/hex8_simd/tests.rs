@@ -3,7 +3,9 @@
 use proptest::prelude::*;
 
 use super::{TOGETHER, Together};
-use crate::element::hex8::{Brick, BrickMatrix, Carried, Faces, Filling, Warping};
+use crate::element::hex8::{
+    FaceConditions, Filling, Hex8, Hex8AssumedStrain, Hex8Matrix, WarpingModes,
+};
 use crate::hyperelastic::{Fiber, HyperelasticMaterial, Model};
 use crate::vector::Vec3;
 
@@ -46,7 +48,7 @@ fn materials() -> Vec<HyperelasticMaterial> {
 }
 
 /// A voxel of a kind, with its corners displaced from those of a cube.
-fn voxel() -> impl Strategy<Value = (usize, bool, Warping, f64, [Vec3; 8], [Vec3; 8])> {
+fn voxel() -> impl Strategy<Value = (usize, bool, WarpingModes, f64, [Vec3; 8], [Vec3; 8])> {
     let corners = |size: f64| prop::array::uniform8(prop::array::uniform3(-size..size));
     (
         0..6usize,
@@ -59,27 +61,31 @@ fn voxel() -> impl Strategy<Value = (usize, bool, Warping, f64, [Vec3; 8], [Vec3
 }
 
 /// Warping of voxels inside the body, at its surface, and at a clamp.
-fn warpings() -> Vec<Warping> {
-    let free = Faces {
+fn warpings() -> Vec<WarpingModes> {
+    let free = FaceConditions {
         free: [[true, false], [false, true], [false, false]],
-        ..Faces::default()
+        ..FaceConditions::default()
     };
     let held = [[false; 2], [false; 2], [true, false]];
-    let clamped = Faces {
+    let clamped = FaceConditions {
         stiff: held,
         held,
         ..free
     };
-    vec![Warping::NONE, Warping::of(&free), Warping::of(&clamped)]
+    vec![
+        WarpingModes::NONE,
+        WarpingModes::of(&free),
+        WarpingModes::of(&clamped),
+    ]
 }
 
-fn brick(first: u32, material: u32, cut: bool, warping: Warping) -> Brick {
+fn hex8(first: u32, material: u32, cut: bool, warping: WarpingModes) -> Hex8 {
     let filling = Filling {
         shift: [0.3, -0.1, 0.0],
         spread: [0.6, 0.9, 1.0],
         products: [0.05, -0.1, 0.02],
     };
-    Brick {
+    Hex8 {
         vertices: std::array::from_fn(|corner| first + corner as u32),
         material,
         side: 0.01,
@@ -102,36 +108,36 @@ proptest! {
     #[test]
     fn lanes_match_scalar_code(voxels in prop::collection::vec(voxel(), 1..=TOGETHER)) {
         let materials = materials();
-        let (mut bricks, mut positions, mut moves) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut hex8s, mut positions, mut moves) = (Vec::new(), Vec::new(), Vec::new());
         for (kind, cut, warping, size, corners, steps) in voxels {
-            bricks.push(brick(positions.len() as u32, kind as u32, cut, warping));
+            hex8s.push(hex8(positions.len() as u32, kind as u32, cut, warping));
             for corner in 0..8 {
                 let at = |axis: usize| 0.01 * ((corner >> (2 - axis) & 1) as f64);
                 positions.push(std::array::from_fn(|k| at(k) + 0.01 * size * corners[corner][k]));
                 moves.push(steps[corner].map(|x| 0.01 * x));
             }
         }
-        let all = |carried| Together { bricks: &bricks, materials: &materials, positions: &positions, carried };
-        let mut before = vec![Carried::NOTHING; bricks.len()];
-        all(None).carry(&moves, &mut before);
+        let all = |carried| Together { hex8s: &hex8s, materials: &materials, positions: &positions, carried };
+        let mut before = vec![Hex8AssumedStrain::NOTHING; hex8s.len()];
+        all(None).update(&moves, &mut before);
         let mut after = before.clone();
-        all(Some(&before)).carry(&moves, &mut after);
+        all(Some(&before)).update(&moves, &mut after);
         for carried in [None, Some(&before[..])] {
-            let mut matrices: Vec<BrickMatrix> = vec![[[0.0; 24]; 24]; bricks.len()];
-            let mut forces = vec![[[0.0; 3]; 8]; bricks.len()];
+            let mut matrices: Vec<Hex8Matrix> = vec![[[0.0; 24]; 24]; hex8s.len()];
+            let mut forces = vec![[[0.0; 3]; 8]; hex8s.len()];
             all(carried).stiffness(&mut matrices);
             all(carried).forces(&mut forces);
-            for (index, brick) in bricks.iter().enumerate() {
-                let material = &materials[brick.material as usize];
+            for (index, hex8) in hex8s.iter().enumerate() {
+                let material = &materials[hex8.material as usize];
                 let own = carried.map(|states| &states[index]);
-                let plain = brick.stiffness(material, &positions, own);
+                let plain = hex8.stiffness(material, &positions, own);
                 near(matrices[index].as_flattened(), plain.as_flattened(), "stiffness")?;
                 let plain = match own {
-                    Some(own) => brick.predicted_forces(material, own, &positions),
-                    None => brick.forces(material, &positions),
+                    Some(own) => hex8.predicted_forces(material, own, &positions),
+                    None => hex8.forces(material, &positions),
                 };
                 near(forces[index].as_flattened(), plain.as_flattened(), "forces")?;
-                let plain = brick.carry(material, own, &positions, &moves);
+                let plain = hex8.update(material, own, &positions, &moves);
                 let ours = if own.is_some() { &after[index] } else { &before[index] };
                 near(&ours.strain.row(), &plain.strain.row(), "strain")?;
                 // A difference of volume ratios near one.

@@ -22,7 +22,7 @@ impl Strips {
     /// The strips of a body whose vertices are nodes of one cubic grid along the axes and which has no terms but edge
     /// and volume constraints; `None` for any other.
     pub fn of(body: &Body) -> Option<Self> {
-        let other = !body.bricks().is_empty() || !body.membranes().is_empty();
+        let other = !body.hex8s().is_empty() || !body.membranes().is_empty();
         if other || body.attached().next().is_some() || body.edges().is_empty() {
             return None;
         }

@@ -200,8 +200,8 @@ impl Search<'_> {
 
 /// Largest norm of the change of a voxel's deformation gradient, by rotation or strain.
 fn largest_change(problem: &Problem, moves: &[Vec3]) -> f64 {
-    let size = |brick: &voxsoft_solid::Brick| {
-        let change = brick.deformation(problem.body().material_of(brick), moves);
+    let size = |hex8: &voxsoft_solid::Hex8| {
+        let change = hex8.deformation(problem.body().material_of(hex8), moves);
         change
             .as_flattened()
             .iter()
@@ -209,8 +209,8 @@ fn largest_change(problem: &Problem, moves: &[Vec3]) -> f64 {
             .sum::<f64>()
             .sqrt()
     };
-    let bricks = problem.body().bricks().iter();
-    bricks.map(size).fold(0.0, f64::max)
+    let hex8s = problem.body().hex8s().iter();
+    hex8s.map(size).fold(0.0, f64::max)
 }
 
 /// Smallest volume ratio and largest stretch among voxels.
@@ -226,9 +226,9 @@ impl Extremes {
             volume: f64::INFINITY,
             stretch: 0.0,
         };
-        problem.body().bricks().iter().fold(start, |so_far, brick| {
-            let material = problem.body().material_of(brick);
-            let deformation = brick.deformation(material, positions);
+        problem.body().hex8s().iter().fold(start, |so_far, hex8| {
+            let material = problem.body().material_of(hex8);
+            let deformation = hex8.deformation(material, positions);
             let squares = deformation.as_flattened().iter().map(|x| x * x);
             Self {
                 volume: so_far.volume.min(determinant(&deformation)),

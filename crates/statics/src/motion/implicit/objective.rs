@@ -55,7 +55,7 @@ impl Objective<'_> {
             forces.resize(count, [0.0; 3]);
         }
         let body = problem.body();
-        value.pressures.resize(body.bricks().len(), 0.0);
+        value.pressures.resize(body.hex8s().len(), 0.0);
         let (forces, pressures) = (&mut value.elastic, &mut value.pressures);
         let (energy, potential) = elastic::respond(body, positions, goal.within, forces, pressures);
         value.energy = energy;

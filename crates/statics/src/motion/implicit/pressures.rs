@@ -15,7 +15,7 @@
 
 use voxsoft_solid::element::hex8::{Pressure, Within};
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Body, Brick};
+use voxsoft_solid::{Body, Hex8};
 
 /// Ratio of `r` to the initial shear modulus: the stiffest bulk that does not slow the search down.
 const BULK_OVER_SHEAR: f64 = 20.0;
@@ -29,19 +29,19 @@ impl Pressures {
     /// Zero pressures.
     pub fn new(body: &Body) -> Self {
         Self {
-            values: vec![0.0; body.bricks().len()],
+            values: vec![0.0; body.hex8s().len()],
         }
     }
 
     /// Pressures of the material at `positions`.
     pub fn at(body: &Body, positions: &[Vec3]) -> Self {
-        let pressure = |brick: &Brick| {
-            let material = body.material_of(brick);
+        let pressure = |hex8: &Hex8| {
+            let material = body.material_of(hex8);
             let within = Within::elastic(material);
-            brick.respond(material, positions, &within).pressure
+            hex8.respond(material, positions, &within).pressure
         };
         Self {
-            values: body.bricks().iter().map(pressure).collect(),
+            values: body.hex8s().iter().map(pressure).collect(),
         }
     }
 
@@ -52,10 +52,10 @@ impl Pressures {
 
     /// Pressure law of every voxel over a step, without viscous stress.
     pub fn start(&self, body: &Body) -> Vec<Within> {
-        let bricks = body.bricks().iter().zip(&self.values);
-        bricks
-            .map(|(brick, &before)| {
-                let material = body.material_of(brick);
+        let hex8s = body.hex8s().iter().zip(&self.values);
+        hex8s
+            .map(|(hex8, &before)| {
+                let material = body.material_of(hex8);
                 let mut within = Within::elastic(material);
                 let limit = BULK_OVER_SHEAR * material.model().shear();
                 if material.bulk() > limit {

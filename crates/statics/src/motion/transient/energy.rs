@@ -132,7 +132,7 @@ impl Motion {
         let mut problem = self.problem.clone();
         let mut stored = |time: f64| {
             problem.begin(time);
-            problem.body().brick_term().energy(&from.positions)
+            problem.body().hex8_term().energy(&from.positions)
         };
         let before = stored(from.time);
         stored(time) - before

@@ -74,7 +74,7 @@ impl Motion {
             return;
         };
         let body = self.problem.body();
-        let materials = body.bricks().iter().map(|brick| body.material_of(brick));
+        let materials = body.hex8s().iter().map(|hex8| body.material_of(hex8));
         let mut within: Vec<Within> = materials.map(Within::elastic).collect();
         viscosity.start(body, &self.state.positions, step, &mut within);
         self.equilibrium.problem.set_within(Some(within.clone()));

@@ -2,8 +2,8 @@
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Body, Brick, Clamp, Faces, Fiber, Filling, HyperelasticMaterial, Material, Membrane,
-    MembraneMaterial, Mesh, Model, Problem, Warping,
+    Body, Clamp, FaceConditions, Fiber, Filling, Hex8, HyperelasticMaterial, Material, Membrane,
+    MembraneMaterial, Mesh, Model, Problem, WarpingModes,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 
@@ -46,30 +46,30 @@ fn clamp(mesh: &Mesh, axes: [bool; 3], at: impl Fn(Vec3) -> bool) -> Clamp {
 }
 
 /// The voxel whose lowest corner is at a place.
-fn voxel(body: &Body, at: Vec3) -> Brick {
-    let mut bricks = body.bricks().iter();
-    *bricks
+fn voxel(body: &Body, at: Vec3) -> Hex8 {
+    let mut hex8s = body.hex8s().iter();
+    *hex8s
         .find(|b| body.rest()[b.vertices[0] as usize] == at)
         .unwrap()
 }
 
 /// The warping of a voxel whose only free faces (axis, side) are these, with these stiff ones.
-fn with(free: &[(usize, usize)], stiff: &[(usize, usize)]) -> Warping {
-    let mut faces = Faces::default();
+fn with(free: &[(usize, usize)], stiff: &[(usize, usize)]) -> WarpingModes {
+    let mut faces = FaceConditions::default();
     for &(axis, side) in free {
         faces.free[axis][side] = true;
     }
     for &(axis, side) in stiff {
         faces.stiff[axis][side] = true;
     }
-    Warping::of(&faces)
+    WarpingModes::of(&faces)
 }
 
 /// The remaining fraction of shear stiffness for a small mean shear of the pair of axes other than `b`.
-fn left(warping: Warping, b: usize) -> f64 {
-    let brick = Brick {
+fn left(warping: WarpingModes, b: usize) -> f64 {
+    let hex8 = Hex8 {
         warping,
-        ..body(&boxed([1; 3])).bricks()[0]
+        ..body(&boxed([1; 3])).hex8s()[0]
     };
     let rest: Vec<Vec3> = body(&boxed([1; 3])).rest().to_vec();
     let (j, k) = ((b + 1) % 3, (b + 2) % 3);
@@ -81,7 +81,7 @@ fn left(warping: Warping, b: usize) -> f64 {
     };
     let sheared: Vec<Vec3> = rest.iter().map(place).collect();
     let material = rubber();
-    2.0 * brick.energy(&material, &sheared) / (material.model().shear() * shear * shear)
+    2.0 * hex8.energy(&material, &sheared) / (material.model().shear() * shear * shear)
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn remaining_shear_stiffness_matches_the_derivation() {
 }
 
 /// The second derivative of the energy by the shear `S_xy` at the stretch `(along, across, across)`, halved.
-fn shear_stiffness(brick: &Brick, material: &HyperelasticMaterial, along: f64, across: f64) -> f64 {
+fn shear_stiffness(hex8: &Hex8, material: &HyperelasticMaterial, along: f64, across: f64) -> f64 {
     let rest: Vec<Vec3> = body(&boxed([1; 3])).rest().to_vec();
     let energy = |shear: f64| {
         let place = |x: &Vec3| {
@@ -115,7 +115,7 @@ fn shear_stiffness(brick: &Brick, material: &HyperelasticMaterial, along: f64, a
                 across * x[2],
             ]
         };
-        brick.energy(material, &rest.iter().map(place).collect::<Vec<_>>())
+        hex8.energy(material, &rest.iter().map(place).collect::<Vec<_>>())
     };
     let step = 1e-3;
     (energy(step) + energy(-step) - 2.0 * energy(0.0)) / (2.0 * step * step)
@@ -127,12 +127,12 @@ fn relief_of_shear_stiffness_is_the_same_at_any_stretch() {
         shear: 1.0,
         limit: 30.0,
     };
-    let still = body(&boxed([1; 3])).bricks()[0];
-    let still = Brick {
-        warping: Warping::NONE,
+    let still = body(&boxed([1; 3])).hex8s()[0];
+    let still = Hex8 {
+        warping: WarpingModes::NONE,
         ..still
     };
-    let warping = Brick {
+    let warping = Hex8 {
         warping: with(&[(1, 0)], &[]),
         ..still
     };
@@ -157,7 +157,7 @@ fn relief_of_shear_stiffness_is_the_same_at_any_stretch() {
                 }
             }
             let [whole, left] =
-                [&still, &warping].map(|brick| shear_stiffness(brick, &material, along, low));
+                [&still, &warping].map(|hex8| shear_stiffness(hex8, &material, along, low));
             assert!(whole > 0.0);
             // The least energy gives the width to 1e-8; terms of fourth order in the shear are 1e-6, times the limit of
             // the rubber and the bulk modulus 1e-4.
@@ -175,11 +175,11 @@ fn surface_voxels_of_a_bar_warp() {
     let body = body(&bar());
     let inside = voxel(&body, [1.0, 0.0, 1.0]).warping;
     assert_eq!(inside, with(&[(1, 0), (2, 1)], &[]));
-    assert_ne!(inside, Warping::NONE);
+    assert_ne!(inside, WarpingModes::NONE);
     let end = voxel(&body, [0.0, 0.0, 1.0]).warping;
     assert_eq!(end, with(&[(0, 0), (1, 0), (2, 1)], &[]));
     let heart = voxel(&self::body(&boxed([3; 3])), [1.0; 3]).warping;
-    assert_eq!(heart, Warping::NONE);
+    assert_eq!(heart, WarpingModes::NONE);
 }
 
 #[test]
@@ -188,13 +188,13 @@ fn clamped_face_is_held_and_does_not_warp() {
     let clamps = vec![clamp(&mesh, [true; 3], |x| x[0] == 0.0)];
     let problem = Problem::new(body(&mesh), clamps, vec![], None).unwrap();
     let at_clamp = voxel(problem.body(), [0.0, 0.0, 1.0]).warping;
-    let faces = Faces {
+    let faces = FaceConditions {
         free: [[false; 2], [true, false], [false, true]],
         stiff: [[true, false], [false; 2], [false; 2]],
         held: [[true, false], [false; 2], [false; 2]],
         pressed: [[false; 2]; 3],
     };
-    assert_eq!(at_clamp, Warping::of(&faces));
+    assert_eq!(at_clamp, WarpingModes::of(&faces));
     assert_ne!(at_clamp, with(&[(1, 0), (2, 1)], &[]));
     let beyond = voxel(problem.body(), [1.0, 0.0, 1.0]).warping;
     assert_eq!(beyond, with(&[(1, 0), (2, 1)], &[]));
@@ -279,9 +279,9 @@ fn cut_voxels_and_fibers_do_not_warp() {
             ..mesh.clone()
         };
         let all_still = body(&mesh)
-            .bricks()
+            .hex8s()
             .iter()
-            .all(|b| b.warping == Warping::NONE);
+            .all(|b| b.warping == WarpingModes::NONE);
         assert_eq!(all_still, !warps, "{fraction} {filling:?}");
     }
     let fiber = Fiber {
@@ -292,5 +292,5 @@ fn cut_voxels_and_fibers_do_not_warp() {
     };
     let wound: Material = rubber().with_fibers(vec![fiber]).unwrap().into();
     let body = Body::new(&mesh, &[wound]).unwrap();
-    assert!(body.bricks().iter().all(|b| b.warping == Warping::NONE));
+    assert!(body.hex8s().iter().all(|b| b.warping == WarpingModes::NONE));
 }

@@ -3,22 +3,24 @@
 use proptest::prelude::*;
 use voxsoft_solid::matrix::{apply, polar};
 use voxsoft_solid::vector::{Vec3, add};
-use voxsoft_solid::{Brick, Faces, Fiber, Filling, HyperelasticMaterial, Model, Warping};
+use voxsoft_solid::{
+    FaceConditions, Fiber, Filling, Hex8, HyperelasticMaterial, Model, WarpingModes,
+};
 
 const SIDE: f64 = 0.5;
 
-fn cube() -> (Brick, Vec<Vec3>) {
+fn cube() -> (Hex8, Vec<Vec3>) {
     let corner = |c: usize| [c >> 2 & 1, c >> 1 & 1, c & 1].map(|bit| SIDE * bit as f64);
-    let brick = Brick {
+    let hex8 = Hex8 {
         vertices: std::array::from_fn(|c| c as u32),
         material: 0,
         side: SIDE,
         fraction: 0.7,
         filling: Filling::FULL,
-        warping: Warping::NONE,
+        warping: WarpingModes::NONE,
         peak: 0.0,
     };
-    (brick, (0..8).map(corner).collect())
+    (hex8, (0..8).map(corner).collect())
 }
 
 /// Filling with material in one corner, some of it outside the cube.
@@ -31,25 +33,25 @@ fn cut() -> Filling {
 }
 
 /// Warping with any faces free, and any of them held; or at a clamp.
-fn warping() -> impl Strategy<Value = Warping> {
-    let faces = any::<[[[bool; 2]; 3]; 3]>().prop_map(|[free, stiff, held]| Faces {
+fn warping() -> impl Strategy<Value = WarpingModes> {
+    let faces = any::<[[[bool; 2]; 3]; 3]>().prop_map(|[free, stiff, held]| FaceConditions {
         free,
         stiff,
         held,
         pressed: [[false; 2]; 3],
     });
-    prop_oneof![faces, clamped()].prop_map(|faces| Warping::of(&faces))
+    prop_oneof![faces, clamped()].prop_map(|faces| WarpingModes::of(&faces))
 }
 
 /// Faces of a voxel with a clamp on one side of an axis, free faces across it, some of them under pressure.
-fn clamped() -> impl Strategy<Value = Faces> {
+fn clamped() -> impl Strategy<Value = FaceConditions> {
     any::<([[bool; 2]; 3], [[bool; 2]; 3], bool)>()
         .prop_flat_map(|faces| (0..3usize).prop_map(move |axis| (faces, axis)))
         .prop_map(|((free, pressed, high), axis)| {
-            let mut faces = Faces {
+            let mut faces = FaceConditions {
                 free,
                 pressed,
-                ..Faces::default()
+                ..FaceConditions::default()
             };
             faces.free[axis] = [false; 2];
             faces.held[axis] = [!high, high];
@@ -96,9 +98,9 @@ fn moved() -> impl Strategy<Value = Vec<Vec3>> {
         .prop_map(move |u| rest.iter().zip(u).map(|(x, u)| add(*x, u)).collect())
 }
 
-fn forces(brick: &Brick, material: &HyperelasticMaterial, positions: &[Vec3]) -> Vec<Vec3> {
+fn forces(hex8: &Hex8, material: &HyperelasticMaterial, positions: &[Vec3]) -> Vec<Vec3> {
     let mut forces = vec![[0.0; 3]; 8];
-    brick.add_to(&brick.forces(material, positions), &mut forces);
+    hex8.add_to(&hex8.forces(material, positions), &mut forces);
     forces
 }
 
@@ -107,18 +109,18 @@ proptest! {
     #[test]
     fn forces_and_stiffness_are_derivatives(is_cut in any::<bool>(), warping in warping(), positions in moved(), direction in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 8)) {
         let filling = if is_cut { cut() } else { Filling::FULL };
-        let brick = Brick { filling, warping, ..cube().0 };
+        let hex8 = Hex8 { filling, warping, ..cube().0 };
         let step = 1e-6;
         let at = |t: f64| -> Vec<Vec3> {
             positions.iter().zip(&direction).map(|(x, d)| std::array::from_fn(|i| x[i] + t * d[i])).collect()
         };
         for material in materials().into_iter().chain([muscle()]) {
-            let here = forces(&brick, &material, &positions);
+            let here = forces(&hex8, &material, &positions);
             let power: f64 = here.iter().zip(&direction).map(|(f, d)| f[0] * d[0] + f[1] * d[1] + f[2] * d[2]).sum();
-            let change = (brick.energy(&material, &at(step)) - brick.energy(&material, &at(-step))) / (2.0 * step);
+            let change = (hex8.energy(&material, &at(step)) - hex8.energy(&material, &at(-step))) / (2.0 * step);
             prop_assert!((change + power).abs() < 1e-6, "{change} {power}");
-            let stiffness = brick.stiffness(&material, &positions, None);
-            let (high, low) = (forces(&brick, &material, &at(step)), forces(&brick, &material, &at(-step)));
+            let stiffness = hex8.stiffness(&material, &positions, None);
+            let (high, low) = (forces(&hex8, &material, &at(step)), forces(&hex8, &material, &at(-step)));
             for row in 0..24 {
                 let (vertex, axis) = (row / 3, row % 3);
                 let product: f64 = (0..24).map(|c| stiffness[row][c] * direction[c / 3][c % 3]).sum();
@@ -139,7 +141,7 @@ proptest! {
             products: [mean(&|p| p[1] * p[2]), mean(&|p| p[2] * p[0]), mean(&|p| p[0] * p[1])],
             ..cut()
         };
-        let found = Brick { filling, ..cube().0 }.deformation(&materials()[0], &positions);
+        let found = Hex8 { filling, ..cube().0 }.deformation(&materials()[0], &positions);
         // The slopes of the trilinear functions of the corners, ∂N/∂X = ±(1 ± η)(1 ± ζ)/(4h).
         for column in 0..3 {
             for row in 0..3 {
@@ -156,43 +158,43 @@ proptest! {
     #[test]
     fn rigid_motion_costs_nothing(is_cut in any::<bool>(), warping in warping(), turn in prop::array::uniform3(prop::array::uniform3(-1.0..1.0f64)), shift in prop::array::uniform3(-9.0..9.0f64)) {
         let (full, rest) = cube();
-        let brick = Brick { filling: if is_cut { cut() } else { full.filling }, warping: if is_cut { full.warping } else { warping }, ..full };
+        let hex8 = Hex8 { filling: if is_cut { cut() } else { full.filling }, warping: if is_cut { full.warping } else { warping }, ..full };
         let (rotation, _) = polar(&turn);
         let turned: Vec<Vec3> = rest.iter().map(|x| add(apply(&rotation, *x), shift)).collect();
         for material in materials() {
-            prop_assert!(brick.energy(&material, &turned).abs() < 1e-13);
+            prop_assert!(hex8.energy(&material, &turned).abs() < 1e-13);
             // Rounding of coordinates of size 10 over the side, times the bulk modulus.
-            prop_assert!(forces(&brick, &material, &turned).iter().flatten().all(|f| f.abs() < 1e-12));
+            prop_assert!(forces(&hex8, &material, &turned).iter().flatten().all(|f| f.abs() < 1e-12));
         }
     }
 
     #[test]
     fn response_is_finite_when_inside_out(warping in warping(), positions in prop::collection::vec(prop::array::uniform3(-0.5..1.0f64), 8)) {
-        let brick = Brick { warping, ..cube().0 };
+        let hex8 = Hex8 { warping, ..cube().0 };
         for material in materials() {
-            prop_assert!(brick.energy(&material, &positions).is_finite());
-            prop_assert!(forces(&brick, &material, &positions).iter().flatten().all(|f| f.is_finite()));
-            prop_assert!(brick.stiffness(&material, &positions, None).as_flattened().iter().all(|f| f.is_finite()));
+            prop_assert!(hex8.energy(&material, &positions).is_finite());
+            prop_assert!(forces(&hex8, &material, &positions).iter().flatten().all(|f| f.is_finite()));
+            prop_assert!(hex8.stiffness(&material, &positions, None).as_flattened().iter().all(|f| f.is_finite()));
         }
     }
 }
 
 #[test]
 fn stiffness_has_six_zero_eigenvalues() {
-    let (brick, rest) = cube();
-    let all_free = Faces {
+    let (hex8, rest) = cube();
+    let all_free = FaceConditions {
         free: [[true; 2]; 3],
-        ..Faces::default()
+        ..FaceConditions::default()
     };
-    let each = [Warping::NONE, Warping::of(&all_free)]
+    let each = [WarpingModes::NONE, WarpingModes::of(&all_free)]
         .map(|w| materials().into_iter().map(move |m| (m, w)));
     for (material, warping) in each.into_iter().flatten() {
-        let brick = Brick { warping, ..brick };
-        let values = eigenvalues(&brick.stiffness(&material, &rest, None));
+        let hex8 = Hex8 { warping, ..hex8 };
+        let values = eigenvalues(&hex8.stiffness(&material, &rest, None));
         assert!(values[5].abs() < 1e-13, "{values:?}");
         // The softest true mode: 1/20 of E h would be a near mechanism.
         assert!(
-            values[6] > 0.01 * material.young() * brick.volume(&material) / SIDE.powi(2),
+            values[6] > 0.01 * material.young() * hex8.volume(&material) / SIDE.powi(2),
             "{values:?}"
         );
     }
@@ -234,7 +236,7 @@ fn bending_has_the_energy_of_plate_and_beam() {
     // Plane sections: u₁ = κ x z, and u₃ = −κ x²/2 has no share in one voxel's nodes but its mean, so
     // the energy is that of the bending strain ε₁₁ = κ z alone: ½ E/(1 − ν²) κ² h²/12 per volume with
     // the width held flat, and ½ E κ² h²/12 with ε₂₂ = −ν κ z (anticlastic).
-    let (brick, rest) = cube();
+    let (hex8, rest) = cube();
     let curvature = 1e-4;
     for material in [
         HyperelasticMaterial::neo_hookean(1.0, 0.3, 1.0).unwrap(),
@@ -255,8 +257,8 @@ fn bending_has_the_energy_of_plate_and_beam() {
                 })
                 .collect();
             let expected =
-                0.5 * modulus * (curvature * SIDE).powi(2) / 12.0 * brick.volume(&material);
-            let ratio = brick.energy(&material, &bent) / expected;
+                0.5 * modulus * (curvature * SIDE).powi(2) / 12.0 * hex8.volume(&material);
+            let ratio = hex8.energy(&material, &bent) / expected;
             // Terms of third order in the strain are 1e-4 of it.
             assert!((ratio - 1.0).abs() < 1e-3, "{poisson} {across}: {ratio}");
         }

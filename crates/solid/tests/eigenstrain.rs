@@ -72,7 +72,7 @@ proptest! {
             a.as_flattened().iter().zip(ways.as_flattened()).map(|(a, b)| a * b).sum()
         };
         let mut bent = 0.0;
-        problem.body().brick_term().visit_stiffness(&along(0.0), &mut |vertices, matrix| {
+        problem.body().hex8_term().visit_stiffness(&along(0.0), &mut |vertices, matrix| {
             for (i, entry) in matrix.iter().enumerate() {
                 let [row, column] = [i / 24, i % 24];
                 let way = |place: usize| ways[vertices[place / 3] as usize][place % 3];

@@ -1,23 +1,23 @@
 //! Voxels at a clamp: faces that draw in, the patch test under uniform pulls, and freedom from locking.
 
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Brick, Faces, Filling, HyperelasticMaterial, Warping};
+use voxsoft_solid::{FaceConditions, Filling, Hex8, HyperelasticMaterial, WarpingModes};
 
 /// A voxel of edge 1 with these free faces (axis, side), held at its low face along x or not.
-fn voxel(free: &[(usize, usize)], held: bool) -> Brick {
-    let mut faces = Faces::default();
+fn voxel(free: &[(usize, usize)], held: bool) -> Hex8 {
+    let mut faces = FaceConditions::default();
     for &(axis, side) in free {
         faces.free[axis][side] = true;
     }
     faces.held[0][0] = held;
     faces.stiff[0][0] = held;
-    Brick {
+    Hex8 {
         vertices: std::array::from_fn(|corner| corner as u32),
         material: 0,
         side: 1.0,
         fraction: 1.0,
         filling: Filling::FULL,
-        warping: Warping::of(&faces),
+        warping: WarpingModes::of(&faces),
         peak: 0.0,
     }
 }
@@ -40,7 +40,7 @@ const FREE: [&[(usize, usize)]; 4] = [
 ];
 
 /// The width at which a voxel that is drawn along x has no lateral stress.
-fn width(voxel: &Brick, material: &HyperelasticMaterial, along: f64) -> f64 {
+fn width(voxel: &Hex8, material: &HyperelasticMaterial, along: f64) -> f64 {
     let force = |across: f64| {
         let drawn = corners(|x| [along * x[0], across * x[1], across * x[2]]);
         let forces = voxel.forces(material, &drawn);
@@ -81,16 +81,16 @@ fn uniform_stretch_has_the_forces_of_a_voxel_without_clamp() {
         for (poisson, along, tolerance) in cases {
             let material = rubber(poisson);
             let (plain, clamped) = (voxel(&[], false), voxel(free, true));
-            assert_ne!(clamped.warping, Warping::NONE);
-            let [expected, found] = [plain, clamped].map(|brick| {
+            assert_ne!(clamped.warping, WarpingModes::NONE);
+            let [expected, found] = [plain, clamped].map(|hex8| {
                 let freed = if f64::abs(along - 1.0) > 0.1 {
-                    &brick
+                    &hex8
                 } else {
                     &plain
                 };
                 let across = width(freed, &material, along);
                 let drawn = corners(|x| [along * x[0], across * x[1], across * x[2]]);
-                brick.forces(&material, &drawn)
+                hex8.forces(&material, &drawn)
             });
             let pull: f64 = expected[4..].iter().map(|force| force[0]).sum();
             for (a, b) in expected.iter().zip(&found) {
@@ -110,7 +110,7 @@ fn shear_without_traction_on_the_free_face_is_not_relieved() {
     let material = rubber(0.49);
     let sheared = corners(|x| [x[0] + 1e-4 * x[2], x[1], x[2] + 1e-4 * x[0]]);
     let [expected, found] =
-        [voxel(&[], false), voxel(&[(1, 1)], true)].map(|brick| brick.forces(&material, &sheared));
+        [voxel(&[], false), voxel(&[(1, 1)], true)].map(|hex8| hex8.forces(&material, &sheared));
     for (a, b) in expected.as_flattened().iter().zip(found.as_flattened()) {
         // Forces are some 1e-5, terms of second order 1e-4 of them, times K/G.
         assert!((a - b).abs() < 1e-7, "{a} {b}");
@@ -124,7 +124,7 @@ fn clamped_voxel_is_softer_and_positive_definite() {
     for free in FREE {
         for poisson in [0.3, 0.49, 0.4999] {
             let stiffness =
-                |brick: Brick, poisson| brick.stiffness(&rubber(poisson), &corners(|x| x), None);
+                |hex8: Hex8, poisson| hex8.stiffness(&rubber(poisson), &corners(|x| x), None);
             let clamped = stiffness(voxel(free, true), poisson);
             let combined = |of_plain: f64, plain: [[f64; 24]; 24], of_clamped: f64| {
                 std::array::from_fn(|i| {
@@ -181,17 +181,17 @@ fn only_faces_beside_a_clamp_draw_in() {
     let plain = |free: &[(usize, usize)]| voxel(free, false).warping;
     // Voxels without a face to draw in, and a stub whose end is free.
     for free in [&[][..], &[(0, 1), (1, 1)]] {
-        let mut faces = Faces::default();
+        let mut faces = FaceConditions::default();
         for &(axis, side) in free {
             faces.free[axis][side] = true;
         }
         faces.stiff[0][0] = true;
-        assert_eq!(voxel(free, true).warping, Warping::of(&faces));
+        assert_eq!(voxel(free, true).warping, WarpingModes::of(&faces));
     }
     assert_ne!(voxel(&[(1, 1)], true).warping, plain(&[(1, 1)]));
     // All free faces under pressure, and a stiff face beside the free one.
     for change in [true, false] {
-        let mut faces = Faces::default();
+        let mut faces = FaceConditions::default();
         faces.free[1][1] = true;
         faces.stiff[0][0] = true;
         if change {
@@ -199,8 +199,8 @@ fn only_faces_beside_a_clamp_draw_in() {
         } else {
             faces.stiff[2][0] = true;
         }
-        let expected = Warping::of(&faces);
+        let expected = WarpingModes::of(&faces);
         faces.held[0][0] = true;
-        assert_eq!(Warping::of(&faces), expected);
+        assert_eq!(WarpingModes::of(&faces), expected);
     }
 }
