@@ -18,7 +18,7 @@ impl Touch {
     pub fn with_laws(mut self, laws: Laws, rest: &[Vec3]) -> Self {
         if !laws.is_empty() {
             self.laws = laws;
-            Contact::start(&mut self, rest);
+            Contact::reset(&mut self, rest);
         }
         self
     }

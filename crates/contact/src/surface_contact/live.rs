@@ -66,7 +66,7 @@ impl LiveTouch {
             touch,
             run: Run::default(),
         };
-        Contact::start(&mut live, rest);
+        Contact::reset(&mut live, rest);
         Ok(live)
     }
 
@@ -245,9 +245,9 @@ impl Contact for LiveTouch {
         }
     }
 
-    fn start(&mut self, positions: &[Vec3]) {
+    fn reset(&mut self, positions: &[Vec3]) {
         self.touch.penalty = PENALTY;
-        self.touch.start(positions);
+        self.touch.reset(positions);
         self.touch.state.stick = STICK;
         self.note_near();
         let run = &mut self.run;
@@ -277,7 +277,7 @@ impl Contact for LiveTouch {
         outgrown
     }
 
-    fn look_anew(&mut self) {
+    fn relist(&mut self) {
         self.touch.state.looks = LOOKS;
     }
 
@@ -300,7 +300,7 @@ impl Contact for LiveTouch {
     }
 
     /// Bonds do not move live: designs with them wait for a solution.
-    fn let_go(&mut self, _positions: &[Vec3]) -> bool {
+    fn release_bonds(&mut self, _positions: &[Vec3]) -> bool {
         false
     }
 
@@ -316,7 +316,7 @@ impl Contact for LiveTouch {
         self.note_near();
     }
 
-    fn take_step(&mut self, positions: &[Vec3]) -> bool {
+    fn commit_partial(&mut self, positions: &[Vec3]) -> bool {
         let depth = self.depth(positions);
         let deepest = DEEPEST * self.touch.description.voxel;
         if depth > deepest {
@@ -357,7 +357,7 @@ impl Contact for LiveTouch {
         touching
     }
 
-    fn go_back(&mut self) {
+    fn rollback(&mut self) {
         let state = &mut self.touch.state;
         state.now = state.accepted.clone();
         state.looks = LOOKS;

@@ -299,7 +299,7 @@ impl Touch {
             state: State::default(),
         };
         touch.ties_at = touch.ties_at(&first_sample, touch.points.len());
-        Contact::start(&mut touch, rest);
+        Contact::reset(&mut touch, rest);
         Ok(touch)
     }
 
@@ -363,7 +363,7 @@ impl Touch {
     /// Removes edge-to-edge contact: only points are kept out of surfaces.
     pub(super) fn without_edges(mut self, rest: &[Vec3]) -> Self {
         self.samples.truncate(self.points.len());
-        Contact::start(&mut self, rest);
+        Contact::reset(&mut self, rest);
         self
     }
 

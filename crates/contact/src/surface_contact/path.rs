@@ -53,7 +53,7 @@ impl Contact for Touch {
         }
     }
 
-    fn start(&mut self, positions: &[Vec3]) {
+    fn reset(&mut self, positions: &[Vec3]) {
         self.change(|touch, state| {
             let points = touch.points_at(positions);
             let nothing = vec![Memory::default(); touch.samples.len()];
@@ -94,7 +94,7 @@ impl Contact for Touch {
         })
     }
 
-    fn look_anew(&mut self) {
+    fn relist(&mut self) {
         self.state.looks = LOOKS;
     }
 
@@ -146,7 +146,7 @@ impl Contact for Touch {
         self.description.voxel
     }
 
-    fn let_go(&mut self, positions: &[Vec3]) -> bool {
+    fn release_bonds(&mut self, positions: &[Vec3]) -> bool {
         self.change(|touch, state| {
             let any = touch.break_ties(state, positions);
             if any {
@@ -191,7 +191,7 @@ impl Contact for Touch {
         })
     }
 
-    fn go_back(&mut self) {
+    fn rollback(&mut self) {
         self.change(|touch, state| {
             state.drop_step();
             state.extrapolated = None;

@@ -33,7 +33,7 @@ impl Touch {
         self.weights = self.samples.iter().map(weight).collect();
         self.twins = self.twins_across(across);
         self.planes = across;
-        Contact::start(&mut self, rest);
+        Contact::reset(&mut self, rest);
         self
     }
 

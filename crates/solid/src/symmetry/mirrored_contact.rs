@@ -135,16 +135,16 @@ impl<C: Contact + Clone> Contact for MirroredContact<C> {
         self.contact.remember(memory);
     }
 
-    fn start(&mut self, positions: &[Vec3]) {
-        self.contact.start(&self.images.seen(positions));
+    fn reset(&mut self, positions: &[Vec3]) {
+        self.contact.reset(&self.images.seen(positions));
     }
 
     fn follow(&mut self, positions: &[Vec3]) -> bool {
         self.contact.follow(&self.images.seen(positions))
     }
 
-    fn look_anew(&mut self) {
-        self.contact.look_anew();
+    fn relist(&mut self) {
+        self.contact.relist();
     }
 
     fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
@@ -162,8 +162,8 @@ impl<C: Contact + Clone> Contact for MirroredContact<C> {
         self.contact.length()
     }
 
-    fn let_go(&mut self, positions: &[Vec3]) -> bool {
-        self.contact.let_go(&self.images.seen(positions))
+    fn release_bonds(&mut self, positions: &[Vec3]) -> bool {
+        self.contact.release_bonds(&self.images.seen(positions))
     }
 
     fn depends_on_way(&self) -> bool {
@@ -174,8 +174,8 @@ impl<C: Contact + Clone> Contact for MirroredContact<C> {
         self.contact.accept(&self.images.seen(positions));
     }
 
-    fn take_step(&mut self, positions: &[Vec3]) -> bool {
-        self.contact.take_step(&self.images.seen(positions))
+    fn commit_partial(&mut self, positions: &[Vec3]) -> bool {
+        self.contact.commit_partial(&self.images.seen(positions))
     }
 
     fn stiffen(&mut self, positions: &[Vec3]) -> bool {
@@ -186,8 +186,8 @@ impl<C: Contact + Clone> Contact for MirroredContact<C> {
         self.contact.is_touching(&self.images.seen(positions))
     }
 
-    fn go_back(&mut self) {
-        self.contact.go_back();
+    fn rollback(&mut self) {
+        self.contact.rollback();
     }
 
     fn is_recorded(&self) -> bool {

@@ -17,7 +17,7 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Load, Problem, elastic};
 
 use crate::linear::error::FactorError;
-use crate::linear::options::Means;
+use crate::linear::options::LinearOptions;
 use crate::linear::ordering::nested_dissection;
 use crate::linear::rank::rank;
 
@@ -54,15 +54,19 @@ pub(crate) enum DirectFactor {
 
 impl DirectSystem {
     /// Sparsity pattern of a problem whose coordinates `held` do not move.
-    pub fn new(problem: &Problem, held: &[[bool; 3]], means: Means) -> Result<Self, FactorError> {
-        Self::with_symmetry(problem, held, means, problem.is_conservative())
+    pub fn new(
+        problem: &Problem,
+        held: &[[bool; 3]],
+        options: LinearOptions,
+    ) -> Result<Self, FactorError> {
+        Self::with_symmetry(problem, held, options, problem.is_conservative())
     }
 
     /// Sparsity pattern for a tangent that the caller declares as symmetric or not.
     pub fn with_symmetry(
         problem: &Problem,
         held: &[[bool; 3]],
-        means: Means,
+        options: LinearOptions,
         symmetric: bool,
     ) -> Result<Self, FactorError> {
         let body = problem.body();
@@ -147,7 +151,7 @@ impl DirectSystem {
                 },
             )
             .map_err(|_| FactorError::Memory(0))?;
-            means.allow(symbolic.len_val() as u64 * size_of::<f64>() as u64)?;
+            options.allow(symbolic.len_val() as u64 * size_of::<f64>() as u64)?;
             system.symbolic = Some(symbolic);
         } else {
             let symbolic =

@@ -13,7 +13,7 @@ use crate::linear::multigrid::{
     BlockMatrix, Coarsest, Hierarchy, Part, Workspace, cells_of, color, for_each, for_each_large,
     sum,
 };
-use crate::linear::options::Means;
+use crate::linear::options::LinearOptions;
 use crate::linear::rank::rank;
 use crate::linear::row_pattern::pattern;
 
@@ -84,7 +84,7 @@ impl IterativeSystem {
     pub fn new(
         problem: &Problem,
         held: &[[bool; 3]],
-        means: Means,
+        options: LinearOptions,
     ) -> Result<Option<Self>, FactorError> {
         let body = problem.body();
         let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.small_hex8s().len();
@@ -105,7 +105,7 @@ impl IterativeSystem {
         if !known.into_iter().all(|known| known) {
             return Ok(None);
         }
-        means.allow(BYTES_PER_VERTEX * body.rest().len() as u64)?;
+        options.allow(BYTES_PER_VERTEX * body.rest().len() as u64)?;
         let draft = pattern(problem);
         let (coloring, places) = color(&draft);
         for cell in &mut cells {

@@ -21,18 +21,18 @@ use crate::linear::vectors::product;
 const ROUNDING: f64 = 1e-12;
 
 /// Matrices `G` and `C` on free coordinates.
-pub(crate) struct Coupled {
+pub(crate) struct LowRankUpdate {
     gradients: Vec<Vec<f64>>,
     stiffness: Vec<f64>,
 }
 
 /// Solutions `W`, and those with the transposed tangent.
-pub(crate) struct Answers {
+pub(crate) struct UpdateSolutions {
     own: Vec<Vec<f64>>,
     transposed: Vec<Vec<f64>>,
 }
 
-impl Coupled {
+impl LowRankUpdate {
     pub fn new(coupling: Coupling, gather: &dyn Fn(&[Vec3]) -> Vec<f64>) -> Self {
         Self {
             gradients: coupling
@@ -45,13 +45,13 @@ impl Coupled {
     }
 
     /// Solves for `W` by `solve`, which takes a right-hand side and a flag for the transposed tangent.
-    pub fn answers(&self, solve: &dyn Fn(&mut [f64], bool)) -> Answers {
+    pub fn answers(&self, solve: &dyn Fn(&mut [f64], bool)) -> UpdateSolutions {
         let all = |transposed: bool| {
             let mut answers = self.gradients.clone();
             answers.iter_mut().for_each(|side| solve(side, transposed));
             answers
         };
-        Answers {
+        UpdateSolutions {
             own: all(false),
             transposed: all(true),
         }
@@ -60,7 +60,7 @@ impl Coupled {
     /// Corrects a solution with the tangent alone into one with the sum.
     pub fn correct(
         &self,
-        answers: &Answers,
+        answers: &UpdateSolutions,
         solution: &mut [f64],
         transposed: bool,
     ) -> Result<(), FactorError> {
@@ -107,7 +107,7 @@ impl Coupled {
 
     /// Tests whether the sum is positive definite, given the number of negative eigenvalues of the tangent alone; both
     /// are symmetric.
-    pub fn is_positive_with(&self, answers: &Answers, negative: usize) -> bool {
+    pub fn is_positive_with(&self, answers: &UpdateSolutions, negative: usize) -> bool {
         let roots = self.roots();
         let n = self.gradients.len();
         let flexibility: Vec<Vec<f64>> = (self.gradients.iter())

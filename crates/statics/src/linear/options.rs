@@ -16,13 +16,13 @@ pub enum LinearSolver {
 
 /// Solver and memory limit of linear systems.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Means {
+pub(crate) struct LinearOptions {
     pub solver: LinearSolver,
     /// Limit in bytes.
     pub memory: u64,
 }
 
-impl Means {
+impl LinearOptions {
     /// Checks a memory estimate against the limit.
     pub fn allow(self, bytes: u64) -> Result<(), FactorError> {
         if bytes <= self.memory {

@@ -7,8 +7,8 @@ use voxsoft_solid::{Load, Problem, Ties};
 use crate::linear::direct::{DirectFactor, DirectSystem};
 use crate::linear::error::FactorError;
 use crate::linear::iterative::{IterativeFactor, IterativeSystem};
-use crate::linear::low_rank_update::{Answers, Coupled};
-use crate::linear::options::{LinearSolver, Means};
+use crate::linear::low_rank_update::{LowRankUpdate, UpdateSolutions};
+use crate::linear::options::{LinearOptions, LinearSolver};
 
 /// Number of vertices from which a body is solved iteratively: measured with `benchmarks/statics.py`.
 const LARGE: usize = 4_000;
@@ -19,7 +19,7 @@ const LARGE: usize = 4_000;
 /// coupling of the whole wall of a chamber is kept apart ([`crate::linear::low_rank_update`]).
 pub(crate) struct System {
     tangent: Tangent,
-    coupled: Option<Coupled>,
+    coupled: Option<LowRankUpdate>,
     ties: Ties,
 }
 
@@ -32,7 +32,7 @@ enum Tangent {
 pub(crate) struct Factor {
     tangent: TangentFactor,
     /// Solutions of the tangent for its coupled gradients.
-    answers: Option<Answers>,
+    answers: Option<UpdateSolutions>,
 }
 
 enum TangentFactor {
@@ -42,19 +42,23 @@ enum TangentFactor {
 
 impl System {
     /// Sparsity pattern of a problem whose coordinates `held` do not move.
-    pub fn new(problem: &Problem, held: &[[bool; 3]], means: Means) -> Result<Self, FactorError> {
+    pub fn new(
+        problem: &Problem,
+        held: &[[bool; 3]],
+        options: LinearOptions,
+    ) -> Result<Self, FactorError> {
         let large = problem.body().rest().len() >= LARGE;
-        let iterative = match means.solver {
+        let iterative = match options.solver {
             LinearSolver::Direct => false,
             LinearSolver::Iterative => true,
             LinearSolver::Auto => large,
         };
-        let tangent = if iterative && let Some(system) = IterativeSystem::new(problem, held, means)?
-        {
-            Tangent::Iterative(Box::new(system))
-        } else {
-            Tangent::Direct(Box::new(DirectSystem::new(problem, held, means)?))
-        };
+        let tangent =
+            if iterative && let Some(system) = IterativeSystem::new(problem, held, options)? {
+                Tangent::Iterative(Box::new(system))
+            } else {
+                Tangent::Direct(Box::new(DirectSystem::new(problem, held, options)?))
+            };
         Ok(Self {
             tangent,
             coupled: None,
@@ -102,7 +106,7 @@ impl System {
             let pairs = residual.iter_mut().zip(self.gather(&forces));
             pairs.for_each(|(side, force)| *side -= force);
         }
-        let free = |coupling| Coupled::new(coupling, &|field| self.gather(field));
+        let free = |coupling| LowRankUpdate::new(coupling, &|field| self.gather(field));
         let coupled = coupling.map(free);
         match &mut self.tangent {
             Tangent::Direct(_) => self.coupled = coupled,
@@ -154,7 +158,7 @@ impl System {
     }
 
     /// Solutions with a factor for the coupled gradients.
-    fn answers(&self, factor: &TangentFactor) -> Option<Answers> {
+    fn answers(&self, factor: &TangentFactor) -> Option<UpdateSolutions> {
         let (coupled, Tangent::Direct(system), TangentFactor::Direct(factor)) =
             (self.coupled.as_ref()?, &self.tangent, factor)
         else {

@@ -11,7 +11,7 @@ use crate::path::bordered::{
 };
 use crate::path::contact_loop::AtLoad;
 use crate::path::equilibrium::{Equilibrium, Failure};
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 use crate::path::load_path::{Ending, Path, longest_step, status_of};
 use crate::path::settings::Settings;
 
@@ -191,7 +191,7 @@ impl Walk {
                 && cuts >= CUTS_TO_A_CORNER
                 && let Some(corner) = tangent.at_corner()
             {
-                path.with_contact(|contact| contact.go_back());
+                path.with_contact(|contact| contact.rollback());
                 outcome = self.step(path, &corner, length, settings);
                 if outcome.is_ok() {
                     // The cuts were due to the corner, not to the path after it.
@@ -216,7 +216,7 @@ impl Walk {
                 }
                 Err(failure) => failure,
             };
-            path.with_contact(|contact| contact.go_back());
+            path.with_contact(|contact| contact.rollback());
             if failure == Failure::Cancelled {
                 return Err(failure);
             }
@@ -264,10 +264,10 @@ impl Walk {
         if point.pressure > 1.0 && !path.looking {
             // Contact may be path-dependent, and the path does not lead past the full load and back.
             if path.touches() {
-                path.with_contact(|contact| contact.go_back());
+                path.with_contact(|contact| contact.rollback());
                 trial = start.clone();
             }
-            point = Point::all(1.0);
+            point = LoadParameter::all(1.0);
             let mut full = AtLoad {
                 point,
                 safe: true,

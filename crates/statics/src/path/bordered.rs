@@ -20,7 +20,7 @@ use crate::linear::system::Factor;
 use crate::linear::vectors::product;
 use crate::path::contact_loop::Search;
 use crate::path::equilibrium::{Equilibrium, Failure, Forces, Found};
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 use crate::path::settings::Settings;
 
 /// Relative tolerance of the constraint.
@@ -58,10 +58,10 @@ pub(crate) enum Unknown {
 }
 
 impl Unknown {
-    pub fn with(self, point: Point, factor: f64) -> Point {
+    pub fn with(self, point: LoadParameter, factor: f64) -> LoadParameter {
         match self {
-            Self::All => Point::all(factor),
-            Self::Pressure => Point {
+            Self::All => LoadParameter::all(factor),
+            Self::Pressure => LoadParameter {
                 pressure: factor,
                 ..point
             },
@@ -69,10 +69,10 @@ impl Unknown {
     }
 
     /// Factors that the unknown changes.
-    fn direction(self) -> Point {
+    fn direction(self) -> LoadParameter {
         match self {
-            Self::All => Point::all(1.0),
-            Self::Pressure => Point::of(0.0, 1.0),
+            Self::All => LoadParameter::all(1.0),
+            Self::Pressure => LoadParameter::of(0.0, 1.0),
         }
     }
 }
@@ -109,11 +109,11 @@ pub(crate) struct Missing {
 #[derive(Clone)]
 pub(crate) struct Bordered<C> {
     pub constraint: C,
-    pub point: Point,
+    pub point: LoadParameter,
 }
 
 impl<C: Constraint> Search for Bordered<C> {
-    fn point(&self) -> Point {
+    fn point(&self) -> LoadParameter {
         self.point
     }
 
@@ -163,7 +163,7 @@ impl<C: Constraint> Search for Bordered<C> {
 pub(crate) fn load_direction(
     equilibrium: &Equilibrium,
     positions: &[Vec3],
-    point: Point,
+    point: LoadParameter,
     unknown: Unknown,
 ) -> Vec<f64> {
     let mut forces = vec![[0.0; 3]; positions.len()];
@@ -176,7 +176,7 @@ pub(crate) fn load_direction(
 }
 
 /// Velocity of clamps with respect to an unknown factor, for all vertices; `None` without moving clamps.
-fn clamp_velocity(problem: &Problem, point: Point, unknown: Unknown) -> Option<Vec<Vec3>> {
+fn clamp_velocity(problem: &Problem, point: LoadParameter, unknown: Unknown) -> Option<Vec<Vec3>> {
     let moves = problem.clamps().iter().any(|clamp| clamp.motion.is_some());
     if unknown == Unknown::Pressure || !moves {
         return None;
@@ -204,7 +204,7 @@ pub(crate) struct Sides {
 #[derive(Clone, Copy)]
 pub(crate) struct Place<'a> {
     pub positions: &'a [Vec3],
-    pub point: Point,
+    pub point: LoadParameter,
     pub unknown: Unknown,
     pub strains: Option<&'a AssumedStrains>,
     /// Prescribed displacement increments of held coordinates.
@@ -283,7 +283,7 @@ impl Iterate {
 
 /// Evaluated state on the way to an equilibrium.
 struct Seen {
-    point: Point,
+    point: LoadParameter,
     forces: Forces,
     missing: Missing,
     /// Prescribed displacement increments that remain on held coordinates.
@@ -315,7 +315,7 @@ struct Step {
 
 /// Penalty and shift kept from one line-search iteration to the next.
 #[derive(Default)]
-struct Memory {
+struct IterateMemory {
     penalty: f64,
     shift: f64,
 }
@@ -325,7 +325,7 @@ struct Newton<'n, 'o, C> {
     equilibrium: &'n mut Equilibrium,
     constraint: &'n C,
     /// Point of the path, in which the unknown factor is replaced.
-    point: Point,
+    point: LoadParameter,
     settings: &'n Settings,
     observer: &'n mut Observer<'o>,
 }
@@ -540,7 +540,7 @@ impl<C: Constraint> Newton<'_, '_, C> {
 
     /// Newton's method with a line search.
     fn searched(&mut self, now: &mut Iterate) -> Result<Seen, Failure> {
-        let mut memory = Memory::default();
+        let mut memory = IterateMemory::default();
         for _ in 0..SEARCHED_ITERATIONS {
             let seen = self.look(&now.positions, now.factor)?;
             if seen.is_solved(self.settings) {
@@ -582,7 +582,7 @@ impl<C: Constraint> Newton<'_, '_, C> {
         sides: &Sides,
         now: &Iterate,
         seen: &Seen,
-        memory: &mut Memory,
+        memory: &mut IterateMemory,
     ) -> Result<Step, Failure> {
         let mut trial = memory.shift / 10.0;
         loop {

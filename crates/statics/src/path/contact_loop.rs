@@ -4,8 +4,8 @@
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Contact, Fluid, Observer, Problem};
 
-use crate::path::equilibrium::{Equilibrium, Failure, Found, Way};
-use crate::path::load_parameter::Point;
+use crate::path::equilibrium::{Equilibrium, Failure, Found, Strategy};
+use crate::path::load_parameter::LoadParameter;
 use crate::path::settings::Settings;
 
 /// Most corrections of floor and contact at one point of the path.
@@ -24,7 +24,7 @@ const AT_THE_END: f64 = 0.1;
 /// Search for an equilibrium with fixed multipliers of contact.
 pub(crate) trait Search: Clone {
     /// Point of the path of its equilibrium, or of its start.
-    fn point(&self) -> Point;
+    fn point(&self) -> LoadParameter;
 
     /// Tests whether a shorter step is possible if this one does not settle soon.
     fn can_be_cut(&self) -> bool {
@@ -46,7 +46,7 @@ pub(crate) trait Search: Clone {
 /// Search for the equilibrium under given loads.
 #[derive(Clone, Copy)]
 pub(crate) struct AtLoad {
-    pub point: Point,
+    pub point: LoadParameter,
     /// True if a line search follows when mixed iterations diverge.
     pub safe: bool,
     /// Possibility of a shorter step, see [`Search::can_be_cut`].
@@ -54,7 +54,7 @@ pub(crate) struct AtLoad {
 }
 
 impl Search for AtLoad {
-    fn point(&self) -> Point {
+    fn point(&self) -> LoadParameter {
         self.point
     }
 
@@ -70,8 +70,8 @@ impl Search for AtLoad {
         round: usize,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
-        let way = way_of(round, &equilibrium.problem, self.safe);
-        equilibrium.newton(positions, self.point, settings, way, observer)
+        let strategy = strategy_of(round, &equilibrium.problem, self.safe);
+        equilibrium.newton(positions, self.point, settings, strategy, observer)
     }
 }
 
@@ -127,11 +127,11 @@ impl Equilibrium {
     /// Breaks bonds that an equilibrium with settled contact loads beyond their strength; returns true if any broke.
     fn lets_go(&mut self, positions: &[Vec3]) -> bool {
         let contact = self.problem.contact_mut();
-        contact.is_some_and(|contact| contact.let_go(positions))
+        contact.is_some_and(|contact| contact.release_bonds(positions))
     }
 
     /// Corrects the multipliers of contact by an equilibrium; returns true if they have settled.
-    fn is_contact_settled(&mut self, positions: &[Vec3], point: Point) -> bool {
+    fn is_contact_settled(&mut self, positions: &[Vec3], point: LoadParameter) -> bool {
         let precision = if (point.dead, point.pressure) == (1.0, 1.0) {
             self.precision.min(AT_THE_END)
         } else {
@@ -144,12 +144,12 @@ impl Equilibrium {
 }
 
 /// Variant of Newton's method in a round, the first of which has number 0.
-fn way_of(round: usize, problem: &Problem, safe: bool) -> Way {
+fn strategy_of(round: usize, problem: &Problem, safe: bool) -> Strategy {
     let is_stiff = problem.fluid().is_some_and(Fluid::is_stiff);
     match (problem.contact(), safe) {
         // A line search with a liquid advances by steps that hardly change its volume.
-        (Some(_), _) if round > 0 && !is_stiff => Way::Again,
-        (_, true) => Way::Safe,
-        (_, false) => Way::Quick,
+        (Some(_), _) if round > 0 && !is_stiff => Strategy::LineSearch,
+        (_, true) => Strategy::NewtonThenLineSearch,
+        (_, false) => Strategy::Newton,
     }
 }

@@ -12,10 +12,10 @@ use voxsoft_solid::{Body, Fluid, Hex8, Observer, Problem, Progress, elastic};
 
 use crate::inertia::Inertia;
 use crate::linear::error::FactorError;
+use crate::linear::options::LinearOptions;
 use crate::linear::options::LinearSolver;
-use crate::linear::options::Means;
 use crate::linear::system::{Factor, System};
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 use crate::path::settings::Settings;
 
 /// Reasons why Newton's method stopped without an equilibrium.
@@ -48,14 +48,14 @@ impl From<FactorError> for Failure {
 
 /// Variant of Newton's method.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Way {
+pub(crate) enum Strategy {
     /// Mixed, with strains as unknowns ([`voxsoft_solid::element::assumed_strain`]).
-    Quick,
+    Newton,
     /// Mixed, then, if that diverges, with a line search.
-    Safe,
+    NewtonThenLineSearch,
     /// Line search first: from an equilibrium with contact multipliers that were corrected since. It is near, but
     /// friction may begin to slip there, and iterations without a line search overshoot.
-    Again,
+    LineSearch,
 }
 
 /// Result of a converged Newton iteration.
@@ -86,7 +86,7 @@ pub(crate) struct Equilibrium {
     pub problem: Problem,
     pub system: System,
     /// Solver and memory limit of linear systems.
-    pub means: Means,
+    pub options: LinearOptions,
     /// Coordinates held by clamps or carried by the floor.
     pub held: Vec<[bool; 3]>,
     pub iterations: u32,
@@ -150,7 +150,7 @@ const STANDSTILL_OF_MOTION: f64 = 1e-9;
 const STANDSTILL_RESIDUAL: f64 = 1e-4;
 
 impl Equilibrium {
-    pub fn new(problem: Problem, means: Means) -> Result<Self, FactorError> {
+    pub fn new(problem: Problem, options: LinearOptions) -> Result<Self, FactorError> {
         let mut held = problem.held().to_vec();
         if let Some(floor) = problem.floor() {
             for (held, point) in held.iter_mut().zip(problem.body().rest()) {
@@ -158,8 +158,8 @@ impl Equilibrium {
             }
         }
         Ok(Self {
-            system: System::new(&problem, &held, means)?,
-            means,
+            system: System::new(&problem, &held, options)?,
+            options,
             largest_motion: largest_motion(&problem),
             problem,
             held,
@@ -179,13 +179,13 @@ impl Equilibrium {
     pub fn follow_contact(&mut self, positions: &[Vec3]) -> Result<(), FactorError> {
         let contact = self.problem.contact_mut();
         if contact.is_some_and(|contact| contact.follow(positions)) {
-            self.system = System::new(&self.problem, &self.held, self.means)?;
+            self.system = System::new(&self.problem, &self.held, self.options)?;
         }
         Ok(())
     }
 
     /// Net forces at `positions`, with their norm and scale.
-    pub fn forces(&self, positions: &[Vec3], point: Point) -> Forces {
+    pub fn forces(&self, positions: &[Vec3], point: LoadParameter) -> Forces {
         let mut external = vec![[0.0; 3]; positions.len()];
         self.problem
             .add_scaled_loads(positions, &point.factor_of(), &mut external);
@@ -216,7 +216,7 @@ impl Equilibrium {
         &self,
         strains: &AssumedStrains,
         positions: &[Vec3],
-        point: Point,
+        point: LoadParameter,
     ) -> Vec<f64> {
         let mut net = vec![[0.0; 3]; positions.len()];
         self.problem
@@ -225,14 +225,14 @@ impl Equilibrium {
         self.system.gather(&net)
     }
 
-    pub fn potential(&self, positions: &[Vec3], point: Point) -> (f64, f64) {
+    pub fn potential(&self, positions: &[Vec3], point: LoadParameter) -> (f64, f64) {
         let elastic = elastic::energy(self.problem.body(), positions);
         let loads = self.problem.load_potential(positions, &point.factor_of());
         (elastic + loads, elastic.abs() + loads.abs())
     }
 
     /// Prescribed displacement increments that remain on held coordinates.
-    fn jump(&self, positions: &[Vec3], point: Point) -> Option<Vec<Vec3>> {
+    fn jump(&self, positions: &[Vec3], point: LoadParameter) -> Option<Vec<Vec3>> {
         let mut target = positions.to_vec();
         self.problem
             .place_clamps(point.time, point.dead, &mut target);
@@ -255,17 +255,17 @@ impl Equilibrium {
     pub fn newton(
         &mut self,
         positions: &mut Vec<Vec3>,
-        point: Point,
+        point: LoadParameter,
         settings: &Settings,
-        way: Way,
+        strategy: Strategy,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let start = positions.clone();
-        let mut outcome = self.newton_by(way, positions, point, settings, observer);
+        let mut outcome = self.newton_by(strategy, positions, point, settings, observer);
         if let Err(Failure::Stalled) = outcome {
             self.go_on_directly()?;
             positions.clone_from(&start);
-            outcome = self.newton_by(way, positions, point, settings, observer);
+            outcome = self.newton_by(strategy, positions, point, settings, observer);
         }
         if outcome.is_err() {
             *positions = start;
@@ -275,29 +275,33 @@ impl Equilibrium {
 
     /// Switches to the direct solver, if that fits in memory.
     pub fn go_on_directly(&mut self) -> Result<(), FactorError> {
-        self.means.solver = LinearSolver::Direct;
-        self.system = System::new(&self.problem, &self.held, self.means)?;
+        self.options.solver = LinearSolver::Direct;
+        self.system = System::new(&self.problem, &self.held, self.options)?;
         Ok(())
     }
 
     fn newton_by(
         &mut self,
-        way: Way,
+        strategy: Strategy,
         positions: &mut Vec<Vec3>,
-        point: Point,
+        point: LoadParameter,
         settings: &Settings,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let start = positions.clone();
-        let outcome = match way {
-            Way::Quick | Way::Safe => self.newton_mixed(positions, point, settings, observer),
-            Way::Again => self.newton_searched(positions, point, settings, observer),
+        let outcome = match strategy {
+            Strategy::Newton | Strategy::NewtonThenLineSearch => {
+                self.newton_mixed(positions, point, settings, observer)
+            }
+            Strategy::LineSearch => self.newton_searched(positions, point, settings, observer),
         };
-        if !matches!(outcome, Err(Failure::Lost | Failure::Singular)) || way == Way::Quick {
+        if !matches!(outcome, Err(Failure::Lost | Failure::Singular))
+            || strategy == Strategy::Newton
+        {
             return outcome;
         }
         *positions = start;
-        if way == Way::Again {
+        if strategy == Strategy::LineSearch {
             self.newton_mixed(positions, point, settings, observer)
         } else {
             self.newton_searched(positions, point, settings, observer)
@@ -315,7 +319,7 @@ impl Equilibrium {
     fn newton_mixed(
         &mut self,
         positions: &mut Vec<Vec3>,
-        point: Point,
+        point: LoadParameter,
         settings: &Settings,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
@@ -327,7 +331,7 @@ impl Equilibrium {
     fn iterate_mixed(
         &mut self,
         positions: &mut Vec<Vec3>,
-        point: Point,
+        point: LoadParameter,
         settings: &Settings,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
@@ -434,7 +438,7 @@ impl Equilibrium {
     pub fn look(
         &self,
         positions: &[Vec3],
-        point: Point,
+        point: LoadParameter,
         observer: &mut Observer<'_>,
     ) -> Result<(Forces, Option<Vec<Vec3>>), Failure> {
         let forces = self.forces(positions, point);
@@ -452,7 +456,7 @@ impl Equilibrium {
         &self,
         positions: &mut [Vec3],
         moves: &[Vec3],
-        point: Point,
+        point: LoadParameter,
         iterations: u32,
         relative: f64,
     ) -> Found {
@@ -492,7 +496,7 @@ impl Equilibrium {
     pub fn tell(
         &self,
         positions: &[Vec3],
-        point: Point,
+        point: LoadParameter,
         residual: f64,
         observer: &mut Observer<'_>,
     ) -> Result<(), Failure> {
@@ -514,7 +518,7 @@ impl Equilibrium {
     fn newton_searched(
         &mut self,
         positions: &mut Vec<Vec3>,
-        point: Point,
+        point: LoadParameter,
         settings: &Settings,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
@@ -623,7 +627,7 @@ impl Equilibrium {
         &self,
         positions: &mut Vec<Vec3>,
         moves: &[Vec3],
-        point: Point,
+        point: LoadParameter,
         gain: f64,
         forces: &Forces,
         clamps_move: bool,
@@ -668,7 +672,7 @@ impl Equilibrium {
     }
 
     /// Tests whether the equilibrium at `positions` is stable.
-    pub fn is_stable(&mut self, positions: &[Vec3], point: Point) -> bool {
+    pub fn is_stable(&mut self, positions: &[Vec3], point: LoadParameter) -> bool {
         if self.follow_contact(positions).is_err() {
             return false;
         }
@@ -686,7 +690,11 @@ impl Equilibrium {
 
     /// Updates the active set of the floor: catches vertices below it and releases those that it pulls; returns true if
     /// any changed.
-    pub fn update_floor(&mut self, positions: &[Vec3], point: Point) -> Result<bool, FactorError> {
+    pub fn update_floor(
+        &mut self,
+        positions: &[Vec3],
+        point: LoadParameter,
+    ) -> Result<bool, FactorError> {
         let Some(floor) = self.problem.floor() else {
             return Ok(false);
         };
@@ -706,7 +714,7 @@ impl Equilibrium {
             self.held[vertex][2] = keep;
         }
         if changed {
-            self.system = System::new(&self.problem, &self.held, self.means)?;
+            self.system = System::new(&self.problem, &self.held, self.options)?;
         }
         Ok(changed)
     }

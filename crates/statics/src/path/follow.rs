@@ -6,11 +6,11 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Memory, Observer, Problem, Solution, Solver, State, Status, Term};
 
 use crate::linear::error::FactorError;
-use crate::linear::options::{LinearSolver, Means};
+use crate::linear::options::{LinearOptions, LinearSolver};
 use crate::path::equilibrium::Equilibrium;
 use crate::path::load_path::Path;
-use crate::path::parametrization::Along;
-use crate::path::pseudo_transient::Loose;
+use crate::path::parametrization::Parametrization;
+use crate::path::pseudo_transient::PseudoTransient;
 use crate::path::settings::{Answer, Control, Settings};
 use crate::path::{arc_length, volume};
 
@@ -32,7 +32,9 @@ pub fn solve(
     observer: &mut Observer<'_>,
 ) -> Answer {
     let loose = match settings.control {
-        Control::Load | Control::Time { .. } | Control::Volume { .. } => Loose::find(problem),
+        Control::Load | Control::Time { .. } | Control::Volume { .. } => {
+            PseudoTransient::find(problem)
+        }
         // Loose components come to rest under a fixed load, and past a limit no equilibrium is stable under one.
         Control::ArcLength { .. } => None,
     };
@@ -51,7 +53,7 @@ fn follow(
     start: Option<&Start>,
     settings: &Settings,
     observer: &mut Observer<'_>,
-    loose: Option<&Loose>,
+    loose: Option<&PseudoTransient>,
 ) -> Answer {
     let mut problem = problem.clone();
     let rest = problem.body().rest().to_vec();
@@ -62,21 +64,21 @@ fn follow(
         Control::Volume { .. } if problem.contact().is_none() => settings.linear,
         Control::ArcLength { .. } | Control::Volume { .. } => LinearSolver::Direct,
     };
-    let means = Means {
+    let options = LinearOptions {
         solver,
         memory: settings.memory,
     };
-    let along = Along::of(settings.control);
-    let goes_on = matches!(along, Along::Time { .. });
+    let along = Parametrization::of(settings.control);
+    let goes_on = matches!(along, Parametrization::Time { .. });
     if !goes_on {
         if let Some(contact) = problem.contact_mut() {
-            contact.start(&positions);
+            contact.reset(&positions);
         }
         problem.start_loads();
         problem.start_fluid(&rest, None);
     }
     let memory = problem.memory();
-    let equilibrium = match Equilibrium::new(problem, means) {
+    let equilibrium = match Equilibrium::new(problem, options) {
         Ok(equilibrium) => Equilibrium {
             precision: (settings.tolerance / Settings::default().tolerance).min(1.0),
             ..equilibrium
@@ -107,7 +109,7 @@ fn follow(
             volume::follow_volume(&mut path, settings, growth, start.is_some(), loose)
         }
     };
-    loose.inspect(|loose| loose.let_go(&path.positions));
+    loose.inspect(|loose| loose.remove(&path.positions));
     path.answer(ending, settings)
 }
 

@@ -7,8 +7,8 @@ use crate::path::arc_length;
 use crate::path::contact_loop::AtLoad;
 use crate::path::equilibrium::Failure;
 use crate::path::load_path::{EASY, Ending, Path, SNAP, UNSTABLE_CUTS, longest_step, status_of};
-use crate::path::parametrization::Along;
-use crate::path::pseudo_transient::Loose;
+use crate::path::parametrization::Parametrization;
+use crate::path::pseudo_transient::PseudoTransient;
 use crate::path::settings::{Control, Settings};
 use crate::path::step_length::StepLength;
 
@@ -42,9 +42,9 @@ impl Path<'_, '_> {
     pub fn follow_load(
         &mut self,
         settings: &Settings,
-        along: Along,
+        along: Parametrization,
         warm: bool,
-        loose: Option<&Loose>,
+        loose: Option<&PseudoTransient>,
     ) -> Ending {
         let first = if warm {
             1.0
@@ -98,10 +98,10 @@ impl Path<'_, '_> {
                     if stable || cuts == UNSTABLE_CUTS {
                         // Under dead loads alone only the end is a point of the path.
                         self.looking = match along {
-                            Along::All { .. } | Along::Time { .. } => {
+                            Parametrization::All { .. } | Parametrization::Time { .. } => {
                                 loose.is_some() && next == 1.0
                             }
-                            Along::Dead => next < 1.0,
+                            Parametrization::Dead => next < 1.0,
                         };
                         if limit.is_none() && !warm && loose.is_none() && found.iterations > EASY {
                             limit = self.crossed_limit(&trial, point, along, settings);
@@ -123,20 +123,20 @@ impl Path<'_, '_> {
                     Failure::Lost
                 }
                 Err(Failure::Turned(turn)) => {
-                    self.with_contact(|contact| contact.go_back());
+                    self.with_contact(|contact| contact.rollback());
                     length.set((step * GOOD_TURN / turn).max(settings.least_step));
                     continue;
                 }
                 Err(failure) => failure,
             };
-            self.with_contact(|contact| contact.go_back());
+            self.with_contact(|contact| contact.rollback());
             if !matches!(failure, Failure::Lost | Failure::Singular) {
                 return Ending::new(status_of(failure), None, now);
             }
             self.equilibrium.back_offs += 1;
             if self.points.is_empty() && warm {
                 self.positions.clone_from(&cold);
-                self.with_contact(|contact| contact.start(&cold));
+                self.with_contact(|contact| contact.reset(&cold));
             }
             length.failed(next - now);
             if length.get() < settings.least_step {
@@ -182,13 +182,13 @@ impl Path<'_, '_> {
     /// End of load control, at the full load.
     fn end(
         &mut self,
-        along: Along,
-        loose: Option<&Loose>,
+        along: Parametrization,
+        loose: Option<&PseudoTransient>,
         limit: Option<f64>,
         settings: &Settings,
     ) -> Ending {
         match (along, loose) {
-            (Along::All { .. } | Along::Time { .. }, Some(loose)) => {
+            (Parametrization::All { .. } | Parametrization::Time { .. }, Some(loose)) => {
                 let mut search = AtLoad {
                     point: self.point,
                     safe: true,
@@ -196,11 +196,11 @@ impl Path<'_, '_> {
                 };
                 self.release(loose, &mut search, settings)
             }
-            (Along::All { .. } | Along::Time { .. }, None) => {
+            (Parametrization::All { .. } | Parametrization::Time { .. }, None) => {
                 self.snaps.extend(limit);
                 Ending::new(Status::AtRest, limit, 1.0)
             }
-            (Along::Dead, _) => {
+            (Parametrization::Dead, _) => {
                 self.looking = false;
                 let before = self.points.len().saturating_sub(1);
                 self.points.drain(..before);

@@ -2,14 +2,14 @@ use voxsoft_solid::Load;
 
 /// Point of a load path: factors on pressures and on everything else, and the time of all histories.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Point {
+pub(crate) struct LoadParameter {
     pub dead: f64,
     pub pressure: f64,
     /// Time in s; infinite for equilibria.
     pub time: f64,
 }
 
-impl Point {
+impl LoadParameter {
     pub fn all(factor: f64) -> Self {
         Self::of(factor, factor)
     }

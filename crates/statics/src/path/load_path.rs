@@ -5,7 +5,7 @@ use voxsoft_solid::{Contact, Observer, Problem, Progress, Status};
 
 use crate::linear::error::FactorError;
 use crate::path::equilibrium::{Equilibrium, Failure};
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 use crate::path::settings::{Answer, Control, PathPoint, Settings};
 
 /// Most iterations of a step after which the next one may grow.
@@ -57,7 +57,7 @@ impl Ending {
 pub(crate) struct Path<'a, 'b> {
     pub equilibrium: Equilibrium,
     pub positions: Vec<Vec3>,
-    pub point: Point,
+    pub point: LoadParameter,
     pub points: Vec<PathPoint>,
     /// Load factors at which it snapped ([`crate::path::snap`]).
     pub snaps: Vec<f64>,
@@ -124,7 +124,13 @@ impl Path<'_, '_> {
         }
     }
 
-    pub fn accept(&mut self, positions: Vec<Vec3>, point: Point, iterations: u32, residual: f64) {
+    pub fn accept(
+        &mut self,
+        positions: Vec<Vec3>,
+        point: LoadParameter,
+        iterations: u32,
+        residual: f64,
+    ) {
         let problem = &mut self.equilibrium.problem;
         if let Some(contact) = problem.contact_mut() {
             contact.accept(&positions);

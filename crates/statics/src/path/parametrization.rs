@@ -1,11 +1,11 @@
 //! Parametrization of a path with prescribed loads.
 
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 use crate::path::settings::Control;
 
 /// Quantity that grows from the start of a path to its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Along {
+pub(crate) enum Parametrization {
     /// All loads and motions, up to those at an instant.
     All {
         /// Instant in s; infinite for the values after all histories.
@@ -17,7 +17,7 @@ pub(crate) enum Along {
     Time { from: f64, to: f64 },
 }
 
-impl Along {
+impl Parametrization {
     /// Path of a control; volume control and arc length solve for the load.
     pub fn of(control: Control) -> Self {
         match control {
@@ -34,14 +34,14 @@ impl Along {
     }
 
     /// Point at a fraction of the path.
-    pub fn at(self, part: f64) -> Point {
+    pub fn at(self, part: f64) -> LoadParameter {
         match self {
-            Self::All { time } => Point {
+            Self::All { time } => LoadParameter {
                 time,
-                ..Point::all(part)
+                ..LoadParameter::all(part)
             },
-            Self::Dead => Point::of(part, 0.0),
-            Self::Time { from, to } => Point::at(from + part * (to - from)),
+            Self::Dead => LoadParameter::of(part, 0.0),
+            Self::Time { from, to } => LoadParameter::at(from + part * (to - from)),
         }
     }
 

@@ -16,7 +16,7 @@ use voxsoft_solid::{Problem, Status};
 use crate::inertia::Inertia;
 use crate::path::contact_loop::Search;
 use crate::path::equilibrium::{Failure, Found};
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 use crate::path::load_path::{Ending, Path};
 use crate::path::settings::Settings;
 
@@ -46,7 +46,7 @@ const GONE: f64 = 2.0;
 const NO_PIVOT: f64 = 1e-12;
 
 /// Dampers on loose components, which only contact holds.
-pub(crate) struct Loose {
+pub(crate) struct PseudoTransient {
     pub dampers: Arc<Inertia>,
     /// Length of contact, m.
     length: f64,
@@ -54,7 +54,7 @@ pub(crate) struct Loose {
     farthest: f64,
 }
 
-impl Loose {
+impl PseudoTransient {
     /// Finds the loose components of a problem with contact; `None` if clamps hold everything.
     pub fn find(problem: &Problem) -> Option<Self> {
         let length = problem.contact()?.length();
@@ -109,7 +109,7 @@ impl Loose {
     }
 
     /// Removes all damper forces.
-    pub fn let_go(&self, positions: &[Vec3]) {
+    pub fn remove(&self, positions: &[Vec3]) {
         self.dampers.set(0.0, positions.to_vec());
     }
 
@@ -229,7 +229,7 @@ impl Path<'_, '_> {
     /// Releases loose components into equilibrium, with the `search` at each step.
     pub fn release(
         &mut self,
-        loose: &Loose,
+        loose: &PseudoTransient,
         search: &mut impl Search,
         settings: &Settings,
     ) -> Ending {
@@ -270,7 +270,7 @@ impl Path<'_, '_> {
                     }
                     Err(failure) => failure,
                 };
-            self.with_contact(|contact| contact.go_back());
+            self.with_contact(|contact| contact.rollback());
             self.equilibrium.back_offs += 1;
             (rate, reach) = (rate / FALL, loose.length);
             let hopeless = !matches!(failure, Failure::Lost | Failure::Singular);
@@ -282,16 +282,21 @@ impl Path<'_, '_> {
     }
 
     /// Force of the dampers relative to the load.
-    fn left_to_dampers(&self, loose: &Loose, positions: &[Vec3], point: Point) -> f64 {
+    fn left_to_dampers(
+        &self,
+        loose: &PseudoTransient,
+        positions: &[Vec3],
+        point: LoadParameter,
+    ) -> f64 {
         loose.dampers.size(positions) / self.equilibrium.forces(positions, point).scale
     }
 
     /// Records the equilibrium in place of the points that led to it.
     fn rest(
         &mut self,
-        loose: &Loose,
+        loose: &PseudoTransient,
         positions: Vec<Vec3>,
-        at: Point,
+        at: LoadParameter,
         found: &Found,
         known: usize,
     ) -> Ending {

@@ -2,7 +2,7 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Load, Memory, Status};
 
 use crate::linear::options::LinearSolver;
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 
 /// Control of a load path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -120,9 +120,9 @@ pub struct Answer {
 impl Answer {
     /// Factor on a load at the positions that were reached.
     pub fn factor_of(&self, load: &Load) -> f64 {
-        let point = Point {
+        let point = LoadParameter {
             time: self.time,
-            ..Point::of(self.dead_factor, self.factor)
+            ..LoadParameter::of(self.dead_factor, self.factor)
         };
         point.factor_of()(load)
     }

@@ -12,16 +12,16 @@ use voxsoft_solid::{Status, Term};
 
 use std::sync::Arc;
 
+use crate::linear::options::LinearOptions;
 use crate::linear::options::LinearSolver;
-use crate::linear::options::Means;
 use crate::linear::system::System;
 use crate::path::arc_length;
 use crate::path::contact_loop::Search;
 use crate::path::equilibrium::Equilibrium;
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 use crate::path::load_path::Path;
-use crate::path::parametrization::Along;
-use crate::path::pseudo_transient::Loose;
+use crate::path::parametrization::Parametrization;
+use crate::path::pseudo_transient::PseudoTransient;
 use crate::path::settings::Settings;
 
 /// Fraction of the work of the loads that a step may release before it is checked for a limit: a linear response
@@ -35,8 +35,8 @@ impl Path<'_, '_> {
     pub fn crossed_limit(
         &mut self,
         trial: &[Vec3],
-        point: Point,
-        along: Along,
+        point: LoadParameter,
+        along: Parametrization,
         settings: &Settings,
     ) -> Option<f64> {
         let problem = &self.equilibrium.problem;
@@ -63,16 +63,16 @@ impl Path<'_, '_> {
         let Some(contact) = problem.contact() else {
             return false;
         };
-        let dampers = Loose::of_everything(problem, contact.length());
+        let dampers = PseudoTransient::of_everything(problem, contact.length());
         let term = Arc::clone(&dampers.dampers) as Arc<dyn Term>;
         let Ok(damped) = problem.clone().with_term(term) else {
             return false;
         };
-        let means = Means {
+        let options = LinearOptions {
             solver: LinearSolver::Direct,
-            ..self.equilibrium.means
+            ..self.equilibrium.options
         };
-        let Ok(equilibrium) = Equilibrium::new(damped, means) else {
+        let Ok(equilibrium) = Equilibrium::new(damped, options) else {
             return false;
         };
         let mut path = Path {
@@ -106,7 +106,7 @@ impl Path<'_, '_> {
         // The old tangent has no pattern for the new contact.
         self.equilibrium.problem.remember(&memory);
         let problem = &self.equilibrium.problem;
-        let Ok(system) = System::new(problem, &self.equilibrium.held, self.equilibrium.means)
+        let Ok(system) = System::new(problem, &self.equilibrium.held, self.equilibrium.options)
         else {
             self.equilibrium.problem.remember(&before);
             return false;

@@ -12,10 +12,10 @@ use crate::path::bordered::{
     Bordered, Constraint, DIRECTION_TOLERANCE, Missing, Unknown, load_direction,
 };
 use crate::path::equilibrium::{Equilibrium, Failure};
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 use crate::path::load_path::{Ending, Path, SNAP, UNSTABLE_CUTS, longest_step, status_of};
-use crate::path::parametrization::Along;
-use crate::path::pseudo_transient::Loose;
+use crate::path::parametrization::Parametrization;
+use crate::path::pseudo_transient::PseudoTransient;
 use crate::path::settings::Settings;
 
 /// Most iterations of a step after which the next one may grow.
@@ -47,7 +47,7 @@ impl Constraint for Volume {
 
     fn gradient(&self, equilibrium: &Equilibrium, positions: &[Vec3]) -> (Vec<f64>, f64) {
         // The gradient of the weighted volume is the load direction itself, for any factor.
-        let one = Point::all(1.0);
+        let one = LoadParameter::all(1.0);
         (
             load_direction(equilibrium, positions, one, self.unknown()),
             0.0,
@@ -65,13 +65,13 @@ pub(crate) fn follow_volume(
     settings: &Settings,
     (ratio, steps): (f64, u32),
     warm: bool,
-    loose: Option<&Loose>,
+    loose: Option<&PseudoTransient>,
 ) -> Ending {
-    let dead = path.follow_load(settings, Along::Dead, warm, loose);
+    let dead = path.follow_load(settings, Parametrization::Dead, warm, loose);
     if dead.status() != Status::AtRest {
         return Ending::new(dead.status(), None, 0.0);
     }
-    Growth {
+    VolumePath {
         first: volume(&path.equilibrium.problem, &path.positions),
         ratio,
         highest: 0.0,
@@ -83,7 +83,7 @@ pub(crate) fn follow_volume(
 }
 
 /// Path along which the volume grows.
-struct Growth {
+struct VolumePath {
     /// Volume without pressure (J), and its final ratio.
     first: f64,
     ratio: f64,
@@ -96,7 +96,7 @@ struct Growth {
     cuts: u32,
 }
 
-impl Growth {
+impl VolumePath {
     /// Search for the equilibrium at a fraction of the path.
     fn search(&self, path: &Path<'_, '_>, done: f64) -> Bordered<Volume> {
         Bordered {
@@ -110,7 +110,7 @@ impl Growth {
         path: &mut Path<'_, '_>,
         settings: &Settings,
         steps: u32,
-        loose: Option<&Loose>,
+        loose: Option<&PseudoTransient>,
     ) -> Ending {
         let touches = path.touches();
         let (mut longest, mut scale) = (1.0 / f64::from(steps.max(1)), 1);
@@ -146,7 +146,7 @@ impl Growth {
                 }
                 Err(failure) => failure,
             };
-            path.with_contact(|contact| contact.go_back());
+            path.with_contact(|contact| contact.rollback());
             path.equilibrium.back_offs += 1;
             part *= CUT;
             let lost = matches!(failure, Failure::Lost | Failure::Singular);
@@ -203,7 +203,7 @@ impl Growth {
     }
 
     /// Updates the limit with the factor of a new point of the path.
-    fn see(&mut self, point: Point) {
+    fn see(&mut self, point: LoadParameter) {
         if point.pressure < self.highest - 1e-9 && self.turned.is_none() {
             self.turned = Some(self.highest);
         }
@@ -213,7 +213,11 @@ impl Growth {
 
 /// Tests whether an equilibrium is stable under its pressures, and whether it is at a fixed volume: one negative
 /// eigenvalue is allowed then, if the volume falls where the pressures rise.
-fn stability(equilibrium: &mut Equilibrium, positions: &[Vec3], point: Point) -> (bool, bool) {
+fn stability(
+    equilibrium: &mut Equilibrium,
+    positions: &[Vec3],
+    point: LoadParameter,
+) -> (bool, bool) {
     if equilibrium.is_stable(positions, point) {
         return (true, true);
     }

@@ -10,10 +10,10 @@ use voxsoft_solid::Problem;
 use voxsoft_solid::vector::Vec3;
 
 use crate::linear::error::FactorError;
+use crate::linear::options::LinearOptions;
 use crate::linear::options::LinearSolver;
-use crate::linear::options::Means;
 use crate::path::equilibrium::Equilibrium;
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 
 /// Relative tolerance of iterative solutions, in the energy norm; rounding in a slender body limits it to 1e-10.
 const TOLERANCE: f64 = 1e-8;
@@ -79,12 +79,12 @@ pub(crate) fn with_tangent(
     positions: &[Vec3],
     memory: u64,
 ) -> Result<Equilibrium, AdjointError> {
-    let means = Means {
+    let options = LinearOptions {
         solver: LinearSolver::Auto,
         memory,
     };
-    let mut equilibrium = Equilibrium::new(problem.clone(), means)?;
-    let full = Point::all(1.0);
+    let mut equilibrium = Equilibrium::new(problem.clone(), options)?;
+    let full = LoadParameter::all(1.0);
     equilibrium.update_floor(positions, full)?;
     equilibrium.follow_contact(positions)?;
     let mut unused = vec![0.0; equilibrium.system.size()];

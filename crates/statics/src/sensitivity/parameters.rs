@@ -16,11 +16,11 @@
 use voxsoft_solid::vector::{Vec3, axpy, norm, sub};
 use voxsoft_solid::{Moment, Problem, RecordedContact, elastic};
 
+use crate::linear::options::LinearOptions;
 use crate::linear::options::LinearSolver;
-use crate::linear::options::Means;
 use crate::linear::system::System;
 use crate::path::equilibrium::Equilibrium;
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 use crate::sensitivity::adjoint::AdjointError;
 
 /// Relative tolerance of iterative solutions for derivatives, in the energy norm.
@@ -56,25 +56,25 @@ pub fn sensitivities<C: RecordedContact>(
     memory: u64,
     stop: &mut dyn FnMut() -> bool,
 ) -> Result<Vec<Vec<Vec<Vec3>>>, AdjointError> {
-    let means = Means {
+    let options = LinearOptions {
         solver: LinearSolver::Auto,
         memory,
     };
     for varied in parameters.iter_mut().flatten() {
         let rest = varied.problem.body().rest().to_vec();
-        contact_of::<C>(&mut varied.problem)?.start(&rest);
+        contact_of::<C>(&mut varied.problem)?.reset(&rest);
     }
-    let mut equilibrium = Equilibrium::new(problem.clone(), means)?;
+    let mut equilibrium = Equilibrium::new(problem.clone(), options)?;
     let mut ends = Vec::new();
     let mut steps = factors.iter();
-    let mut point = Point::all(0.0);
+    let mut point = LoadParameter::all(0.0);
     let mut begins = true;
     for (number, moment) in moments.iter().enumerate() {
         if std::mem::replace(&mut begins, moment.settled) {
-            point = Point::all(*steps.next().unwrap_or(&1.0));
+            point = LoadParameter::all(*steps.next().unwrap_or(&1.0));
         }
         if contact_of::<C>(&mut equilibrium.problem)?.recall(moment) {
-            equilibrium.system = System::new(&equilibrium.problem, &equilibrium.held, means)?;
+            equilibrium.system = System::new(&equilibrium.problem, &equilibrium.held, options)?;
         }
         let problem = &equilibrium.problem;
         let system = &mut equilibrium.system;
@@ -187,7 +187,7 @@ fn change(before: &[Vec3], now: &[Vec3], carried: f64) -> f64 {
     }
 }
 
-fn net_forces(problem: &Problem, positions: &[Vec3], point: Point) -> Vec<Vec3> {
+fn net_forces(problem: &Problem, positions: &[Vec3], point: LoadParameter) -> Vec<Vec3> {
     let mut net = vec![[0.0; 3]; positions.len()];
     problem.add_scaled_loads(positions, &point.factor_of(), &mut net);
     elastic::add_forces(problem.body(), positions, &mut net);

@@ -26,7 +26,7 @@ impl Implicit {
     pub(super) fn face(&mut self, positions: &[Vec3], anew: bool) {
         if let Some(contact) = self.problem.contact_mut() {
             if anew {
-                contact.look_anew();
+                contact.relist();
             }
             self.pattern_changed |= contact.follow(positions);
         }

@@ -12,7 +12,7 @@ use voxsoft_solid::{Load, Problem, elastic};
 use super::turns::Turns;
 use crate::linear::direct::{DirectFactor, DirectSystem};
 use crate::linear::error::FactorError;
-use crate::linear::options::Means;
+use crate::linear::options::LinearOptions;
 
 /// Changed entries of `D` beyond which a new factor is cheaper: each costs a solution.
 const MOST_PATCHES: usize = 24;
@@ -46,8 +46,8 @@ pub(super) struct Lagged {
 }
 
 impl Lagged {
-    pub fn new(problem: &Problem, means: Means) -> Result<Self, FactorError> {
-        let system = DirectSystem::with_symmetry(problem, problem.held(), means, true)?;
+    pub fn new(problem: &Problem, options: LinearOptions) -> Result<Self, FactorError> {
+        let system = DirectSystem::with_symmetry(problem, problem.held(), options, true)?;
         let masses: Vec<Vec3> = problem.body().masses().iter().map(|m| [*m; 3]).collect();
         Ok(Self {
             masses: system.gather(&masses),

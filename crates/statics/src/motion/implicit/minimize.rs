@@ -9,7 +9,7 @@ use super::contact::{make_rigid, restore};
 use super::lagged::Lagged;
 use super::line::{Line, Outcome, Then};
 use super::objective::{Objective, Value};
-use super::quasi_newton::{Memory, product};
+use super::quasi_newton::{QuasiNewtonMemory, product};
 
 /// Factors of [`Tolerance`].
 const MOVE_OF_STEP: f64 = 1e-2;
@@ -46,7 +46,7 @@ pub(super) enum End {
 pub(super) struct Search<'a> {
     pub objective: Objective<'a>,
     pub lagged: &'a mut Lagged,
-    pub memory: &'a mut Memory,
+    pub memory: &'a mut QuasiNewtonMemory,
     /// Vertices on the floor, whose z coordinates do not move, besides the clamped ones.
     pub carried: &'a [bool],
     /// Tolerance of the last move.

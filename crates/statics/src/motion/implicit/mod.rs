@@ -38,12 +38,12 @@ use self::lagged::Lagged;
 use self::minimize::{End, Search, Tolerance};
 use self::objective::{Goal, Objective, Value};
 use self::pressures::Pressures;
-use self::quasi_newton::Memory;
+use self::quasi_newton::QuasiNewtonMemory;
 use self::scheme::Stage;
 pub(crate) use self::stepper::STEPS;
 use crate::linear::error::FactorError;
+use crate::linear::options::LinearOptions;
 use crate::linear::options::LinearSolver;
-use crate::linear::options::Means;
 
 /// Most moves of one search; another follows with a fresh tangent.
 const MOST_MOVES: u32 = 8;
@@ -72,7 +72,7 @@ const MAX_BACK_OFFS: u32 = 10;
 /// Successful steps after which a halved one is doubled again.
 const PATIENCE: u32 = 3;
 /// Direct factorization of the tangent, whatever its size.
-const MEANS: Means = Means {
+const LINEAR_OPTIONS: LinearOptions = LinearOptions {
     solver: LinearSolver::Direct,
     memory: u64::MAX,
 };
@@ -139,7 +139,7 @@ pub struct Implicit {
     hands: Hands,
     /// Tangent, created at the first step, which reports errors.
     lagged: Option<Lagged>,
-    memory: Memory,
+    memory: QuasiNewtonMemory,
     pressures: Pressures,
     viscosity: Option<Viscosity>,
     state: State,
@@ -194,7 +194,7 @@ impl Implicit {
         Self {
             hands: Hands::new(&problem),
             lagged: None,
-            memory: Memory::default(),
+            memory: QuasiNewtonMemory::default(),
             pressures: Pressures::new(problem.body()),
             viscosity: Viscosity::of_viscous(problem.body(), settings.retardation),
             before: None,
@@ -342,7 +342,7 @@ impl Implicit {
         let problem = &self.problem;
         let lagged = match &mut self.lagged {
             Some(lagged) if !self.pattern_changed => lagged,
-            lagged => lagged.insert(Lagged::new(problem, MEANS)?),
+            lagged => lagged.insert(Lagged::new(problem, LINEAR_OPTIONS)?),
         };
         self.pattern_changed = false;
         lagged.assemble(problem, positions, goal.time, goal.within, tangent);
@@ -381,7 +381,7 @@ impl Implicit {
         self.stage = Stage::First;
         self.met = false;
         if let Some(contact) = self.problem.contact_mut() {
-            contact.start(&self.state.positions);
+            contact.reset(&self.state.positions);
         }
         self.problem.start_loads();
         self.value = Value::default();

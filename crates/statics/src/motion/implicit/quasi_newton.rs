@@ -17,11 +17,11 @@ struct Pair {
 
 /// Pairs of the last moves.
 #[derive(Default)]
-pub(super) struct Memory {
+pub(super) struct QuasiNewtonMemory {
     pairs: VecDeque<Pair>,
 }
 
-impl Memory {
+impl QuasiNewtonMemory {
     /// Removes all pairs, after the tangent was factorized anew.
     pub fn clear(&mut self) {
         self.pairs.clear();

@@ -56,7 +56,7 @@ impl Implicit {
         let second_order = self.before.is_some() && !self.met;
         let mut found = self.find(step, second_order, go_on);
         if second_order && self.met && !matches!(found, Err(Failure::Cancelled)) {
-            self.go_back();
+            self.rollback();
             // The tangent has the contact stiffness of the final state, and would resist bodies that have yet to come
             // there.
             if let Some(lagged) = &mut self.lagged {
@@ -64,7 +64,7 @@ impl Implicit {
             }
             found = self.find(step, false, go_on);
         }
-        let (next, value) = found.inspect_err(|_| self.go_back())?;
+        let (next, value) = found.inspect_err(|_| self.rollback())?;
         self.accept(next, value)
     }
 
@@ -127,15 +127,15 @@ impl Implicit {
             Breakdown::find(&self.problem, &next.positions, self.travel_limit, next.time)
         {
             self.breakdown = Some(place);
-            self.go_back();
+            self.rollback();
             return Err(Failure::Lost);
         }
         let taken = self
             .problem
             .contact_mut()
-            .is_none_or(|contact| contact.take_step(&next.positions));
+            .is_none_or(|contact| contact.commit_partial(&next.positions));
         if !taken {
-            self.go_back();
+            self.rollback();
             return Err(Failure::Lost);
         }
         let factor_of = |load: &Load| load.history.at(next.time);
@@ -158,9 +158,9 @@ impl Implicit {
     }
 
     /// Resets the memory of contact to the state.
-    fn go_back(&mut self) {
+    fn rollback(&mut self) {
         if let Some(contact) = self.problem.contact_mut() {
-            contact.go_back();
+            contact.rollback();
         }
     }
 }

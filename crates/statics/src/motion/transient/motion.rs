@@ -10,8 +10,8 @@ use super::Transient;
 use super::energy::Now;
 use crate::inertia::Inertia;
 use crate::linear::error::FactorError;
+use crate::linear::options::LinearOptions;
 use crate::linear::options::LinearSolver;
-use crate::linear::options::Means;
 use crate::motion::implicit::ANCHOR_SPEED;
 use crate::motion::implicit::scheme::{FIRST_PART, SECOND_OVER_FIRST, Stage};
 use crate::path::equilibrium::{Equilibrium, Failure};
@@ -192,7 +192,7 @@ impl Motion {
                 }
                 Err(failure) => failure,
             };
-            self.go_back();
+            self.rollback();
             if let Stop::Failed(Failure::Memory(_) | Failure::Cancelled) = failure {
                 return Err(failure);
             }
@@ -240,16 +240,16 @@ impl Motion {
             if !self.gains_energy(&next, &found) {
                 return self.accept(next, found);
             }
-            self.go_back();
+            self.rollback();
         }
         let (next, found) = self.find(step, None, observer)?;
         self.accept(next, found)
     }
 
     /// Resets the memory of contact to the last accepted state.
-    fn go_back(&mut self) {
+    fn rollback(&mut self) {
         if let Some(contact) = self.problem.contact_mut() {
-            contact.go_back();
+            contact.rollback();
         }
     }
 
@@ -294,7 +294,7 @@ impl Motion {
 /// Clears the memory of a problem for a motion from `start`.
 fn begin_at(problem: &mut Problem, start: &State) {
     if let Some(contact) = problem.contact_mut() {
-        contact.start(&start.positions);
+        contact.reset(&start.positions);
     }
     problem.start_loads();
     problem.begin(start.time);
@@ -311,13 +311,13 @@ fn moving(
         .clone()
         .with_term(Arc::clone(inertia) as Arc<dyn Term>);
     let moving = moving.expect("inertia has the vertices of its body");
-    let means = Means {
+    let options = LinearOptions {
         solver: LinearSolver::Auto,
         memory,
     };
     Ok(Equilibrium {
         inertia: Some(Arc::clone(inertia)),
-        ..Equilibrium::new(moving, means)?
+        ..Equilibrium::new(moving, options)?
     })
 }
 

@@ -11,7 +11,7 @@ use super::motion::{Motion, Stop};
 use crate::motion::implicit::ANCHOR_SPEED;
 use crate::motion::implicit::scheme::Start;
 use crate::path::contact_loop::AtLoad;
-use crate::path::load_parameter::Point;
+use crate::path::load_parameter::LoadParameter;
 use crate::path::settings::Settings;
 
 /// Relative residual of the equilibrium of a step.
@@ -61,7 +61,7 @@ impl Motion {
                 fluid.begin(time, start.rate, start.weights);
             }
         }
-        let point = Point::at(time);
+        let point = LoadParameter::at(time);
         let mut positions = self.best_prediction(step, before, point)?;
         self.settle(&mut positions, point, observer)?;
         self.problem.body().ties().follow(&mut positions);
@@ -129,7 +129,7 @@ impl Motion {
         &mut self,
         step: f64,
         before: Option<&State>,
-        point: Point,
+        point: LoadParameter,
     ) -> Result<Vec<Vec3>, Stop> {
         let stayed = self.state.positions.clone();
         let mut predictions = vec![self.predicted(step, None), stayed];
@@ -140,20 +140,20 @@ impl Motion {
         for mut prediction in predictions {
             self.problem
                 .place_clamps(point.time, point.dead, &mut prediction);
-            self.look_anew();
+            self.relist();
             self.equilibrium.follow_contact(&prediction)?;
             let (potential, _) = self.equilibrium.potential(&prediction, point);
             if potential < best.0 {
                 best = (potential, prediction);
             }
         }
-        self.look_anew();
+        self.relist();
         Ok(best.1)
     }
 
-    fn look_anew(&mut self) {
+    fn relist(&mut self) {
         if let Some(contact) = self.equilibrium.problem.contact_mut() {
-            contact.look_anew();
+            contact.relist();
         }
     }
 
@@ -177,7 +177,7 @@ impl Motion {
     fn settle(
         &mut self,
         positions: &mut Vec<Vec3>,
-        point: Point,
+        point: LoadParameter,
         observer: &mut Observer<'_>,
     ) -> Result<(), Stop> {
         let settings = Settings {
