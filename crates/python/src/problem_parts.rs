@@ -21,8 +21,8 @@ use voxsoft_solid::{
 use crate::arrays::rows;
 use crate::errors::to_python;
 use crate::skin::PySkin;
+use crate::surface_contact::{BodyPart, BondPart, ContactParts, Freedom, ObjectPart, Way, Whole};
 use crate::tendon::TendonPart;
-use crate::touch::{BodyPart, BondPart, Freedom, ObjectPart, TouchParts, Way, Whole};
 
 /// A load history: times in s and factors.
 type HistoryArgument = Option<(Vec<f64>, Vec<f64>)>;
@@ -67,7 +67,7 @@ pub struct PyProblemParts {
     pub(crate) block_axes: Vec<Mat3>,
     pub(crate) coarse: Vec<[u32; 8]>,
     pub(crate) attachments: Vec<Attachment>,
-    pub(crate) touch: Option<TouchParts>,
+    pub(crate) touch: Option<ContactParts>,
     pub(crate) tendons: Vec<(TendonPart, History)>,
     pub(crate) dielectrics: Vec<Load>,
     pub(crate) fluid: Option<Fluid>,

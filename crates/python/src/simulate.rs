@@ -19,8 +19,8 @@ use crate::gate;
 use crate::handle::{Handle, PyMemory};
 use crate::materials::PyMaterial;
 use crate::problem_parts::PyProblemParts;
+use crate::surface_contact::{Touching, contact_of};
 use crate::tendon::{PyTendon, tendons};
-use crate::touch::{Touching, touch_of};
 use crate::watch::{Watch, collect_sensors};
 
 /// A mechanical problem: a body with clamps, loads and a floor.
@@ -480,7 +480,7 @@ impl PyProblem {
         };
         let touching = self.touching.as_ref();
         let contact_field = touching
-            .zip(touch_of(&problem))
+            .zip(contact_of(&problem))
             .map(|(touching, touch)| touching.field(py, touch, positions))
             .transpose()?;
         let balance = balance_under(&problem, positions, factor_of);

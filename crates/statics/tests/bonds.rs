@@ -13,7 +13,7 @@ use voxsoft_contact::surface::Surface;
 use voxsoft_contact::surface_contact::bonds::Bond;
 use voxsoft_contact::surface_contact::rigid::Frame;
 use voxsoft_contact::surface_contact::tie::{Side, Solid};
-use voxsoft_contact::surface_contact::{Description, Touch};
+use voxsoft_contact::surface_contact::{Description, SurfaceContact};
 use voxsoft_solid::balance::balance;
 use voxsoft_solid::conformance::check_term;
 use voxsoft_solid::matrix::IDENTITY;
@@ -63,7 +63,7 @@ fn bonded(
         voxel: 3e-3,
         young: YOUNG,
     };
-    let touch = Touch::new(description, &mesh.vertices).unwrap();
+    let touch = SurfaceContact::new(description, &mesh.vertices).unwrap();
     let problem = Problem::new(body, clamps, loads, None).unwrap();
     problem.with_contact(Box::new(touch)).unwrap()
 }

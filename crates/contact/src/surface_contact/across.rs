@@ -4,14 +4,14 @@ use voxsoft_solid::Contact;
 use voxsoft_solid::vector::{Vec3, dot};
 
 use super::law::{Across, Law, Laws, Normal};
-use super::state::{Memory, State};
-use super::{Meeting, ROUNDING, Touch};
+use super::state::{ContactState, SampleMemory};
+use super::{ContactPair, ROUNDING, SurfaceContact};
 use crate::gap::{area, normal};
 
 /// Smallest cosine between the normal of a triangle and the direction against which its contact presses: 60 degrees.
 const TOWARD: f64 = 0.5;
 
-impl Touch {
+impl SurfaceContact {
     /// Sets the contact laws of pairs of surfaces, at `rest` (m) in the unloaded design; those without one have hard
     /// contact.
     #[must_use]
@@ -37,8 +37,8 @@ impl Touch {
     /// cannot change, and a multiplier that should open them would grow without bound.
     pub(super) fn normal(
         &self,
-        memory: &Memory,
-        meeting: &Meeting,
+        memory: &SampleMemory,
+        meeting: &ContactPair,
         points: &[Vec3],
     ) -> Option<Normal> {
         let law = self.law(meeting.sample, meeting.triangle);
@@ -63,9 +63,9 @@ impl Touch {
     /// Calls `take` with every contact pair that has forces along its normal, and with these.
     pub(super) fn each_contact(
         &self,
-        state: &State,
+        state: &ContactState,
         positions: &[Vec3],
-        mut take: impl FnMut(&Meeting, Normal, &[Vec3]),
+        mut take: impl FnMut(&ContactPair, Normal, &[Vec3]),
     ) {
         let points = self.points_at(positions);
         for (index, facing) in state.facing.iter().enumerate() {
@@ -81,7 +81,7 @@ impl Touch {
 
     /// Area in the unloaded body (m²) over which a sample integrates a traction: of its triangles that face the
     /// contact. Of two surfaces the one with the finer points integrates; a surface with itself counts twice.
-    fn area_across(&self, meeting: &Meeting, points: &[Vec3]) -> f64 {
+    fn area_across(&self, meeting: &ContactPair, points: &[Vec3]) -> f64 {
         let sample = &self.samples[meeting.sample as usize];
         let (own, other) = (
             sample.surface as usize,

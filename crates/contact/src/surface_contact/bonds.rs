@@ -23,10 +23,10 @@ use voxsoft_solid::ProblemError;
 use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 
-use super::mortar::Meeting;
-use super::state::{Hold, State};
+use super::mortar::MortarIntegral;
+use super::state::{ContactState, Hold};
 use super::tie::{Side, Tie};
-use super::{PENALTY, Touch};
+use super::{PENALTY, SurfaceContact};
 use crate::gap::normal;
 
 /// Tolerance of the tie constraint, in voxels: a hundredth of the clearance of contact.
@@ -61,7 +61,7 @@ impl Bond {
         strength: f64,
         rest: &[Vec3],
     ) -> Result<Self, ProblemError> {
-        let ties = Meeting::new([first, second], reach, rest).ties(rest);
+        let ties = MortarIntegral::new([first, second], reach, rest).ties(rest);
         if ties.is_empty() {
             let what = "the bonded area in m²";
             return Err(ProblemError::NotPositive { what, value: 0.0 });
@@ -81,7 +81,7 @@ impl Tie {
     }
 }
 
-impl Touch {
+impl SurfaceContact {
     /// All ties with their bonds, in the order of their holds.
     pub(super) fn ties(&self) -> impl Iterator<Item = (&Bond, &Tie)> {
         let bonds = self.description.bonds.iter();
@@ -91,7 +91,7 @@ impl Touch {
     /// Calls `take` with every unbroken tie and its force on the first surface, N.
     pub(super) fn each_tie(
         &self,
-        state: &State,
+        state: &ContactState,
         positions: &[Vec3],
         mut take: impl FnMut(&Bond, &Tie, Vec3),
     ) {
@@ -116,7 +116,11 @@ impl Touch {
 
     /// Updated multipliers of the ties at an equilibrium, and their largest constraint violation relative to its
     /// tolerance.
-    pub(super) fn corrected_ties(&self, state: &State, positions: &[Vec3]) -> (Vec<Hold>, f64) {
+    pub(super) fn corrected_ties(
+        &self,
+        state: &ContactState,
+        positions: &[Vec3],
+    ) -> (Vec<Hold>, f64) {
         let mut largest = 0.0f64;
         let pairs = self.ties().zip(&state.holds);
         let corrected = pairs.map(|((_, tie), hold)| {
@@ -133,7 +137,7 @@ impl Touch {
     }
 
     /// Breaks ties that are loaded beyond their strength; returns true if any broke.
-    pub(super) fn break_ties(&self, state: &mut State, positions: &[Vec3]) -> bool {
+    pub(super) fn break_ties(&self, state: &mut ContactState, positions: &[Vec3]) -> bool {
         let mut loads = Vec::with_capacity(state.holds.len());
         let mut first = 0;
         for bond in &self.description.bonds {
@@ -196,7 +200,7 @@ impl Touch {
     }
 
     /// Tests whether a sample is still bonded to a surface.
-    pub(super) fn is_bonded(&self, state: &State, sample: u32, surface: u32) -> bool {
+    pub(super) fn is_bonded(&self, state: &ContactState, sample: u32, surface: u32) -> bool {
         let ties = self.ties_at[sample as usize].iter();
         let holds = |(tie, to): &(u32, u32)| *to == surface && !state.holds[*tie as usize].broken;
         ties.into_iter().any(holds)

@@ -10,8 +10,8 @@
 use voxsoft_solid::vector::{Vec3, add, dot, norm, scale, sub};
 
 use super::listing::{DEPTH, REACH};
-use super::state::{Facing, State};
-use super::{CLEARANCE, DEEPEST, Touch};
+use super::state::{ContactState, Facing};
+use super::{CLEARANCE, DEEPEST, SurfaceContact};
 use crate::gap::{Crossing, crossing, normal, unit};
 use crate::threads;
 
@@ -38,9 +38,9 @@ pub(super) fn weights(corner: usize, along: f64) -> [f64; 3] {
     weights
 }
 
-impl Touch {
+impl SurfaceContact {
     /// Searches the edges that each edge crosses at an equilibrium; returns true if any force changes by it.
-    pub(super) fn face_edges(&self, state: &mut State, positions: &[Vec3]) -> bool {
+    pub(super) fn face_edges(&self, state: &mut ContactState, positions: &[Vec3]) -> bool {
         let points = self.points_at(positions);
         let first = self.points.len();
         let look = |edge: usize| self.look_across(state, first + edge, &points);
@@ -59,7 +59,7 @@ impl Touch {
     /// Edge faced during Newton iterations: the previous one, or `None` once the crossing has left it.
     pub(super) fn keep_across(
         &self,
-        state: &State,
+        state: &ContactState,
         index: usize,
         points: &[Vec3],
     ) -> Option<Facing> {
@@ -78,7 +78,7 @@ impl Touch {
 
     fn is_pressed(
         &self,
-        state: &State,
+        state: &ContactState,
         sample: usize,
         facing: Option<Facing>,
         points: &[Vec3],
@@ -99,7 +99,7 @@ impl Touch {
     }
 
     /// Candidate edge that an edge lies across, the one with the deepest crossing; an edge that is pressed is kept.
-    fn look_across(&self, state: &State, index: usize, points: &[Vec3]) -> Option<Facing> {
+    fn look_across(&self, state: &ContactState, index: usize, points: &[Vec3]) -> Option<Facing> {
         let before = state.facing[index];
         if self.is_pressed(state, index, before, points)
             && let Some(Facing::Across(triangle, corner, _)) = before
@@ -125,7 +125,7 @@ impl Touch {
     /// if it already `presses` it.
     fn across(
         &self,
-        state: &State,
+        state: &ContactState,
         index: usize,
         (triangle, corner): (u32, usize),
         presses: bool,
@@ -246,7 +246,7 @@ mod tests {
         lower.into_iter().chain(upper.map(lift)).collect()
     }
 
-    fn touch(friction: f64, positions: &[Vec3]) -> Touch {
+    fn contact(friction: f64, positions: &[Vec3]) -> SurfaceContact {
         // Orientation outward, by the sign of the volume of four points.
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
         let surface = |first: u32, flip: bool| Surface {
@@ -271,58 +271,58 @@ mod tests {
             voxel: 1.0,
             young: 2.0,
         };
-        Touch::new(description, positions).unwrap()
+        SurfaceContact::new(description, positions).unwrap()
     }
 
     #[test]
     fn crossed_edges_press_each_other() {
         let (apart, positions) = (crossed(0.01), crossed(-0.01));
-        let mut touch = touch(0.0, &apart);
-        touch.follow(&positions);
-        assert!(touch.pairs(&positions).is_empty());
-        assert!(!touch.correct(&positions, 0.0, 1.0));
-        let pairs = touch.pairs(&positions);
+        let mut contact = contact(0.0, &apart);
+        contact.follow(&positions);
+        assert!(contact.pairs(&positions).is_empty());
+        assert!(!contact.correct(&positions, 0.0, 1.0));
+        let pairs = contact.pairs(&positions);
         assert_eq!(pairs.len(), 1);
         assert!((pairs[0].gap + 0.01).abs() < 1e-12, "{pairs:?}");
         // Force on the first surface, which is the lower one.
         assert!(pairs[0].force[2] < 0.0, "{pairs:?}");
-        assert!(touch.pairs(&apart).is_empty());
+        assert!(contact.pairs(&apart).is_empty());
     }
 
     #[test]
     fn edges_keep_the_laws_of_terms() {
         // Penetrated by less than the pressure that the exact tangent accepts.
         let (apart, positions) = (crossed(0.05), crossed(-0.0004));
-        let mut touch = touch(0.0, &crossed(0.0));
-        touch.follow(&positions);
+        let mut contact = contact(0.0, &crossed(0.0));
+        contact.follow(&positions);
         for _ in 0..2 {
-            assert!(!touch.correct(&positions, 0.0, 1.0));
-            touch.follow(&positions);
-            assert_eq!(touch.pairs(&positions).len(), 1);
-            check_term(&touch, &apart, &positions).unwrap();
+            assert!(!contact.correct(&positions, 0.0, 1.0));
+            contact.follow(&positions);
+            assert_eq!(contact.pairs(&positions).len(), 1);
+            check_term(&contact, &apart, &positions).unwrap();
         }
     }
 
     #[test]
     fn edges_stick_up_to_the_bound_of_friction() {
         let positions = crossed(-0.0004);
-        let mut touch = touch(0.4, &crossed(0.0));
-        touch.follow(&positions);
+        let mut contact = contact(0.4, &crossed(0.0));
+        contact.follow(&positions);
         for _ in 0..2 {
-            touch.correct(&positions, 0.0, 1.0);
+            contact.correct(&positions, 0.0, 1.0);
         }
         let slip = |by: f64| {
             let mut moved = positions.clone();
             for x in &mut moved[4..] {
                 x[0] += by;
             }
-            touch.pairs(&moved)[0].clone()
+            contact.pairs(&moved)[0].clone()
         };
         let held = slip(0.0);
         assert!(held.pressure > 0.0 && norm(held.friction) < 1e-9 * held.pressure);
         // Friction carries the first surface along.
         let slipping = slip(0.05);
-        let bound: f64 = touch.state.now.iter().map(|memory| memory.bound).sum();
+        let bound: f64 = contact.state.now.iter().map(|memory| memory.bound).sum();
         assert!(bound > 0.0 && (norm(slipping.friction) / bound - 1.0).abs() < 1e-9);
         assert!(slipping.friction[0] > 0.99 * norm(slipping.friction));
         assert!(slipping.slipping == 1.0 && held.slipping == 0.0);
@@ -331,9 +331,9 @@ mod tests {
     #[test]
     fn an_edge_does_not_face_edges_behind_it() {
         let positions = crossed(-1.0);
-        let mut touch = touch(0.0, &positions);
-        touch.correct(&positions, 0.0, 1.0);
-        let state = &touch.state;
+        let mut contact = contact(0.0, &positions);
+        contact.correct(&positions, 0.0, 1.0);
+        let state = &contact.state;
         let across = |facing: &&Option<Facing>| matches!(facing, Some(Facing::Across(..)));
         assert_eq!(state.facing.iter().filter(across).count(), 0);
     }

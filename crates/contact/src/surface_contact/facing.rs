@@ -2,9 +2,9 @@
 
 use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 
-use super::Touch;
+use super::SurfaceContact;
 use super::listing;
-use super::state::{Facing, State};
+use super::state::{ContactState, Facing};
 use crate::gap::{Closest, closest, normal, unit};
 
 /// Tolerance beside an edge within which a sample counts as flush with it, in voxels.
@@ -18,11 +18,11 @@ const RIM: f64 = 1e-3;
 /// it faces.
 const STAYS: f64 = 0.1;
 
-impl Touch {
+impl SurfaceContact {
     /// Facing of a sample at `point`, among its candidates.
     pub(super) fn look(
         &self,
-        state: &State,
+        state: &ContactState,
         index: usize,
         point: Vec3,
         points: &[Vec3],
@@ -65,7 +65,7 @@ impl Touch {
     /// one toward which its own surface looks most, or the one that it already faces if two are alike.
     fn over_rim(
         &self,
-        state: &State,
+        state: &ContactState,
         index: usize,
         triangle: u32,
         found: Closest,
@@ -106,7 +106,13 @@ impl Touch {
     /// the opening angle θ the sample was at most θ/2 from its normal, and behind it is at most (π − θ)/2 from the
     /// opposite direction: so it has turned around the edge by a right angle or more. A sample that has turned by less
     /// only lies beside an edge whose normal has turned.
-    fn went_through(&self, state: &State, index: usize, triangle: u32, found: &Closest) -> bool {
+    fn went_through(
+        &self,
+        state: &ContactState,
+        index: usize,
+        triangle: u32,
+        found: &Closest,
+    ) -> bool {
         let points = &state.accepted_points;
         let mut before = points[index];
         for (weight, corner) in found.weights.iter().zip(self.corners(triangle, points)) {
@@ -205,7 +211,7 @@ mod tests {
     use voxsoft_solid::vector::add;
 
     /// Prism of height 1 over an L of lengths 2 and width 1, its concave edge at (1, 1).
-    fn angle() -> (Touch, Vec<Vec3>) {
+    fn angle() -> (SurfaceContact, Vec<Vec3>) {
         let outline = [
             [0.0, 0.0],
             [2.0, 0.0],
@@ -235,18 +241,21 @@ mod tests {
             voxel: 1.0,
             young: 1.0,
         };
-        (Touch::new(description, &positions).unwrap(), positions)
+        (
+            SurfaceContact::new(description, &positions).unwrap(),
+            positions,
+        )
     }
 
     #[test]
     fn points_in_front_of_a_wall_with_an_inner_edge() {
-        let (touch, positions) = angle();
+        let (contact, positions) = angle();
         let front = |triangle: u32, point: Vec3| {
-            touch.is_in_front(triangle, point, &positions, listing::DEPTH)
+            contact.is_in_front(triangle, point, &positions, listing::DEPTH)
         };
         // The wall y = 1, which ends at the concave edge, where its plane continues into the body.
         let wall = 4;
-        assert_eq!(touch.triangles[wall as usize], [2, 3, 9]);
+        assert_eq!(contact.triangles[wall as usize], [2, 3, 9]);
         assert!(!front(wall, [0.5, 0.99, 0.5]));
         assert!(front(wall, [1.2, 1.5, 0.5]));
         // Points not too deep behind it, at its edge too.
@@ -259,9 +268,9 @@ mod tests {
 
     #[test]
     fn sample_beside_an_inner_edge_has_not_passed_through() {
-        let (touch, positions) = angle();
-        let mut state = touch.state.clone();
-        state.accepted_points = touch.points_at(&positions);
+        let (contact, positions) = angle();
+        let mut state = contact.state.clone();
+        state.accepted_points = contact.points_at(&positions);
         // The concave edge joins the points 3 and 9, at (1, 1); its normal is along x + y.
         let (triangle, weights) = (4, [0.0, 0.5, 0.5]);
         let mut through = |before: Vec3, away: Vec3| {
@@ -272,7 +281,7 @@ mod tests {
                 away,
                 distance,
             };
-            touch.went_through(&state, 0, triangle, &found)
+            contact.went_through(&state, 0, triangle, &found)
         };
         assert!(through([0.3, 0.2, 0.0], [-0.1, -0.1, 0.0]));
         // Rotated with the body by a little, at right angles to the normal.

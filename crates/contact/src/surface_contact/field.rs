@@ -6,7 +6,7 @@
 
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale};
 
-use super::{Spot, Touch};
+use super::{Spot, SurfaceContact};
 use crate::gap::{area, normal, unit};
 use crate::surface::Carried;
 
@@ -54,7 +54,7 @@ impl Flip {
     }
 }
 
-impl Touch {
+impl SurfaceContact {
     /// Contact fields at `positions`, with the multipliers of the last correction, on the vertices of bodies, the first
     /// `count`. With planes of symmetry the images are added.
     pub fn field(&self, positions: &[Vec3], count: usize, flips: &[Flip]) -> ContactField {
@@ -168,7 +168,7 @@ mod tests {
     const CUBE: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
 
     /// Cube of 1 m on another one that is an object, with a gap of a thousandth, and then as deep in it.
-    fn stacked() -> (Touch, Vec<Vec3>) {
+    fn stacked() -> (SurfaceContact, Vec<Vec3>) {
         let corner = |c: u32| {
             let at = |shift: u32| f64::from(c >> shift & 1);
             [at(2), at(1), at(0)]
@@ -194,19 +194,19 @@ mod tests {
             voxel: 1.0,
             young: 2.0,
         };
-        let mut touch = Touch::new(description, &rest).unwrap();
+        let mut contact = SurfaceContact::new(description, &rest).unwrap();
         for x in &mut rest[8..] {
             x[2] += 0.002;
         }
-        touch.follow(&rest);
-        (touch, rest)
+        contact.follow(&rest);
+        (contact, rest)
     }
 
     #[test]
     fn uniform_pressure_is_uniform_and_sums_to_the_force() {
-        let (touch, positions) = stacked();
-        let field = touch.field(&positions, 8, &[]);
-        let pairs = touch.pairs(&positions);
+        let (contact, positions) = stacked();
+        let field = contact.field(&positions, 8, &[]);
+        let pairs = contact.pairs(&positions);
         let force = pairs[0].force[2];
         assert!(force > 0.0, "{pairs:?}");
         for c in 0..8 {

@@ -3,8 +3,8 @@
 use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
 
 use super::law::{Along, Law, Tangential};
-use super::state::{Memory, State};
-use super::{Spot, Touch};
+use super::state::{ContactState, SampleMemory};
+use super::{Spot, SurfaceContact};
 use crate::gap::unit;
 
 /// Friction on one sample.
@@ -17,10 +17,15 @@ pub(super) struct Friction {
     pub along: f64,
 }
 
-impl Touch {
+impl SurfaceContact {
     /// Friction of a sample that was in contact at the last correction and had an anchor: also if it has lost contact
     /// since, or its force would jump.
-    pub(super) fn friction(&self, state: &State, sample: u32, points: &[Vec3]) -> Option<Friction> {
+    pub(super) fn friction(
+        &self,
+        state: &ContactState,
+        sample: u32,
+        points: &[Vec3],
+    ) -> Option<Friction> {
         let memory = &state.now[sample as usize];
         let point = self.place(sample, memory.along, points);
         let k = state.stick * self.penalty(sample);
@@ -50,7 +55,7 @@ impl Friction {
     /// Friction of a sample at `point` with a slip penalty `k` (N/m), which moves along the axes that are `free`, by
     /// the law and at the corners of the triangle of its anchor; `None` without a bound or an anchor.
     pub(super) fn new<'a>(
-        memory: &Memory,
+        memory: &SampleMemory,
         k: f64,
         point: Vec3,
         free: [bool; 3],
@@ -88,11 +93,11 @@ impl Friction {
     }
 }
 
-impl Touch {
+impl SurfaceContact {
     /// Calls `take` with the friction of every sample that has some.
     pub(super) fn each_friction(
         &self,
-        state: &State,
+        state: &ContactState,
         positions: &[Vec3],
         mut take: impl FnMut(u32, Friction),
     ) {

@@ -1,6 +1,7 @@
 //! Contact law: forces of one sample as functions of its gap, its slip and its multipliers.
 //!
-//! A law knows no geometry: [`Touch`](super::Touch) finds gaps, slips and areas, and keeps the multipliers.
+//! A law knows no geometry: [`SurfaceContact`](super::SurfaceContact) finds gaps, slips and areas, and keeps the
+//! multipliers.
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;

@@ -2,8 +2,8 @@
 
 use voxsoft_solid::vector::{Vec3, dot};
 
-use super::Touch;
-use super::state::State;
+use super::SurfaceContact;
+use super::state::ContactState;
 use crate::bounds::Bounds;
 use crate::gap::{closest, normal};
 use crate::threads;
@@ -31,10 +31,10 @@ const SAME_WAY: f64 = 0.3;
 /// voxel.
 const BESIDE: f64 = 0.01;
 
-impl Touch {
+impl SurfaceContact {
     /// Lists for every sample the triangles that come near it on the straight way from the last accepted state to
     /// `points`, and in front of which it was at that state.
-    pub(super) fn list(&self, state: &mut State, points: Vec<Vec3>) {
+    pub(super) fn list(&self, state: &mut ContactState, points: Vec<Vec3>) {
         let reach = REACH * self.description.voxel + self.laws.range();
         let swept = |triangle: &[u32; 3]| {
             let each = triangle.iter().map(|p| *p as usize);
@@ -69,7 +69,13 @@ impl Touch {
     }
 
     /// Tests whether a sample may meet a triangle; `normals` are those of all triangles at the accepted state.
-    fn may_meet(&self, index: usize, triangle: u32, normals: &[Vec3], state: &State) -> bool {
+    fn may_meet(
+        &self,
+        index: usize,
+        triangle: u32,
+        normals: &[Vec3],
+        state: &ContactState,
+    ) -> bool {
         let sample = &self.samples[index];
         if self.coefficient(index as u32, triangle).is_nan() {
             return false;
@@ -110,7 +116,7 @@ impl Touch {
 
     /// Tests whether a sample was in front of a triangle at the accepted state, or not too deep behind it, so that it
     /// may meet it.
-    pub(super) fn was_in_front(&self, state: &State, index: usize, triangle: u32) -> bool {
+    pub(super) fn was_in_front(&self, state: &ContactState, index: usize, triangle: u32) -> bool {
         let itself = self.samples[index].surface == self.surface_of[triangle as usize];
         let depth = if itself {
             self.depth_at_rest(index, triangle)

@@ -21,8 +21,8 @@ use voxsoft_solid::{Contact, ContactMemory, ProblemError, Term};
 
 use super::friction::Friction;
 use super::law::Normal;
-use super::state::{Memory, State};
-use super::{Description, LOOKS, Meeting, Touch, listing};
+use super::state::{ContactState, SampleMemory};
+use super::{ContactPair, Description, LOOKS, SurfaceContact, listing};
 use crate::gap;
 
 /// Contact penalty in units of Young's modulus over the voxel size, and slip penalty relative to it.
@@ -38,9 +38,9 @@ const REFUSALS: u32 = 2;
 
 /// Contact of surfaces, for live motion.
 #[derive(Debug, Clone)]
-pub struct LiveTouch {
-    touch: Touch,
-    /// Memory beside the state of `touch`.
+pub struct LiveSurfaceContact {
+    contact: SurfaceContact,
+    /// Memory beside the state of `contact`.
     run: Run,
 }
 
@@ -58,12 +58,12 @@ struct Run {
     pattern: BTreeSet<(u32, u32)>,
 }
 
-impl LiveTouch {
+impl LiveSurfaceContact {
     /// Sets up contact for a problem with the vertices `rest` (m).
     pub fn new(description: Description, rest: &[Vec3]) -> Result<Self, ProblemError> {
-        let touch = Touch::new(description, rest)?.without_edges(rest);
+        let contact = SurfaceContact::new(description, rest)?.without_edges(rest);
         let mut live = Self {
-            touch,
+            contact,
             run: Run::default(),
         };
         Contact::reset(&mut live, rest);
@@ -71,20 +71,20 @@ impl LiveTouch {
     }
 
     /// Contact with the multipliers of the last step: for reports and contact fields.
-    pub fn touch(&self) -> &Touch {
-        &self.touch
+    pub fn contact(&self) -> &SurfaceContact {
+        &self.contact
     }
 
     /// Depth of the deepest sample (m) if it exceeds the limit of a step; once a sample was released as too deep, also
     /// at least that depth.
     pub fn excess_depth(&self, positions: &[Vec3]) -> Option<f64> {
         let depth = self.depth(positions).max(self.run.lost);
-        Some(depth).filter(|depth| *depth > DEEP * self.touch.description.voxel)
+        Some(depth).filter(|depth| *depth > DEEP * self.contact.description.voxel)
     }
 
     /// Depth of the deepest sample in the surface that it faces at `positions`, m.
     pub fn depth(&self, positions: &[Vec3]) -> f64 {
-        let state = &self.touch.state;
+        let state = &self.contact.state;
         let mut deepest = 0.0f64;
         self.each_near(state, positions, |meeting| {
             deepest = deepest.max(-meeting.gap);
@@ -93,23 +93,28 @@ impl LiveTouch {
     }
 
     fn corners(&self, triangle: u32, positions: &[Vec3]) -> [Vec3; 3] {
-        self.touch.triangles[triangle as usize].map(|point| self.point(point, positions))
+        self.contact.triangles[triangle as usize].map(|point| self.point(point, positions))
     }
 
     /// Position of a point, which is the sample with its number.
     fn point(&self, point: u32, positions: &[Vec3]) -> Vec3 {
-        self.touch.points[point as usize].at(positions)
+        self.contact.points[point as usize].at(positions)
     }
 
     /// Calls `take` with every sample that faces something.
-    fn each_near(&self, state: &State, positions: &[Vec3], mut take: impl FnMut(&Meeting)) {
+    fn each_near(
+        &self,
+        state: &ContactState,
+        positions: &[Vec3],
+        mut take: impl FnMut(&ContactPair),
+    ) {
         for &sample in &self.run.near {
             let Some(facing) = state.facing[sample as usize] else {
                 continue;
             };
             let point = self.point(sample, positions);
             let corners = self.corners(facing.triangle(), positions);
-            if let Some(meeting) = Meeting::new(sample, facing, [point; 2], corners) {
+            if let Some(meeting) = ContactPair::new(sample, facing, [point; 2], corners) {
                 take(&meeting);
             }
         }
@@ -118,38 +123,38 @@ impl LiveTouch {
     /// Calls `take` with every pressed sample and its forces along the normal.
     fn each_pressed(
         &self,
-        state: &State,
+        state: &ContactState,
         positions: &[Vec3],
-        mut take: impl FnMut(&Meeting, Normal),
+        mut take: impl FnMut(&ContactPair, Normal),
     ) {
         self.each_near(state, positions, |meeting| {
             let memory = &state.now[meeting.sample as usize];
-            if let Some(normal) = self.touch.normal(memory, meeting, &[]) {
+            if let Some(normal) = self.contact.normal(memory, meeting, &[]) {
                 take(meeting, normal);
             }
         });
     }
 
-    fn friction(&self, state: &State, sample: u32, positions: &[Vec3]) -> Option<Friction> {
+    fn friction(&self, state: &ContactState, sample: u32, positions: &[Vec3]) -> Option<Friction> {
         let memory = &state.now[sample as usize];
         if !(memory.bound > 0.0) {
             return None;
         }
         let point = self.point(sample, positions);
-        let k = state.stick * self.touch.penalty(sample);
+        let k = state.stick * self.contact.penalty(sample);
         Friction::new(
             memory,
             k,
             point,
             [true; 3],
-            |triangle| self.touch.law(sample, triangle),
+            |triangle| self.contact.law(sample, triangle),
             |triangle| self.corners(triangle, positions),
         )
     }
 
     fn each_friction(
         &self,
-        state: &State,
+        state: &ContactState,
         positions: &[Vec3],
         mut take: impl FnMut(u32, Friction),
     ) {
@@ -161,7 +166,7 @@ impl LiveTouch {
     }
 
     /// Pairs that have stiffness at `positions`.
-    fn pairs_of_stiffness(&self, state: &State, positions: &[Vec3]) -> BTreeSet<(u32, u32)> {
+    fn pairs_of_stiffness(&self, state: &ContactState, positions: &[Vec3]) -> BTreeSet<(u32, u32)> {
         let mut pairs = BTreeSet::new();
         self.each_pressed(state, positions, |meeting, _| {
             pairs.insert((meeting.sample, meeting.triangle));
@@ -174,23 +179,23 @@ impl LiveTouch {
 
     /// Lists the samples that face something or have friction.
     fn note_near(&mut self) {
-        let state = &self.touch.state;
+        let state = &self.contact.state;
         let near = |sample: &u32| {
             let sample = *sample as usize;
             state.facing[sample].is_some() || state.now[sample].bound > 0.0
         };
-        let all = 0..self.touch.samples.len() as u32;
+        let all = 0..self.contact.samples.len() as u32;
         self.run.near = all.filter(near).collect();
     }
 
     /// Multipliers and anchor of a sample after a step that ended with a pressure on it.
     fn remembered(
         &self,
-        state: &State,
-        meeting: &Meeting,
+        state: &ContactState,
+        meeting: &ContactPair,
         (pressure, borne): (f64, f64),
         positions: &[Vec3],
-    ) -> Memory {
+    ) -> SampleMemory {
         let friction = self.friction(state, meeting.sample, positions);
         let before = &state.now[meeting.sample as usize];
         let sticks = friction.is_some_and(|friction| !friction.found.slips);
@@ -202,22 +207,22 @@ impl LiveTouch {
                 (meeting.triangle, gap::affine(point, corners))
             }
         };
-        let law = self.touch.law(meeting.sample, meeting.triangle);
-        let coefficient = self.touch.coefficient(meeting.sample, meeting.triangle);
-        Memory {
+        let law = self.contact.law(meeting.sample, meeting.triangle);
+        let coefficient = self.contact.coefficient(meeting.sample, meeting.triangle);
+        SampleMemory {
             normal: pressure.min(borne),
             friction: friction.map_or([0.0; 3], |friction| friction.found.force),
             plane: meeting.normal,
             bound: law.bound(coefficient, pressure),
             anchor: Some(anchor),
-            ..Memory::default()
+            ..SampleMemory::default()
         }
     }
 }
 
-impl Contact for LiveTouch {
+impl Contact for LiveSurfaceContact {
     fn visit_bonded(&self, visit: &mut dyn FnMut(u32)) {
-        self.touch.visit_bonded(visit);
+        self.contact.visit_bonded(visit);
     }
 
     fn boxed(&self) -> Box<dyn Contact> {
@@ -233,43 +238,43 @@ impl Contact for LiveTouch {
     }
 
     fn memory(&self) -> ContactMemory {
-        let Touch { penalty, state, .. } = &self.touch;
+        let SurfaceContact { penalty, state, .. } = &self.contact;
         ContactMemory::new((*penalty, state.clone(), self.run.clone()))
     }
 
     fn remember(&mut self, memory: &ContactMemory) {
-        if let Some((penalty, state, run)) = memory.get::<(f64, State, Run)>() {
-            self.touch.penalty = *penalty;
-            self.touch.state.clone_from(state);
+        if let Some((penalty, state, run)) = memory.get::<(f64, ContactState, Run)>() {
+            self.contact.penalty = *penalty;
+            self.contact.state.clone_from(state);
             self.run.clone_from(run);
         }
     }
 
     fn reset(&mut self, positions: &[Vec3]) {
-        self.touch.penalty = PENALTY;
-        self.touch.reset(positions);
-        self.touch.state.stick = STICK;
+        self.contact.penalty = PENALTY;
+        self.contact.reset(positions);
+        self.contact.state.stick = STICK;
         self.note_near();
         let run = &mut self.run;
-        run.borne = vec![0.0; self.touch.samples.len()];
+        run.borne = vec![0.0; self.contact.samples.len()];
         (run.refused, run.lost) = (0, 0.0);
         run.pattern.clear();
     }
 
     fn follow(&mut self, positions: &[Vec3]) -> bool {
-        self.touch.change(|touch, state| {
-            let points = touch.points_at(positions);
-            let moved = touch.farthest_from_listed(state, &points);
+        self.contact.change(|contact, state| {
+            let points = contact.points_at(positions);
+            let moved = contact.farthest_from_listed(state, &points);
             if !(moved <= listing::REACH / 2.0) {
-                touch.list(state, points);
+                contact.list(state, points);
                 state.listed_at_rest = false;
             }
             let all = state.looks > 0;
             state.looks = state.looks.saturating_sub(1);
-            touch.face(state, positions, all);
+            contact.face(state, positions, all);
         });
         self.note_near();
-        let pairs = self.pairs_of_stiffness(&self.touch.state, positions);
+        let pairs = self.pairs_of_stiffness(&self.contact.state, positions);
         let outgrown = !pairs.is_subset(&self.run.pattern);
         if outgrown {
             self.run.pattern = pairs;
@@ -278,25 +283,25 @@ impl Contact for LiveTouch {
     }
 
     fn relist(&mut self) {
-        self.touch.state.looks = LOOKS;
+        self.contact.state.looks = LOOKS;
     }
 
     fn stiffen(&mut self, positions: &[Vec3]) -> bool {
-        if self.depth(positions) <= DEEP * self.touch.description.voxel {
+        if self.depth(positions) <= DEEP * self.contact.description.voxel {
             return false;
         }
-        self.touch.penalty *= STIFFER;
+        self.contact.penalty *= STIFFER;
         true
     }
 
     fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
-        let settled = self.touch.correct(positions, negligible, precision);
-        self.touch.state.stick = STICK;
+        let settled = self.contact.correct(positions, negligible, precision);
+        self.contact.state.stick = STICK;
         settled
     }
 
     fn length(&self) -> f64 {
-        self.touch.length()
+        self.contact.length()
     }
 
     /// Bonds do not move live: designs with them wait for a solution.
@@ -305,20 +310,20 @@ impl Contact for LiveTouch {
     }
 
     fn depends_on_way(&self) -> bool {
-        self.touch.depends_on_way()
+        self.contact.depends_on_way()
     }
 
     /// A step begins with the multipliers that the last one ended with.
     fn extrapolate(&mut self, _ratio: f64) {}
 
     fn accept(&mut self, positions: &[Vec3]) {
-        self.touch.accept(positions);
+        self.contact.accept(positions);
         self.note_near();
     }
 
     fn commit_partial(&mut self, positions: &[Vec3]) -> bool {
         let depth = self.depth(positions);
-        let deepest = DEEPEST * self.touch.description.voxel;
+        let deepest = DEEPEST * self.contact.description.voxel;
         if depth > deepest {
             self.run.refused += 1;
             if self.run.refused <= REFUSALS {
@@ -326,9 +331,9 @@ impl Contact for LiveTouch {
             }
             self.run.lost = self.run.lost.max(depth);
         }
-        let mut moved = vec![Memory::default(); self.touch.samples.len()];
+        let mut moved = vec![SampleMemory::default(); self.contact.samples.len()];
         let mut pressures = vec![0.0; moved.len()];
-        let state = &self.touch.state;
+        let state = &self.contact.state;
         self.each_pressed(state, positions, |meeting, normal| {
             let pressure = normal.pressure;
             let sample = meeting.sample as usize;
@@ -339,50 +344,50 @@ impl Contact for LiveTouch {
             let both = (pressure, self.run.borne[sample]);
             moved[sample] = self.remembered(state, meeting, both, positions);
         });
-        let points = self.touch.points_at(positions);
-        let state = &mut self.touch.state;
+        let points = self.contact.points_at(positions);
+        let state = &mut self.contact.state;
         state.accepted_points = points;
         state.accepted.clone_from(&moved);
         state.now = moved;
         state.looks = LOOKS;
-        self.touch.penalty = PENALTY;
+        self.contact.penalty = PENALTY;
         (self.run.borne, self.run.refused) = (pressures, 0);
         true
     }
 
     fn is_touching(&self, positions: &[Vec3]) -> bool {
-        let state = &self.touch.state;
+        let state = &self.contact.state;
         let mut touching = false;
         self.each_pressed(state, positions, |_, _| touching = true);
         touching
     }
 
     fn rollback(&mut self) {
-        let state = &mut self.touch.state;
+        let state = &mut self.contact.state;
         state.now = state.accepted.clone();
         state.looks = LOOKS;
-        self.touch.penalty = PENALTY;
+        self.contact.penalty = PENALTY;
         self.note_near();
     }
 }
 
-impl Term for LiveTouch {
+impl Term for LiveSurfaceContact {
     fn name(&self) -> &'static str {
         "contact"
     }
 
     fn check(&self, vertices: usize) -> Result<(), ProblemError> {
-        self.touch.check(vertices)
+        self.contact.check(vertices)
     }
 
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
         for &pair in &self.run.pattern {
-            self.touch.visit_pair(pair, visit);
+            self.contact.visit_pair(pair, visit);
         }
     }
 
     fn energy(&self, positions: &[Vec3]) -> f64 {
-        let state = &self.touch.state;
+        let state = &self.contact.state;
         let mut energy = 0.0;
         self.each_pressed(state, positions, |_, normal| energy += normal.energy);
         self.each_friction(state, positions, |_, friction| {
@@ -392,13 +397,13 @@ impl Term for LiveTouch {
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        let state = &self.touch.state;
+        let state = &self.contact.state;
         self.each_pressed(state, positions, |meeting, normal| {
             let force = scale(normal.force(), meeting.normal);
-            self.touch.add_force(force, meeting.spot(), forces);
+            self.contact.add_force(force, meeting.spot(), forces);
         });
         self.each_friction(state, positions, |sample, friction| {
-            self.touch
+            self.contact
                 .add_force(friction.found.force, friction.spot(sample), forces);
         });
     }
@@ -411,17 +416,17 @@ impl Term for LiveTouch {
     /// serves longer. Pairs outside of the sparsity pattern are left out; the minimization tolerates an inexact
     /// tangent.
     fn visit_tangent(&self, positions: &[Vec3], _: Tangent, visit: Visitor<'_>) {
-        let state = &self.touch.state;
+        let state = &self.contact.state;
         let pattern = &self.run.pattern;
         self.each_pressed(state, positions, |meeting, normal| {
             if pattern.contains(&(meeting.sample, meeting.triangle)) {
-                self.touch
+                self.contact
                     .visit_gap(meeting, [normal.stiffness, 0.0], &[], visit);
             }
         });
         self.each_friction(state, positions, |sample, friction| {
             if pattern.contains(&(sample, friction.anchor.0)) {
-                self.touch.visit_friction(sample, &friction, visit);
+                self.contact.visit_friction(sample, &friction, visit);
             }
         });
     }

@@ -51,7 +51,7 @@ pub use field::{ContactField, Flip};
 use law::Laws;
 pub use report::PairReport;
 use sample::Sample;
-use state::{Facing, State};
+use state::{ContactState, Facing};
 
 use crate::gap::{self, normal};
 use crate::surface::{Carried, Surface};
@@ -112,7 +112,7 @@ pub struct Description {
 
 /// Contact of surfaces.
 #[derive(Debug, Clone)]
-pub struct Touch {
+pub struct SurfaceContact {
     description: Description,
     samples: Vec<Sample>,
     /// Smallest area from which the penalty of a sample of each surface is computed, m².
@@ -147,12 +147,12 @@ pub struct Touch {
     penalty: f64,
     /// Contact laws of pairs of surfaces.
     laws: Laws,
-    state: State,
+    state: ContactState,
 }
 
 /// Contact pair: a sample and the triangle or edge that it faces.
 #[derive(Debug, Clone, Copy)]
-struct Meeting {
+struct ContactPair {
     sample: u32,
     triangle: u32,
     /// Place on an edge, as a part of the way between its ends; 0 for a point.
@@ -165,7 +165,7 @@ struct Meeting {
     facing: Facing,
 }
 
-impl Meeting {
+impl ContactPair {
     /// Gap and normal of a sample with these ends and the triangle with these corners that it faces; `None` for edges
     /// that have become parallel.
     fn new(sample: u32, facing: Facing, ends: [Vec3; 2], corners: [Vec3; 3]) -> Option<Self> {
@@ -213,7 +213,7 @@ impl Meeting {
 #[derive(Debug, Clone, Copy)]
 struct Spot {
     sample: u32,
-    /// Place on an edge, see [`Meeting::along`].
+    /// Place on an edge, see [`ContactPair::along`].
     along: f64,
     triangle: u32,
     /// Affine coordinates in the triangle.
@@ -227,7 +227,7 @@ fn between([start, end]: [Vec3; 2], along: f64) -> Vec3 {
     place
 }
 
-impl Touch {
+impl SurfaceContact {
     /// Sets up contact for a problem with the vertices `rest` (m).
     pub fn new(description: Description, rest: &[Vec3]) -> Result<Self, ProblemError> {
         let count = description.surfaces.len();
@@ -277,7 +277,7 @@ impl Touch {
         }
         // Points first, so that sample numbers equal point numbers.
         samples.extend(sample::edges(&triangles, &surface_of));
-        let mut touch = Self {
+        let mut contact = Self {
             description,
             samples,
             least_area,
@@ -296,11 +296,11 @@ impl Touch {
             ties_at: Vec::new(),
             penalty: PENALTY,
             laws: Laws::default(),
-            state: State::default(),
+            state: ContactState::default(),
         };
-        touch.ties_at = touch.ties_at(&first_sample, touch.points.len());
-        Contact::reset(&mut touch, rest);
-        Ok(touch)
+        contact.ties_at = contact.ties_at(&first_sample, contact.points.len());
+        Contact::reset(&mut contact, rest);
+        Ok(contact)
     }
 
     /// Sets the number of surfaces that belong to bodies, which come first, and the vertices that stand for their
@@ -334,7 +334,7 @@ impl Touch {
     /// Fraction of the clearance that a contact pair keeps. A pair within the clearance in the unloaded design keeps
     /// the fraction of its carrying vertices that can open the gap: a half between a vertex that never moves and one
     /// that does, 0 if none moves. Others keep all of it.
-    fn mobility(&self, meeting: &Meeting) -> f64 {
+    fn mobility(&self, meeting: &ContactPair) -> f64 {
         if !self
             .touching
             .get(meeting.sample as usize)
@@ -379,7 +379,7 @@ impl Touch {
     }
 
     /// Changes the state by a function of the surfaces and the state.
-    fn change<T>(&mut self, act: impl FnOnce(&Self, &mut State) -> T) -> T {
+    fn change<T>(&mut self, act: impl FnOnce(&Self, &mut ContactState) -> T) -> T {
         let mut state = std::mem::take(&mut self.state);
         let outcome = act(self, &mut state);
         self.state = state;
@@ -435,9 +435,9 @@ impl Touch {
     }
 
     /// Contact pair of a sample and the triangle that it faces; `None` for edges that have become parallel.
-    fn meeting(&self, sample: u32, facing: Facing, points: &[Vec3]) -> Option<Meeting> {
+    fn meeting(&self, sample: u32, facing: Facing, points: &[Vec3]) -> Option<ContactPair> {
         let corners = self.corners(facing.triangle(), points);
-        Meeting::new(sample, facing, self.ends(sample, points), corners)
+        ContactPair::new(sample, facing, self.ends(sample, points), corners)
     }
 
     /// Points that a spot moves with, each with its factor in the relative motion: those of the sample, one or two, and

@@ -21,7 +21,7 @@ const PARTS: u32 = 4;
 const ROUNDING: f64 = 1e-9;
 
 /// Two surfaces at rest, and the search of their bonded parts.
-pub(super) struct Meeting<'a> {
+pub(super) struct MortarIntegral<'a> {
     sides: [Side<'a>; 2],
     /// Points of both, m.
     points: [Vec<Vec3>; 2],
@@ -39,7 +39,7 @@ struct Near {
     is_over: bool,
 }
 
-impl<'a> Meeting<'a> {
+impl<'a> MortarIntegral<'a> {
     pub fn new(sides: [Side<'a>; 2], reach: f64, rest: &[Vec3]) -> Self {
         let points = sides.map(|side| side.surface.points.iter().map(|p| p.at(rest)).collect());
         let tree = |side: usize| {

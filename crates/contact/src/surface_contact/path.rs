@@ -6,10 +6,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 use voxsoft_solid::{Contact, ContactMemory};
 
-use super::state::{Facing, Hold, Memory, Recording, State};
+use super::state::{ContactState, Facing, Hold, Recording, SampleMemory};
 use super::{
-    APART, BOUND, CREEP, DEEPEST, LOOKS, Meeting, PATIENCE, PRECISE, STICK, STIFFER, STRAYED, Spot,
-    Touch, listing,
+    APART, BOUND, CREEP, ContactPair, DEEPEST, LOOKS, PATIENCE, PRECISE, STICK, STIFFER, STRAYED,
+    Spot, SurfaceContact, listing,
 };
 use crate::gap::{self, normal};
 use crate::surface::Carried;
@@ -22,7 +22,7 @@ const MANY: usize = 100;
 /// Largest extrapolation of multipliers, in steps.
 const LONGEST_EXTRAPOLATION: f64 = 2.0;
 
-impl Contact for Touch {
+impl Contact for SurfaceContact {
     fn boxed(&self) -> Box<dyn Contact> {
         Box::new(self.clone())
     }
@@ -40,7 +40,7 @@ impl Contact for Touch {
     }
 
     fn remember(&mut self, memory: &ContactMemory) {
-        if let Some(state) = memory.get::<State>() {
+        if let Some(state) = memory.get::<ContactState>() {
             self.state.clone_from(state);
         }
     }
@@ -54,13 +54,13 @@ impl Contact for Touch {
     }
 
     fn reset(&mut self, positions: &[Vec3]) {
-        self.change(|touch, state| {
-            let points = touch.points_at(positions);
-            let nothing = vec![Memory::default(); touch.samples.len()];
-            let untouched = vec![Hold::default(); touch.ties().count()];
-            *state = State {
+        self.change(|contact, state| {
+            let points = contact.points_at(positions);
+            let nothing = vec![SampleMemory::default(); contact.samples.len()];
+            let untouched = vec![Hold::default(); contact.ties().count()];
+            *state = ContactState {
                 accepted_points: points.clone(),
-                accepted_facing: vec![None; touch.samples.len()],
+                accepted_facing: vec![None; contact.samples.len()],
                 accepted: nothing.clone(),
                 before: nothing.clone(),
                 now: nothing,
@@ -69,25 +69,25 @@ impl Contact for Touch {
                 stick: STICK[0],
                 crept: f64::INFINITY,
                 recording: state.recording.is_some().then(Recording::default),
-                ..State::default()
+                ..ContactState::default()
             };
-            touch.list_from_accepted(state, points);
-            touch.face(state, positions, true);
+            contact.list_from_accepted(state, points);
+            contact.face(state, positions, true);
         })
     }
 
     fn follow(&mut self, positions: &[Vec3]) -> bool {
-        self.change(|touch, state| {
-            let points = touch.points_at(positions);
-            if !(touch.farthest_from_listed(state, &points) <= listing::REACH / 2.0) {
-                touch.list(state, points);
+        self.change(|contact, state| {
+            let points = contact.points_at(positions);
+            if !(contact.farthest_from_listed(state, &points) <= listing::REACH / 2.0) {
+                contact.list(state, points);
                 state.listed_at_rest = false;
             }
             let all = state.looks > 0;
             state.looks = state.looks.saturating_sub(1);
-            touch.face(state, positions, all);
+            contact.face(state, positions, all);
             let before = state.pattern.len();
-            let pairs = touch.pairs_of_stiffness(state, positions);
+            let pairs = contact.pairs_of_stiffness(state, positions);
             state.pattern.extend(pairs);
             let shrank = std::mem::take(&mut state.pattern_shrank);
             state.pattern.len() > before || shrank
@@ -99,25 +99,25 @@ impl Contact for Touch {
     }
 
     fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
-        self.change(|touch, state| {
+        self.change(|contact, state| {
             state.keep_moment(positions);
-            let now = touch.corrected(state, positions);
+            let now = contact.corrected(state, positions);
             state.corrections += 1;
             let patient = state.corrections <= PATIENCE;
             let mut largest =
-                touch.off_bounds(&state.now, &now, BOUND[usize::from(!patient)], negligible);
+                contact.off_bounds(&state.now, &now, BOUND[usize::from(!patient)], negligible);
             let mut farthest = 0.0f64;
             for (sample, (old, new)) in state.now.iter().zip(&now).enumerate() {
                 if old == new {
                     continue;
                 }
-                let unit = touch.penalty(sample as u32) * touch.description.voxel;
+                let unit = contact.penalty(sample as u32) * contact.description.voxel;
                 let pressed = (new.normal - old.normal) / unit;
                 let crept = norm(sub(new.friction, old.friction)) / (state.stick * unit);
                 largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
                 farthest = farthest.max(crept / CREEP);
             }
-            let (holds, off) = touch.corrected_ties(state, positions);
+            let (holds, off) = contact.corrected_ties(state, positions);
             largest = largest.max(farthest).max(off);
             let enough = if state.corrections <= PRECISE {
                 precision
@@ -130,7 +130,7 @@ impl Contact for Touch {
             state.crept = farthest;
             // The forces of a settled state are those of its equilibrium, not of multipliers that came after. Edges
             // search once points have settled: while these are still too deep, the edges beside them are so too.
-            let settled = largest <= enough && !(patient && touch.face_edges(state, positions));
+            let settled = largest <= enough && !(patient && contact.face_edges(state, positions));
             if settled {
                 state.settle_moment(enough <= precision);
             } else {
@@ -147,12 +147,12 @@ impl Contact for Touch {
     }
 
     fn release_bonds(&mut self, positions: &[Vec3]) -> bool {
-        self.change(|touch, state| {
-            let any = touch.break_ties(state, positions);
+        self.change(|contact, state| {
+            let any = contact.break_ties(state, positions);
             if any {
                 // Surfaces whose ties broke may be in contact now.
-                let points = touch.points_at(positions);
-                touch.list(state, points);
+                let points = contact.points_at(positions);
+                contact.list(state, points);
                 (state.listed_at_rest, state.corrections) = (false, 0);
                 state.looks = LOOKS;
             }
@@ -172,27 +172,27 @@ impl Contact for Touch {
     }
 
     fn accept(&mut self, positions: &[Vec3]) {
-        self.change(|touch, state| {
-            let moved = touch.carried_on(state, positions);
+        self.change(|contact, state| {
+            let moved = contact.carried_on(state, positions);
             state.keep_step();
-            let pairs = touch.pairs_of_stiffness(state, positions);
+            let pairs = contact.pairs_of_stiffness(state, positions);
             if state.pattern.len() > WASTE * pairs.len().max(MANY) {
                 state.pattern = pairs;
                 state.pattern_shrank = true;
             }
-            let points = touch.points_at(positions);
+            let points = contact.points_at(positions);
             state.accepted_points.clone_from(&points);
             state.accepted_facing = state.facing.clone();
             state.before = std::mem::replace(&mut state.accepted, moved.clone());
             state.now = moved;
             state.accepted_holds = state.holds.clone();
             (state.crept, state.corrections) = (f64::INFINITY, 0);
-            touch.list_from_accepted(state, points);
+            contact.list_from_accepted(state, points);
         })
     }
 
     fn rollback(&mut self) {
-        self.change(|touch, state| {
+        self.change(|contact, state| {
             state.drop_step();
             state.extrapolated = None;
             state.now = state.accepted.clone();
@@ -208,7 +208,7 @@ impl Contact for Touch {
             state.holds = state.accepted_holds.clone();
             (state.stick, state.crept, state.corrections) = (STICK[0], f64::INFINITY, 0);
             let points = state.accepted_points.clone();
-            touch.list_from_accepted(state, points);
+            contact.list_from_accepted(state, points);
         })
     }
 
@@ -220,7 +220,7 @@ impl Contact for Touch {
         let state = &mut self.state;
         state.extrapolated = Some(ratio);
         let ratio = ratio.min(LONGEST_EXTRAPOLATION);
-        let State {
+        let ContactState {
             now,
             accepted,
             before,
@@ -244,17 +244,17 @@ impl Contact for Touch {
     }
 }
 
-impl Touch {
+impl SurfaceContact {
     /// Multipliers and anchors of samples after a correction with the forces at `positions`.
-    pub(super) fn corrected(&self, state: &State, positions: &[Vec3]) -> Vec<Memory> {
+    pub(super) fn corrected(&self, state: &ContactState, positions: &[Vec3]) -> Vec<SampleMemory> {
         // A sample that loses contact for now keeps its anchor: it may come back before the state is accepted.
-        let anchor_of = |memory: &Memory| Memory {
+        let anchor_of = |memory: &SampleMemory| SampleMemory {
             anchor: memory.anchor,
             along: memory.along,
             since: memory.since,
-            ..Memory::default()
+            ..SampleMemory::default()
         };
-        let mut now: Vec<Memory> = state.now.iter().map(anchor_of).collect();
+        let mut now: Vec<SampleMemory> = state.now.iter().map(anchor_of).collect();
         self.each_contact(state, positions, |meeting, normal, points| {
             let pressure = normal.pressure;
             if !(pressure > 0.0) {
@@ -269,7 +269,7 @@ impl Touch {
                 || self.first_anchor(state, meeting, points),
                 |anchor| (anchor, memory.along, memory.since),
             );
-            now[sample] = Memory {
+            now[sample] = SampleMemory {
                 normal: pressure,
                 friction: friction.map_or([0.0; 3], |friction| friction.found.force),
                 plane: meeting.normal,
@@ -283,8 +283,8 @@ impl Touch {
     }
 
     /// Multipliers and anchors of samples from an accepted state on: the anchors of slipping samples move along.
-    pub(super) fn carried_on(&self, state: &State, positions: &[Vec3]) -> Vec<Memory> {
-        let mut moved = vec![Memory::default(); self.samples.len()];
+    pub(super) fn carried_on(&self, state: &ContactState, positions: &[Vec3]) -> Vec<SampleMemory> {
+        let mut moved = vec![SampleMemory::default(); self.samples.len()];
         self.each_contact(state, positions, |meeting, normal, points| {
             if !(normal.pressure > 0.0) {
                 return;
@@ -301,7 +301,7 @@ impl Touch {
     }
 
     /// Lists candidates from the accepted state on, unless that state has not moved since they were listed.
-    fn list_from_accepted(&self, state: &mut State, points: Vec<Vec3>) {
+    fn list_from_accepted(&self, state: &mut ContactState, points: Vec<Vec3>) {
         if !(state.listed_at_rest && self.farthest_from_listed(state, &points) <= listing::SAME) {
             self.list(state, points);
             state.listed_at_rest = true;
@@ -312,7 +312,7 @@ impl Touch {
     /// Samples and triangles that have stiffness at `positions`.
     pub(super) fn pairs_of_stiffness(
         &self,
-        state: &State,
+        state: &ContactState,
         positions: &[Vec3],
     ) -> BTreeSet<(u32, u32)> {
         let mut pairs = BTreeSet::new();
@@ -326,7 +326,7 @@ impl Touch {
     }
 
     /// Largest motion of any point since candidates were listed, in voxels.
-    pub(super) fn farthest_from_listed(&self, state: &State, points: &[Vec3]) -> f64 {
+    pub(super) fn farthest_from_listed(&self, state: &ContactState, points: &[Vec3]) -> f64 {
         let moved = |(a, b): (&Vec3, &Vec3)| norm(sub(*a, *b));
         let farthest = points.iter().zip(&state.listed_points).map(moved);
         farthest.fold(0.0, f64::max) / self.description.voxel
@@ -338,7 +338,13 @@ impl Touch {
     /// Surfaces that do not fit can distribute a pressure among their samples in many ways, between which multipliers
     /// converge slowly without any motion: there are more samples than vertices that carry them. So bounds of single
     /// samples do not count.
-    fn off_bounds(&self, old: &[Memory], new: &[Memory], off_vertex: f64, negligible: f64) -> f64 {
+    fn off_bounds(
+        &self,
+        old: &[SampleMemory],
+        new: &[SampleMemory],
+        off_vertex: f64,
+        negligible: f64,
+    ) -> f64 {
         let mut pairs: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();
         let mut vertices: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
         for (index, (old, new)) in old.iter().zip(new).enumerate() {
@@ -389,7 +395,7 @@ impl Touch {
     }
 
     /// Foot of a sample on the triangle that it faces.
-    fn foot(&self, meeting: &Meeting, points: &[Vec3]) -> (u32, [f64; 3]) {
+    fn foot(&self, meeting: &ContactPair, points: &[Vec3]) -> (u32, [f64; 3]) {
         let weights = match meeting.facing {
             Facing::Across(..) => meeting.weights,
             _ => {
@@ -405,8 +411,8 @@ impl Touch {
     /// Returns the place on the triangle, the place on the edge, and the part of the step that remained.
     fn first_anchor(
         &self,
-        state: &State,
-        meeting: &Meeting,
+        state: &ContactState,
+        meeting: &ContactPair,
         points: &[Vec3],
     ) -> ((u32, [f64; 3]), f64, f64) {
         if matches!(meeting.facing, Facing::Across(..)) {
@@ -441,7 +447,7 @@ impl Touch {
     }
 
     /// Updates the faces that samples meet: of all of them, or of those that have strayed from theirs.
-    pub(super) fn face(&self, state: &mut State, positions: &[Vec3], all: bool) {
+    pub(super) fn face(&self, state: &mut ContactState, positions: &[Vec3], all: bool) {
         let points = self.points_at(positions);
         let facing = |index: usize| {
             if state.candidates[index].is_empty() {

@@ -6,12 +6,12 @@ use voxsoft_solid::Contact;
 use voxsoft_solid::vector::Vec3;
 
 use super::sample::Sample;
-use super::{Touch, between};
+use super::{SurfaceContact, between};
 
 /// Distance within which a place counts as in a plane of symmetry, in voxels: edges cross there up to this tolerance,
 /// and their images slip toward each other by no more.
 const IN_PLANE: f64 = 1e-3;
-impl Touch {
+impl SurfaceContact {
     /// Declares planes of symmetry through the origin across the given axes, `rest` (m) being symmetric. Of samples
     /// that are images of each other one counts: two might stick to different places, and pull against each other for
     /// ever where nothing can give way. A sample in a plane counts in part, and does not slip across it: of the two

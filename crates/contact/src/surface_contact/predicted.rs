@@ -12,9 +12,9 @@
 
 use voxsoft_solid::vector::{Vec3, axpy, dot};
 
-use super::Touch;
+use super::SurfaceContact;
 
-impl Touch {
+impl SurfaceContact {
     /// Force of every sample along its normal in N, linearized, at the end of a step that `moves` (m) from `positions`.
     pub(super) fn predicted_pressures(&self, positions: &[Vec3], moves: &[Vec3]) -> Vec<f64> {
         let mut pressures = vec![0.0; self.samples.len()];

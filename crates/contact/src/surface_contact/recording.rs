@@ -3,15 +3,15 @@
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, sub};
 use voxsoft_solid::{Contact, Moment, RecordedContact};
 
-use super::state::{Facing, Held, Memory, Recording, State};
-use super::{CREEP, Touch};
+use super::state::{ContactState, Facing, Held, Recording, SampleMemory};
+use super::{CREEP, SurfaceContact};
 use crate::gap::normal;
 
 /// Smallest cosine between the normal at an edge and that of the triangle there for which the facing turns with the
 /// triangle: 0.08 degrees. Surfaces in contact are so near that the normal to the closest point is rounded to 10⁻⁵.
 const FLUSH: f64 = 1.0 - 1e-6;
 
-impl State {
+impl ContactState {
     /// Records an equilibrium before its correction, if the path is recorded.
     pub fn keep_moment(&mut self, positions: &[Vec3]) {
         let extrapolated = self.extrapolated.take();
@@ -57,7 +57,7 @@ impl State {
     }
 }
 
-impl RecordedContact for Touch {
+impl RecordedContact for SurfaceContact {
     type Memory = Held;
 
     fn record(&mut self) {
@@ -75,10 +75,10 @@ impl RecordedContact for Touch {
 
     fn recall(&mut self, moment: &Moment<Held>) -> bool {
         self.face_as(moment);
-        self.change(|touch, state| {
+        self.change(|contact, state| {
             state.now.clone_from(&moment.memory.now);
             state.retraces = true;
-            let pairs = touch.pairs_of_stiffness(state, &moment.positions);
+            let pairs = contact.pairs_of_stiffness(state, &moment.positions);
             let before = state.pattern.len();
             state.pattern.extend(pairs);
             state.pattern.len() > before
@@ -97,22 +97,22 @@ impl RecordedContact for Touch {
         moment: &Moment<Held>,
         next: Option<&Moment<Held>>,
     ) {
-        let since = |memory: &Memory| memory.since;
+        let since = |memory: &SampleMemory| memory.since;
         let given: Vec<f64> =
             next.map_or_else(Vec::new, |next| next.memory.now.iter().map(since).collect());
-        for (touch, positions) in group.iter_mut().zip(positions) {
-            touch.state.given_since.clone_from(&given);
-            touch.follow_to(positions, moment.settled);
+        for (contact, positions) in group.iter_mut().zip(positions) {
+            contact.state.given_since.clone_from(&given);
+            contact.follow_to(positions, moment.settled);
             if moment.settled
                 && let Some(ratio) = next.and_then(|next| next.memory.extrapolated)
             {
-                touch.extrapolate(ratio);
+                contact.extrapolate(ratio);
             }
         }
         let Some(next) = next else { return };
-        let mut states: Vec<_> = group.iter_mut().map(|touch| &mut touch.state).collect();
+        let mut states: Vec<_> = group.iter_mut().map(|contact| &mut contact.state).collect();
         for (sample, own) in next.memory.now.iter().enumerate() {
-            let mut of_sample: Vec<&mut Memory> = states
+            let mut of_sample: Vec<&mut SampleMemory> = states
                 .iter_mut()
                 .map(|state| &mut state.now[sample])
                 .collect();
@@ -123,13 +123,14 @@ impl RecordedContact for Touch {
 
 /// Shifts the multipliers of contacts at perturbed values so that their mean is that of the unperturbed one: only their
 /// differences are followed, and nothing drifts.
-fn bring_around(around: &mut [&mut Memory], own: &Memory) {
+fn bring_around(around: &mut [&mut SampleMemory], own: &SampleMemory) {
     let part = 1.0 / around.len() as f64;
-    let mut mean = Memory::default();
+    let mut mean = SampleMemory::default();
     let mut weights = [0.0; 3];
     let mut along = 0.0;
     let anchored = own.anchor.filter(|own| {
-        let same = |memory: &&mut Memory| memory.anchor.is_some_and(|anchor| anchor.0 == own.0);
+        let same =
+            |memory: &&mut SampleMemory| memory.anchor.is_some_and(|anchor| anchor.0 == own.0);
         around.iter().all(same)
     });
     for memory in around.iter() {
@@ -160,7 +161,7 @@ fn bring_around(around: &mut [&mut Memory], own: &Memory) {
     }
 }
 
-impl Touch {
+impl SurfaceContact {
     /// Corrects the multipliers, or accepts the state if contact has `settled`.
     fn follow_to(&mut self, positions: &[Vec3], settled: bool) {
         if !settled {
@@ -177,8 +178,8 @@ impl Touch {
 
     /// Tests whether another contact has the same surfaces, at any positions.
     pub fn has_surfaces_of(&self, other: &Self) -> bool {
-        let sizes = |touch: &Self| {
-            let surfaces = touch.description.surfaces.iter();
+        let sizes = |contact: &Self| {
+            let surfaces = contact.description.surfaces.iter();
             surfaces.map(|s| s.points.len()).collect::<Vec<_>>()
         };
         self.triangles == other.triangles && sizes(self) == sizes(other)
@@ -232,10 +233,10 @@ impl Touch {
     }
 
     fn slip_at(&self, moment: &Moment<Held>) -> f64 {
-        let state = State {
+        let state = ContactState {
             now: moment.memory.now.clone(),
             stick: moment.memory.stick,
-            ..State::default()
+            ..ContactState::default()
         };
         let points = self.points_at(&moment.positions);
         let (mut pressed, mut slipping) = (0.0, 0.0);

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 
-use super::state::State;
-use super::{Meeting, NEARLY, Touch};
+use super::state::ContactState;
+use super::{ContactPair, NEARLY, SurfaceContact};
 use crate::gap::normal;
 
 /// Largest gap of a point between pressed ones that counts as in contact, in voxels: facets of a ball of four voxels
@@ -55,7 +55,7 @@ impl PairReport {
     }
 }
 
-impl Touch {
+impl SurfaceContact {
     /// Reports of the surfaces in contact at `positions`, with the multipliers of the last correction; ascending. With
     /// planes of symmetry only the part that counts, to which the caller adds the images.
     pub fn pairs(&self, positions: &[Vec3]) -> Vec<PairReport> {
@@ -133,20 +133,20 @@ impl Touch {
     }
 
     /// Surfaces of a contact pair, the smaller number first.
-    fn surfaces_of(&self, meeting: &Meeting) -> [u32; 2] {
+    fn surfaces_of(&self, meeting: &ContactPair) -> [u32; 2] {
         let own = self.samples[meeting.sample as usize].surface;
         let other = self.surface_of[meeting.triangle as usize];
         [own.min(other), own.max(other)]
     }
 
     /// Index of the surface in this pair that has the sample; for a surface with itself the second.
-    fn side(&self, meeting: &Meeting) -> usize {
+    fn side(&self, meeting: &ContactPair) -> usize {
         let [first, second] = self.surfaces_of(meeting);
         usize::from(self.samples[meeting.sample as usize].surface != first || first == second)
     }
 
     /// Area of a sample in the unloaded body, of its triangles that face the contact.
-    fn area_toward(&self, meeting: &Meeting, points: &[Vec3]) -> f64 {
+    fn area_toward(&self, meeting: &ContactPair, points: &[Vec3]) -> f64 {
         let sample = &self.samples[meeting.sample as usize];
         let area = self.weight(meeting.sample) * sample.area;
         let facing = |t: &&u32| {
@@ -163,10 +163,10 @@ impl Touch {
     /// freedom than it has points, and the others keep a small gap.
     fn each_between(
         &self,
-        state: &State,
+        state: &ContactState,
         positions: &[Vec3],
         pressed: &[bool],
-        mut take: impl FnMut(&Meeting, &[Vec3]),
+        mut take: impl FnMut(&ContactPair, &[Vec3]),
     ) {
         let points = self.points_at(positions);
         for (index, facing) in state.facing[..points.len()].iter().enumerate() {

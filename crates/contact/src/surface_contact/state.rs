@@ -7,7 +7,7 @@ use voxsoft_solid::vector::Vec3;
 
 /// Multipliers and friction anchor of one contact sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Memory {
+pub struct SampleMemory {
     /// Lagrange multiplier of the gap: a force in N that pushes apart.
     pub normal: f64,
     /// Lagrange multiplier of the slip: the friction in N, along the surface.
@@ -59,7 +59,7 @@ pub(super) struct Hold {
 /// Multipliers and facing of all samples at an equilibrium, before its correction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Held {
-    pub(super) now: Vec<Memory>,
+    pub(super) now: Vec<SampleMemory>,
     pub(super) facing: Vec<Option<Facing>>,
     pub(super) stick: f64,
     pub(super) extrapolated: Option<f64>,
@@ -76,19 +76,19 @@ pub(super) struct Recording {
 
 /// State of all samples.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct State {
+pub(super) struct ContactState {
     /// Points of all surfaces at the last accepted state, m.
     pub accepted_points: Vec<Vec3>,
     /// Facing of each sample at the last accepted state.
     pub accepted_facing: Vec<Option<Facing>>,
     /// Multipliers and anchors at the last accepted state.
-    pub accepted: Vec<Memory>,
+    pub accepted: Vec<SampleMemory>,
     /// Multipliers and anchors at the accepted state before that.
-    pub before: Vec<Memory>,
+    pub before: Vec<SampleMemory>,
     /// Steps by which the multipliers are extrapolated, until a correction.
     pub extrapolated: Option<f64>,
     /// Current multipliers and anchors.
-    pub now: Vec<Memory>,
+    pub now: Vec<SampleMemory>,
     /// Multipliers of the ties at the last accepted state, and the current ones.
     pub accepted_holds: Vec<Hold>,
     pub holds: Vec<Hold>,
@@ -114,8 +114,8 @@ pub(super) struct State {
     pub pattern_shrank: bool,
     /// True while a path is retraced, for which the stiffness has to be exact.
     pub retraces: bool,
-    /// Values of [`Memory::since`] of all samples, prescribed while a path is retraced: for a sample that was only just
-    /// apart it changes steeply, and soon no more.
+    /// Values of [`SampleMemory::since`] of all samples, prescribed while a path is retraced: for a sample that was
+    /// only just apart it changes steeply, and soon no more.
     pub given_since: Vec<f64>,
     /// Recorded path, if derivatives will need it.
     pub recording: Option<Recording>,

@@ -8,15 +8,15 @@ use voxsoft_solid::{AssumedStrain, ProblemError, Term};
 
 use super::friction::Friction;
 use super::law::Normal;
-use super::state::{Facing, State};
-use super::{Meeting, Spot, Touch, edges};
+use super::state::{ContactState, Facing};
+use super::{ContactPair, Spot, SurfaceContact, edges};
 use crate::gap::{barycentric_gradients, crossing};
 
 /// Largest excess of a pressure over its multiplier that enters the geometric stiffness, in units of Young's modulus. A
 /// step that lets surfaces penetrate deeply causes spurious pressures, which would make the stiffness indefinite.
 const SPURIOUS: f64 = 0.3;
 
-impl Term for Touch {
+impl Term for SurfaceContact {
     fn name(&self) -> &'static str {
         "contact"
     }
@@ -101,12 +101,12 @@ impl Term for Touch {
     }
 }
 
-impl Touch {
+impl SurfaceContact {
     /// Contact stiffness; its geometric part uses the force along the normal (N) that `believed` returns for a sample
     /// and its forces.
     pub(super) fn visit_stiffness_under(
         &self,
-        state: &State,
+        state: &ContactState,
         positions: &[Vec3],
         believed: impl Fn(usize, Normal) -> f64,
         visit: Visitor<'_>,
@@ -187,7 +187,7 @@ impl Touch {
     /// the turning normal under the force.
     pub(super) fn visit_gap(
         &self,
-        meeting: &Meeting,
+        meeting: &ContactPair,
         [k, force]: [f64; 2],
         points: &[Vec3],
         visit: Visitor<'_>,
@@ -219,8 +219,8 @@ impl Touch {
     }
 
     /// Vectors by which points turn the normal of a contact pair, see [`super::gap`], in the order of
-    /// [`Touch::relative`]; `None` if the normal is held constant.
-    fn turning(&self, meeting: &Meeting, points: &[Vec3]) -> Option<Vec<Vec3>> {
+    /// [`SurfaceContact::relative`]; `None` if the normal is held constant.
+    fn turning(&self, meeting: &ContactPair, points: &[Vec3]) -> Option<Vec<Vec3>> {
         let corners = self.corners(meeting.triangle, points);
         match meeting.facing {
             Facing::Edge(..) => None,

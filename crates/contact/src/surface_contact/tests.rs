@@ -45,10 +45,10 @@ fn description(surfaces: Vec<Surface>) -> Description {
     }
 }
 
-fn pressed() -> (Touch, Vec<Vec3>) {
+fn pressed() -> (SurfaceContact, Vec<Vec3>) {
     let surfaces = vec![tetrahedron(0, None), tetrahedron(4, None)];
-    let touch = Touch::new(description(surfaces), &PRESSED).unwrap();
-    (touch, PRESSED.to_vec())
+    let contact = SurfaceContact::new(description(surfaces), &PRESSED).unwrap();
+    (contact, PRESSED.to_vec())
 }
 
 /// Second tetrahedron lifted off the first.
@@ -62,40 +62,40 @@ fn apart(positions: &[Vec3]) -> Vec<Vec3> {
 
 #[test]
 fn contact_keeps_the_laws_of_terms() {
-    let (mut touch, positions) = pressed();
-    let pairs = touch.pairs(&positions);
+    let (mut contact, positions) = pressed();
+    let pairs = contact.pairs(&positions);
     assert_eq!(pairs.len(), 1);
     assert!(pairs[0].gap < 0.0 && pairs[0].gap > -0.0005, "{pairs:?}");
     let apart = apart(&positions);
-    touch.follow(&positions);
-    check_term(&touch, &apart, &positions).unwrap();
-    touch.correct(&positions, 0.0, 1.0);
-    check_term(&touch, &apart, &positions).unwrap();
+    contact.follow(&positions);
+    check_term(&contact, &apart, &positions).unwrap();
+    contact.correct(&positions, 0.0, 1.0);
+    check_term(&contact, &apart, &positions).unwrap();
 }
 
 #[test]
 fn immovable_bodies_are_not_pushed_apart() {
-    let (mut touch, positions) = pressed();
-    touch.follow(&positions);
-    assert!(!touch.correct(&positions, 0.0, 1.0), "it is too deep");
-    let (touch, _) = pressed();
-    let mut touch = touch.with_still(vec![[true; 3]; 8], &PRESSED);
-    touch.follow(&positions);
-    assert!(touch.pairs(&positions).is_empty());
-    assert!(touch.correct(&positions, 0.0, 1.0));
+    let (mut contact, positions) = pressed();
+    contact.follow(&positions);
+    assert!(!contact.correct(&positions, 0.0, 1.0), "it is too deep");
+    let (contact, _) = pressed();
+    let mut contact = contact.with_still(vec![[true; 3]; 8], &PRESSED);
+    contact.follow(&positions);
+    assert!(contact.pairs(&positions).is_empty());
+    assert!(contact.correct(&positions, 0.0, 1.0));
     // A contact that closes later acts as usual.
-    let (touch, _) = pressed();
-    let mut touch = touch.with_still(vec![[true; 3]; 8], &apart(&PRESSED));
-    touch.follow(&positions);
-    assert_eq!(touch.pairs(&positions).len(), 1);
+    let (contact, _) = pressed();
+    let mut contact = contact.with_still(vec![[true; 3]; 8], &apart(&PRESSED));
+    contact.follow(&positions);
+    assert_eq!(contact.pairs(&positions).len(), 1);
     // The normal has a component along each axis, along which the tip may be moved.
     for axis in 0..3 {
-        let (touch, _) = pressed();
+        let (contact, _) = pressed();
         let mut still = vec![[true; 3]; 8];
         still[4][axis] = false;
-        let mut touch = touch.with_still(still, &PRESSED);
-        touch.follow(&positions);
-        assert_eq!(touch.pairs(&positions).len(), 1);
+        let mut contact = contact.with_still(still, &PRESSED);
+        contact.follow(&positions);
+        assert_eq!(contact.pairs(&positions).len(), 1);
     }
 }
 
@@ -110,17 +110,17 @@ fn mirrored_contact_equals_contact_of_half() {
     };
     let whole = images.seen(&half);
     let surfaces = vec![tetrahedron(0, Some(8)), tetrahedron(4, Some(12))];
-    let touch = Touch::new(description(surfaces), &whole).unwrap();
-    let touch = touch.with_planes([true, false, false], &whole);
-    let mut mirrored = MirroredContact::new(images, touch);
+    let contact = SurfaceContact::new(description(surfaces), &whole).unwrap();
+    let contact = contact.with_planes([true, false, false], &whole);
+    let mut mirrored = MirroredContact::new(images, contact);
     let surfaces = vec![tetrahedron(0, None), tetrahedron(4, None)];
-    let mut alone = Touch::new(description(surfaces), &half).unwrap();
+    let mut alone = SurfaceContact::new(description(surfaces), &half).unwrap();
     let apart = apart(&half);
     alone.follow(&half);
     alone.correct(&half, 0.0, 1.0);
     // Mirrored contact counts as anchored by the other half, which here does not touch it: rigid motion without energy
     // is the one law that it breaks, after those of derivatives pass.
-    let keeps_derivatives = |mirrored: &MirroredContact<Touch>| {
+    let keeps_derivatives = |mirrored: &MirroredContact<SurfaceContact>| {
         let broken = check_term(mirrored, &apart, &half).unwrap_err();
         assert_eq!(broken.law, Law::RigidMotion);
         assert!(broken.how.contains("anchored"), "{broken:?}");
@@ -129,9 +129,9 @@ fn mirrored_contact_equals_contact_of_half() {
     keeps_derivatives(&mirrored);
     mirrored.correct(&half, 0.0, 1.0);
     keeps_derivatives(&mirrored);
-    let forces = |touch: &dyn Contact| {
+    let forces = |contact: &dyn Contact| {
         let mut forces = vec![[0.0; 3]; half.len()];
-        touch.add_forces(&half, &mut forces);
+        contact.add_forces(&half, &mut forces);
         forces
     };
     let largest = forces(&alone)

@@ -10,7 +10,7 @@ use voxsoft_contact::surface_contact::bonds::Bond;
 use voxsoft_contact::surface_contact::law::Laws;
 use voxsoft_contact::surface_contact::rigid::Frame;
 use voxsoft_contact::surface_contact::tie::{Side, Solid};
-use voxsoft_contact::surface_contact::{Description, Flip, Touch};
+use voxsoft_contact::surface_contact::{Description, Flip, SurfaceContact};
 use voxsoft_player::Placed;
 use voxsoft_scene::Touching as Played;
 use voxsoft_solid::matrix::Mat3;
@@ -20,7 +20,7 @@ use voxsoft_solid::{
     Rigid, Springs,
 };
 
-use crate::touch_answer::{PyContact, PyObjectPose, to_python};
+use crate::contact_answer::{PyContact, PyObjectPose, to_python};
 
 /// Motion of a rigid object.
 #[derive(Debug, Clone)]
@@ -126,7 +126,7 @@ impl BodyPart {
 
 /// Description of all contact of a problem.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct TouchParts {
+pub(crate) struct ContactParts {
     pub bodies: Vec<BodyPart>,
     pub objects: Vec<ObjectPart>,
     pub friction: Vec<Vec<f64>>,
@@ -147,7 +147,7 @@ pub(crate) struct BondPart {
     pub strength: f64,
 }
 
-impl TouchParts {
+impl ContactParts {
     /// Adds to a mesh four vertices for each object that is no mirror image, with their clamps or masses.
     pub(crate) fn add_frames(&self, mesh: &mut Mesh, clamps: &mut Vec<Clamp>) {
         for object in &self.objects {
@@ -233,7 +233,7 @@ impl TouchParts {
 
     /// Makes the contact of a problem whose objects have their vertices from `first` on. If a symmetric part is solved
     /// for, it is the contact of the whole, whose objects come after its own vertices.
-    fn touch(&self, problem: &Problem, first: usize) -> Result<Touch, ProblemError> {
+    fn touch(&self, problem: &Problem, first: usize) -> Result<SurfaceContact, ProblemError> {
         let body = problem.body();
         let images = self.images(first);
         let rest: Cow<'_, [Vec3]> = match &images {
@@ -271,7 +271,7 @@ impl TouchParts {
             voxel: self.voxel(),
             young: mean_modulus(body),
         };
-        let touch = Touch::new(description, &rest)?.with_laws(self.laws.clone(), &rest);
+        let touch = SurfaceContact::new(description, &rest)?.with_laws(self.laws.clone(), &rest);
         let touch = touch.with_bodies(self.bodies.len() as u32, shares);
         let still = still(problem);
         Ok(match &images {
@@ -345,7 +345,7 @@ fn mirrored(vector: Vec3, signs: Vec3) -> Vec3 {
     [0, 1, 2].map(|axis| signs[axis] * vector[axis])
 }
 
-impl TouchParts {
+impl ContactParts {
     /// One side of a bond: a surface with the solid behind it; `shares` are those of the points of all bodies. Bodies
     /// come before the objects, so that the first side of a bond with an object is the soft one.
     fn side<'a>(
@@ -394,13 +394,13 @@ fn frame_at(positions: &[Vec3], first: usize) -> [Vec3; 4] {
 }
 
 /// Contact of a problem, with its history variables; that of the whole if a symmetric part is solved for.
-pub(crate) fn touch_of(problem: &Problem) -> Option<&Touch> {
+pub(crate) fn contact_of(problem: &Problem) -> Option<&SurfaceContact> {
     problem.contact()?.found_by().downcast_ref()
 }
 
 /// Contact of a Python problem, and the index of the first vertex of its objects.
 pub(crate) struct Touching {
-    pub parts: TouchParts,
+    pub parts: ContactParts,
     /// Surfaces and their friction: those of the whole, also if a symmetric part is solved for.
     description: Description,
     /// Images of the solved vertices that make up the whole.
@@ -436,7 +436,7 @@ impl Touching {
         problem: &Problem,
         positions: &[Vec3],
     ) -> PyResult<Vec<Py<PyContact>>> {
-        let pairs = touch_of(problem).map(|touch| touch.pairs(&self.seen(positions)));
+        let pairs = contact_of(problem).map(|touch| touch.pairs(&self.seen(positions)));
         to_python(py, pairs.unwrap_or_default())
     }
 
