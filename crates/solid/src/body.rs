@@ -26,7 +26,7 @@ use crate::term::Term;
 use crate::terms::{Attachment, Edge, Edges, Hex8s, Membranes, Tet, Tets};
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use crate::{
-    Contact, Filling, Growth, Hex8, HyperelasticMaterial, LatticeMaterial, Material, Membrane,
+    Contact, Eigenstrain, Filling, Hex8, HyperelasticMaterial, LatticeMaterial, Material, Membrane,
     ProblemError, WarpingModes, element::free_faces, lattice::cube,
 };
 
@@ -321,13 +321,15 @@ impl Body {
     }
 
     /// The time in s after which no free stretch changes.
-    pub fn growth_end(&self) -> f64 {
-        self.growths().map(Growth::end).fold(0.0, f64::max)
+    pub fn eigenstrain_end(&self) -> f64 {
+        self.eigenstrains()
+            .map(Eigenstrain::end)
+            .fold(0.0, f64::max)
     }
 
-    fn growths(&self) -> impl Iterator<Item = &Growth> {
+    fn eigenstrains(&self) -> impl Iterator<Item = &Eigenstrain> {
         let materials = self.hex8s.materials.iter();
-        materials.flat_map(HyperelasticMaterial::growths)
+        materials.flat_map(HyperelasticMaterial::eigenstrains)
     }
 
     /// Positions at rest in m.

@@ -77,9 +77,9 @@ pub use fluid::{Fluid, FluidMemory};
 pub use hyperelastic::{Fiber, HyperelasticMaterial, Model, Mullins, Winding};
 pub use lattice::material::{LatticeConstants, LatticeMaterial};
 pub use loads::clamp::{Clamp, Motion};
-pub use loads::eigenstrain::{Growth, GrowthFactor, Share};
+pub use loads::eigenstrain::{Eigenstrain, EigenstrainFactor, Share};
 pub use loads::external_force::{ExternalForce, Vertices};
-pub use loads::grabs::{Grab, Hands};
+pub use loads::grabs::{Grab, Grabs};
 pub use loads::history::History;
 pub use loads::{
     Dielectric, Drive, Element, Gravity, Hydrostatic, Load, LoadKind, Place, PointForces, Pressure,

@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Body, Growth, GrowthFactor, History, HyperelasticMaterial, Mesh, Model, Problem, Share, Term,
-    elastic,
+    Body, Eigenstrain, EigenstrainFactor, History, HyperelasticMaterial, Mesh, Model, Problem,
+    Share, Term, elastic,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 
@@ -24,14 +24,14 @@ fn bar() -> Mesh {
 }
 
 fn problem(model: Model, strain: f64, power: f64, shares: [[f64; 4]; 2]) -> Problem {
-    let factor = GrowthFactor {
+    let factor = EigenstrainFactor {
         history: History::new(vec![0.0], vec![1.0 + strain]).unwrap(),
         power,
         share: Share::Field(shares.into()),
     };
-    let growth = Growth::new(vec![factor]).unwrap();
+    let eigenstrain = Eigenstrain::new(vec![factor]).unwrap();
     let material = HyperelasticMaterial::new(model, 20.0, 1.0).unwrap();
-    let grown = material.with_growth(growth, Growth::none());
+    let grown = material.with_eigenstrain(eigenstrain, Eigenstrain::none());
     let body = Body::new(&bar(), &[grown]).unwrap();
     Problem::new(body, vec![], vec![], None).unwrap()
 }

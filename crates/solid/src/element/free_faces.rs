@@ -112,7 +112,7 @@ fn what_is(materials: &[HyperelasticMaterial], own: u32, other: Option<u32>) -> 
     let young = |material: u32| materials[material as usize].young();
     let same = |other: u32| {
         let [own, other] = [own, other].map(|number| &materials[number as usize]);
-        own.differs_in_growth_alone(other)
+        own.differs_in_eigenstrain_alone(other)
     };
     match other {
         Some(other) if other == own || same(other) => Behind::Same,

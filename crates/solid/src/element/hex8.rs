@@ -35,10 +35,10 @@
 //! from the center of the material, and becomes `σ Ĥ` with its spread `σ` along each axis, which integrates the energy
 //! to second order.
 //!
-//! A voxel whose free stretch varies across it ([`crate::Growth`]) has `h` times their mean in place of `h`, and in all
-//! of the above its hourglass modes without those that it has free of stress: `p̂₂·e₁ − b₃` and `p̂₁·e₂ − b₃` along ζ,
-//! with half the difference `b₃` of the free stretches at `ζ = ±1` over their mean. (`b₃ S` would be right for large
-//! elastic strain as well; the difference is of the order of `b (S − 1)`, and `b` is one of the voxel size.)
+//! A voxel whose free stretch varies across it ([`crate::Eigenstrain`]) has `h` times their mean in place of `h`, and
+//! in all of the above its hourglass modes without those that it has free of stress: `p̂₂·e₁ − b₃` and `p̂₁·e₂ − b₃`
+//! along ζ, with half the difference `b₃` of the free stretches at `ζ = ±1` over their mean. (`b₃ S` would be right for
+//! large elastic strain as well; the difference is of the order of `b (S − 1)`, and `b` is one of the voxel size.)
 //!
 //! If faces of a voxel are free, `W` sees less of its mean shear: `S̃` in place of `S`, see [`WarpingModes`] and
 //! [`crate::element::warping_modes`].

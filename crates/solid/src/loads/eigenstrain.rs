@@ -1,14 +1,14 @@
-//! Growth: the free stretch of a material over time.
+//! Eigenstrain: the free stretch of a material over time, which designs call growth.
 
 use std::sync::Arc;
 
 use crate::vector::{Vec3, axpy};
 use crate::{History, ProblemError};
 
-/// Distribution of a growth over the body.
+/// Distribution of an eigenstrain over the body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Share {
-    /// The full growth, everywhere.
+    /// The full eigenstrain, everywhere.
     Whole,
     /// A share for each block: that at the center of its material, and half its differences between the two sides along
     /// each axis.
@@ -19,7 +19,7 @@ pub enum Share {
 
 /// One factor of a free stretch: `(1 + s (b(t) − 1))ᵖ` for the share `s` of a place, the history `b` and the power `p`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct GrowthFactor {
+pub struct EigenstrainFactor {
     /// History of the base of the power where the share is one.
     pub history: History,
     /// The power: 1 for a length, 1/3 for a volume.
@@ -28,7 +28,7 @@ pub struct GrowthFactor {
     pub share: Share,
 }
 
-impl GrowthFactor {
+impl EigenstrainFactor {
     /// The base of the power at a share.
     fn base(&self, share: f64, whole: f64) -> f64 {
         // Exactly the history where the share is one.
@@ -86,44 +86,45 @@ impl GrowthFactor {
 /// A free stretch that changes over time: the product of powers of histories, such as the cube root of a change of
 /// volume.
 ///
-/// A body must call [`Growth::begin`] before it is evaluated at an instant; until then the stretch is the final one.
+/// A body must call [`Eigenstrain::begin`] before it is evaluated at an instant; until then the stretch is the final
+/// one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Growth {
-    factors: Vec<GrowthFactor>,
+pub struct Eigenstrain {
+    factors: Vec<EigenstrainFactor>,
     /// The present stretch, and half its differences across a voxel over it.
     now: [f64; 4],
 }
 
-impl Growth {
-    /// The growth of a material that keeps its length.
+impl Eigenstrain {
+    /// The eigenstrain of a material that keeps its length.
     pub fn none() -> Self {
         Self::of(Vec::new())
     }
 
-    /// A growth from factors that stay above zero.
-    pub fn new(factors: Vec<GrowthFactor>) -> Result<Self, ProblemError> {
-        factors.iter().try_for_each(GrowthFactor::check)?;
+    /// An eigenstrain from factors that stay above zero.
+    pub fn new(factors: Vec<EigenstrainFactor>) -> Result<Self, ProblemError> {
+        factors.iter().try_for_each(EigenstrainFactor::check)?;
         Ok(Self::of(factors))
     }
 
-    fn of(factors: Vec<GrowthFactor>) -> Self {
-        let mut growth = Self {
+    fn of(factors: Vec<EigenstrainFactor>) -> Self {
+        let mut eigenstrain = Self {
             factors,
             now: [1.0, 0.0, 0.0, 0.0],
         };
-        growth.begin(f64::INFINITY);
-        growth
+        eigenstrain.begin(f64::INFINITY);
+        eigenstrain
     }
 
     /// Tests whether it differs from voxel to voxel.
     pub(crate) fn is_field(&self) -> bool {
-        let field = |factor: &GrowthFactor| matches!(factor.share, Share::Field(_));
+        let field = |factor: &EigenstrainFactor| matches!(factor.share, Share::Field(_));
         self.factors.iter().any(field)
     }
 
     /// Tests whether it varies within a voxel.
     pub(crate) fn varies(&self) -> bool {
-        let slopes = |factor: &GrowthFactor| match factor.share {
+        let slopes = |factor: &EigenstrainFactor| match factor.share {
             Share::Here([_, x, y, z]) => [x, y, z] != [0.0; 3],
             Share::Whole | Share::Field(_) => false,
         };
@@ -132,13 +133,13 @@ impl Growth {
 
     /// Tests whether it is the share of one voxel.
     pub(crate) fn is_local(&self) -> bool {
-        let here = |factor: &GrowthFactor| matches!(factor.share, Share::Here(_));
+        let here = |factor: &EigenstrainFactor| matches!(factor.share, Share::Here(_));
         self.factors.iter().any(here)
     }
 
-    /// The growth of one block.
+    /// The eigenstrain of one block.
     pub(crate) fn in_block(&self, block: usize) -> Result<Self, ProblemError> {
-        let here = |factor: &GrowthFactor| {
+        let here = |factor: &EigenstrainFactor| {
             let share = match &factor.share {
                 Share::Field(blocks) => {
                     Share::Here(*blocks.get(block).ok_or(ProblemError::Index {
@@ -149,7 +150,7 @@ impl Growth {
                 }
                 other => other.clone(),
             };
-            Ok(GrowthFactor {
+            Ok(EigenstrainFactor {
                 share,
                 ..factor.clone()
             })
@@ -210,8 +211,8 @@ impl Growth {
 mod tests {
     use super::*;
 
-    fn ramp(end: f64, power: f64) -> GrowthFactor {
-        GrowthFactor {
+    fn ramp(end: f64, power: f64) -> EigenstrainFactor {
+        EigenstrainFactor {
             history: History::new(vec![0.0, 2.0], vec![1.0, end]).unwrap(),
             power,
             share: Share::Whole,
@@ -220,24 +221,24 @@ mod tests {
 
     #[test]
     fn stretch_is_the_product_of_powers() {
-        let mut growth = Growth::new(vec![ramp(1.2, 1.0), ramp(8.0, 1.0 / 3.0)]).unwrap();
+        let mut eigenstrain = Eigenstrain::new(vec![ramp(1.2, 1.0), ramp(8.0, 1.0 / 3.0)]).unwrap();
         // Before `begin` is called it is the final stretch.
-        assert!((growth.now() - 2.4).abs() < 1e-15);
-        growth.begin(1.0);
-        assert_eq!(growth.now(), 1.1 * libm::pow(4.5, 1.0 / 3.0));
-        let copy = growth.clone();
-        growth.begin(0.0);
-        assert_eq!([growth.now(), copy.now()], [1.0, copy.at(1.0)]);
-        assert_eq!(growth.end(), 2.0);
-        assert_eq!(Growth::none().now(), 1.0);
+        assert!((eigenstrain.now() - 2.4).abs() < 1e-15);
+        eigenstrain.begin(1.0);
+        assert_eq!(eigenstrain.now(), 1.1 * libm::pow(4.5, 1.0 / 3.0));
+        let copy = eigenstrain.clone();
+        eigenstrain.begin(0.0);
+        assert_eq!([eigenstrain.now(), copy.now()], [1.0, copy.at(1.0)]);
+        assert_eq!(eigenstrain.end(), 2.0);
+        assert_eq!(Eigenstrain::none().now(), 1.0);
     }
 
     #[test]
     fn vanishing_stretch_is_refused() {
-        assert!(Growth::new(vec![ramp(0.0, 1.0)]).is_err());
+        assert!(Eigenstrain::new(vec![ramp(0.0, 1.0)]).is_err());
         let share = Share::Field([[-6.0, 0.0, 0.0, 0.0]].into());
         assert!(
-            Growth::new(vec![GrowthFactor {
+            Eigenstrain::new(vec![EigenstrainFactor {
                 share,
                 ..ramp(1.2, 1.0)
             }])
@@ -248,14 +249,14 @@ mod tests {
     #[test]
     fn block_has_its_share_and_bends_with_its_slope() {
         let share = Share::Field([[0.0; 4], [0.5, 0.0, 0.1, 0.0]].into());
-        let field = GrowthFactor {
+        let field = EigenstrainFactor {
             share,
             ..ramp(1.4, 1.0 / 3.0)
         };
-        let growth = Growth::new(vec![field]).unwrap();
-        assert!(growth.is_field() && !growth.varies());
-        assert_eq!(growth.in_block(0).unwrap().now(), 1.0);
-        let mut here = growth.in_block(1).unwrap();
+        let eigenstrain = Eigenstrain::new(vec![field]).unwrap();
+        assert!(eigenstrain.is_field() && !eigenstrain.varies());
+        assert_eq!(eigenstrain.in_block(0).unwrap().now(), 1.0);
+        let mut here = eigenstrain.in_block(1).unwrap();
         assert!(here.varies() && !here.is_field());
         assert_eq!(here.now(), libm::cbrt(1.2));
         // Half the difference between the sides over the mean, to second order in the slope.
@@ -266,6 +267,6 @@ mod tests {
         assert!((y - half).abs() < 0.1 * 0.1 * half, "{y} {half}");
         here.begin(0.0);
         assert_eq!((here.now(), here.bent()), (1.0, [0.0; 3]));
-        assert!(growth.in_block(2).is_err());
+        assert!(eigenstrain.in_block(2).is_err());
     }
 }

@@ -37,13 +37,13 @@ impl Grab {
 
 /// All grabs of a run, and the original histories of its loads.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Hands {
+pub struct Grabs {
     histories: Vec<History>,
     /// Grabs with the caller's numbers.
     grabs: Vec<(u32, Grab)>,
 }
 
-impl Hands {
+impl Grabs {
     /// No grabs yet, and the histories of the problem's loads.
     pub fn new(problem: &Problem) -> Self {
         Self {
@@ -125,7 +125,7 @@ impl Hands {
     }
 
     /// All grabs with their numbers.
-    pub fn grabs(&self) -> &[(u32, Grab)] {
+    pub fn all(&self) -> &[(u32, Grab)] {
         &self.grabs
     }
 
@@ -179,7 +179,7 @@ pub fn loads_end(problem: &Problem) -> f64 {
     let clamps = problem.clamps().iter();
     let motions = clamps.filter_map(|clamp| Some(&clamp.motion.as_ref()?.history));
     let of_fluid = problem.fluid().map_or(0.0, Fluid::end);
-    let of_growth = problem.body().growth_end();
+    let of_growth = problem.body().eigenstrain_end();
     loads
         .chain(motions)
         .map(History::end)

@@ -76,7 +76,7 @@ impl Problem {
     /// Sets the free stretches of all materials to those at a time in s.
     pub fn begin(&mut self, time: f64) {
         self.time = time;
-        if self.body.growth_end() > 0.0 {
+        if self.body.eigenstrain_end() > 0.0 {
             self.body_mut().begin(time);
         }
     }

@@ -29,7 +29,7 @@ mod turns;
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::element::hex8::Tangent;
-use voxsoft_solid::loads::grabs::{Hands, shortest_edge};
+use voxsoft_solid::loads::grabs::{Grabs, shortest_edge};
 use voxsoft_solid::vector::{Vec3, add, axpy};
 use voxsoft_solid::{Ask, Damping, LiveStatus, Problem, State, Viscosity};
 
@@ -136,7 +136,7 @@ impl Default for ImplicitSettings {
 pub struct Implicit {
     problem: Problem,
     settings: ImplicitSettings,
-    hands: Hands,
+    grabs: Grabs,
     /// Tangent, created at the first step, which reports errors.
     lagged: Option<Lagged>,
     memory: QuasiNewtonMemory,
@@ -192,7 +192,7 @@ impl Implicit {
         let problem = problem.with_held_loads();
         let state = State::at_rest(problem.body());
         Self {
-            hands: Hands::new(&problem),
+            grabs: Grabs::new(&problem),
             lagged: None,
             memory: QuasiNewtonMemory::default(),
             pressures: Pressures::new(problem.body()),
@@ -354,7 +354,7 @@ impl Implicit {
     /// they do to the last digit.
     fn keep_momentum(&self, inertia: f64, positions: &mut [Vec3], value: &Value) {
         let held = self.problem.held().as_flattened().contains(&true);
-        if held || self.carried.contains(&true) || !self.hands.grabs().is_empty() {
+        if held || self.carried.contains(&true) || !self.grabs.all().is_empty() {
             return;
         }
         let left = value.net.iter().fold([0.0; 3], |sum, f| add(sum, *f));

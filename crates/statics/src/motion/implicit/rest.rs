@@ -22,7 +22,7 @@ impl Implicit {
         };
         self.residual = residual(sum(&self.value.elastic));
         let tolerance = self.settings.tolerance;
-        let settled = self.hands.arrived() && self.state.time >= loads_end(&self.problem);
+        let settled = self.grabs.arrived() && self.state.time >= loads_end(&self.problem);
         let kinetic = self.state.kinetic_energy(self.problem.body().masses());
         if !settled
             || self.residual > tolerance
@@ -59,7 +59,7 @@ impl Implicit {
             stiffness += dot(way, add(elastic, sub(loads[vertex], after[vertex])));
             inertia += mass * dot(way, way);
         }
-        for (_, grab) in self.hands.grabs() {
+        for (_, grab) in self.grabs.all() {
             let vertex = grab.vertex as usize;
             let way = sub(next.positions[vertex], before[vertex]);
             stiffness += grab.stiffness * dot(way, way);

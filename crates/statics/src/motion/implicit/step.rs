@@ -86,8 +86,8 @@ impl Implicit {
             .map(|(x, v)| std::array::from_fn(|i| x[i] + v[i] / braked))
             .collect();
         let time = self.state.time + step;
-        let mut hands = self.hands.clone();
-        let grabs = hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
+        let mut grabs = self.grabs.clone();
+        let grabs = grabs.follow(ANCHOR_SPEED * step * self.shortest_edge);
         let dead = (!self.problem.is_conservative()).then(|| {
             let mut forces = vec![[0.0; 3]; free.len()];
             self.problem
@@ -140,7 +140,7 @@ impl Implicit {
         }
         let factor_of = |load: &Load| load.history.at(next.time);
         self.problem.accept_loads(&next.positions, &factor_of);
-        self.hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
+        self.grabs.follow(ANCHOR_SPEED * step * self.shortest_edge);
         if let Some(viscosity) = &mut self.viscosity {
             viscosity.end(self.problem.body(), &next.positions, step);
         }

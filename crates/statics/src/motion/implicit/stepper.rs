@@ -70,7 +70,7 @@ impl Stepper for Implicit {
     }
 
     fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError> {
-        self.hands.set_load(&mut self.problem, load, factor)?;
+        self.grabs.set_load(&mut self.problem, load, factor)?;
         self.wake();
         Ok(())
     }
@@ -83,14 +83,14 @@ impl Stepper for Implicit {
         stiffness: f64,
     ) -> Result<(), ProblemError> {
         let positions = &self.state.positions;
-        self.hands
+        self.grabs
             .grab(positions, number, vertex, target, stiffness)?;
         self.wake();
         Ok(())
     }
 
     fn release(&mut self, number: u32) -> bool {
-        let released = self.hands.release(number);
+        let released = self.grabs.release(number);
         if released {
             self.wake();
         }
@@ -98,11 +98,11 @@ impl Stepper for Implicit {
     }
 
     fn grabs(&self) -> &[(u32, Grab)] {
-        self.hands.grabs()
+        self.grabs.all()
     }
 
     fn reset(&mut self) {
-        self.hands.release_all();
+        self.grabs.release_all();
         self.step = self.settings.step;
         (self.steps, self.back_offs, self.good) = (0, 0, 0);
         self.start_from(State::at_rest(self.problem.body()));
@@ -112,7 +112,7 @@ impl Stepper for Implicit {
 
     fn seek(&mut self, positions: Vec<Vec3>, time: f64) -> Result<(), ProblemError> {
         let state = still_state(&self.problem, positions, time)?;
-        self.hands.release_all();
+        self.grabs.release_all();
         self.start_from(state);
         Ok(())
     }

@@ -49,7 +49,7 @@ impl Motion {
         elastic::add_forces(problem.body(), positions, &mut internal);
         let mut external = vec![[0.0; 3]; positions.len()];
         problem.add_loads(positions, state.time, &mut external);
-        for (_, grab) in self.hands.grabs() {
+        for (_, grab) in self.grabs.all() {
             let vertex = grab.vertex as usize;
             external[vertex] = add(external[vertex], grab.force(positions[vertex]));
         }
@@ -126,7 +126,7 @@ impl Motion {
     /// Work of growing materials from a state on to a time in s, in J: the increase of the stored energy at fixed
     /// positions.
     fn work_of_growth(&self, from: &State, time: f64) -> f64 {
-        if self.problem.body().growth_end() <= from.time {
+        if self.problem.body().eigenstrain_end() <= from.time {
             return 0.0;
         }
         let mut problem = self.problem.clone();
@@ -155,7 +155,7 @@ impl Motion {
             stiffness += dot(way, add(internal, external));
             inertia += mass * dot(way, way);
         }
-        for (_, grab) in self.hands.grabs() {
+        for (_, grab) in self.grabs.all() {
             let vertex = grab.vertex as usize;
             let way = sub(next.positions[vertex], self.state.positions[vertex]);
             stiffness += grab.stiffness * dot(way, way);
@@ -189,7 +189,7 @@ impl Motion {
     pub(super) fn is_at_rest(&self, residual: f64) -> bool {
         let tolerance = self.settings.tolerance;
         let fluid = self.problem.fluid();
-        self.hands.arrived()
+        self.grabs.arrived()
             && self.state.time >= loads_end(&self.problem)
             && fluid.is_none_or(|fluid| fluid.is_at_rest(tolerance))
             && residual <= tolerance

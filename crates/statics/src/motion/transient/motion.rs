@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
-use voxsoft_solid::loads::grabs::{Hands, shortest_edge};
+use voxsoft_solid::loads::grabs::{Grabs, shortest_edge};
 use voxsoft_solid::{Damping, LiveStatus, Load, Observer, Problem, State, Status, Term, Viscosity};
 
 use super::Transient;
@@ -59,7 +59,7 @@ pub struct Motion {
     pub(super) settings: Transient,
     pub(super) equilibrium: Equilibrium,
     pub(super) inertia: Arc<Inertia>,
-    pub(super) hands: Hands,
+    pub(super) grabs: Grabs,
     pub(super) viscosity: Option<Viscosity>,
     pub(super) state: State,
     pub(super) now: Now,
@@ -114,7 +114,7 @@ impl Motion {
         let mut motion = Self {
             travel_limit: travel_limit(&problem),
             shortest_edge: shortest_edge(&problem),
-            hands: Hands::new(&problem),
+            grabs: Grabs::new(&problem),
             viscosity: Viscosity::of_viscous(problem.body(), settings.retardation),
             problem,
             equilibrium,
@@ -272,7 +272,7 @@ impl Motion {
         }
         self.equilibrium.problem.remember_but_contact(&self.problem);
         let step = next.time - self.state.time;
-        self.hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
+        self.grabs.follow(ANCHOR_SPEED * step * self.shortest_edge);
         if self.settings.damping == Damping::Critical {
             self.damping_rate = 2.0 * self.frequency(&next, &found);
         }

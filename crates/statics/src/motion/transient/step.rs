@@ -47,10 +47,10 @@ impl Motion {
         let coast = |(x, v): (&Vec3, &Vec3)| add(*x, scale(1.0 / braked, *v));
         let free = start.positions.iter().zip(&start.velocities).map(coast);
         self.inertia.set(start.rate * braked, free.collect());
-        if !self.hands.grabs().is_empty() {
-            let mut hands = self.hands.clone();
+        if !self.grabs.all().is_empty() {
+            let mut grabs = self.grabs.clone();
             let travel = ANCHOR_SPEED * step * self.shortest_edge;
-            self.inertia.pull(&hands.follow(travel));
+            self.inertia.pull(&grabs.follow(travel));
         }
         self.equilibrium.negligible = NEGLIGIBLE_CHANGE * self.momentum() / step;
         let time = self.state.time + step;

@@ -108,7 +108,7 @@ impl Stepper for Motion {
 
     fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError> {
         for problem in [&mut self.problem, &mut self.equilibrium.problem] {
-            self.hands.set_load(problem, load, factor)?;
+            self.grabs.set_load(problem, load, factor)?;
         }
         self.wake();
         Ok(())
@@ -126,14 +126,14 @@ impl Stepper for Motion {
             return Err(ProblemError::OnTied { what, vertex });
         }
         let positions = &self.state.positions;
-        self.hands
+        self.grabs
             .grab(positions, number, vertex, target, stiffness)?;
         self.wake();
         Ok(())
     }
 
     fn release(&mut self, number: u32) -> bool {
-        let released = self.hands.release(number);
+        let released = self.grabs.release(number);
         if released {
             self.inertia.pull(&[]);
             self.wake();
@@ -142,18 +142,18 @@ impl Stepper for Motion {
     }
 
     fn grabs(&self) -> &[(u32, Grab)] {
-        self.hands.grabs()
+        self.grabs.all()
     }
 
     fn reset(&mut self) {
-        self.hands.release_all();
+        self.grabs.release_all();
         (self.steps, self.back_offs) = (0, 0);
         self.start_from(State::at_rest(self.problem.body()));
     }
 
     fn seek(&mut self, positions: Vec<Vec3>, time: f64) -> Result<(), ProblemError> {
         let state = still_state(&self.problem, positions, time)?;
-        self.hands.release_all();
+        self.grabs.release_all();
         self.start_from(state);
         Ok(())
     }
