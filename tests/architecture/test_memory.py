@@ -11,7 +11,9 @@ INTERIOR = re.compile(
     r"\b(?:Mutex|RwLock|RefCell|OnceCell|OnceLock|LazyCell|LazyLock|UnsafeCell|Atomic\w+|Cell<)"
 )
 #: Files that may hold some, and why.
-CACHES = {"solid/src/clamped.rs": "tables of the clamped element, each of which is made once"}
+CACHES = {
+    "solid/src/element/clamp_modes.rs": "tables of the element at a clamp, each made once",
+}
 
 
 def test_problems_hold_no_interior_mutability():

@@ -34,7 +34,7 @@ pub struct Moment {
     /// Pose of each object.
     pub poses: Vec<Pose>,
     /// Contact of each pair of surfaces.
-    pub contacts: Vec<Touch>,
+    pub contacts: Vec<SurfaceContact>,
     /// True if fields of contact are known.
     pub fields: bool,
     /// Penetration depth of surfaces in m, if it exceeds the tolerance of contact.
@@ -52,7 +52,7 @@ pub struct Pose {
 
 /// Contact of two surfaces.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Touch {
+pub struct SurfaceContact {
     /// Names of the two surfaces.
     pub of: [String; 2],
     /// Force on the first surface, in N.

@@ -69,8 +69,8 @@ pub use clock::Clock;
 pub use command::{Command, STIFFNESS};
 pub use control::Control;
 pub use event::{
-    Event, GrabState, Mode, Moment, MomentOf, Picked, Plot, Pose, Refusal, Shown, Stat, Touch,
-    Value,
+    Event, GrabState, Mode, Moment, MomentOf, Picked, Plot, Pose, Refusal, Shown, Stat,
+    SurfaceContact, Value,
 };
 pub use motion::{FRAME_TIME, Rest};
 pub use pace::PACES;

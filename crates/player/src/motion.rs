@@ -1,6 +1,6 @@
 //! Advance of a player over time: steps, frames, and states taken over from solvers.
 
-use voxsoft_solid::hands::still_state;
+use voxsoft_solid::loads::grabs::still_state;
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Ask, LiveStatus, Look, Method, ProblemError, State};

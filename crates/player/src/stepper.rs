@@ -9,7 +9,7 @@ use voxsoft_xpbd::{Dynamics, Live};
 /// and so does any body for which substeps are given. Problems with contact or tendons always take implicit steps; a
 /// tendon is thousands of times as stiff as the body that it runs through.
 pub fn stepper(problem: Problem, settings: Dynamics) -> Box<dyn Stepper> {
-    let explicit = problem.body().bricks().is_empty() || settings.substeps.is_some();
+    let explicit = problem.body().hex8s().is_empty() || settings.substeps.is_some();
     let stiff = problem.contact().is_some() || problem.has_tendons();
     if explicit && !stiff {
         return Box::new(Live::new(problem, settings));

@@ -1,12 +1,12 @@
 //! Reports of contact and of poses of rigid objects.
 
 use serde::{Deserialize, Serialize};
-use voxsoft_contact::touch::live::LiveTouch;
+use voxsoft_contact::surface_contact::live::LiveSurfaceContact;
 use voxsoft_solid::matrix::{Mat3, apply};
 use voxsoft_solid::vector::{Vec3, add, scale, sub};
 use voxsoft_solid::{Problem, Rigid};
 
-use crate::event::{Moment, Pose, Touch};
+use crate::event::{Moment, Pose, SurfaceContact};
 
 /// A rigid object: the vertices that carry it, and the center of its first bounding box, the reference point of its
 /// pose.
@@ -50,7 +50,7 @@ impl Touching {
     ) -> Moment {
         let rest = problem.body().rest();
         let contact = problem.contact();
-        let live: Option<&LiveTouch> =
+        let live: Option<&LiveSurfaceContact> =
             contact.and_then(|contact| contact.found_by().downcast_ref());
         let pose = |object: &Placed| {
             let (position, turn) = object.pose(rest, positions);
@@ -65,8 +65,8 @@ impl Touching {
                 .cloned()
                 .unwrap_or_default()
         };
-        let pairs = live.map_or_else(Vec::new, |live| live.touch().pairs(positions));
-        let touches = pairs.into_iter().map(|pair| Touch {
+        let pairs = live.map_or_else(Vec::new, |live| live.contact().pairs(positions));
+        let touches = pairs.into_iter().map(|pair| SurfaceContact {
             of: pair.of.map(name),
             force: pair.force,
             pressed: pair.pressed,

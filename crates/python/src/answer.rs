@@ -4,10 +4,10 @@ use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{LiveStatus, Look, Status};
 
+use crate::contact_answer::{PyContact, PyObjectPose, PyTouchHistory};
 use crate::contact_field::PyContactField;
 use crate::simulate::PyProblem;
 use crate::tendon::PyTendon;
-use crate::touch_answer::{PyContact, PyObjectPose, PyTouchHistory};
 
 /// Status at the end of a solution.
 #[pyclass(

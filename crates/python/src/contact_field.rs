@@ -1,11 +1,11 @@
 //! Contact field over the vertices of the body, for Python.
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use voxsoft_contact::touch::Touch;
+use voxsoft_contact::surface_contact::SurfaceContact;
 use voxsoft_solid::vector::Vec3;
 
 use crate::arrays::from_rows;
-use crate::touch::Touching;
+use crate::surface_contact::Touching;
 
 /// Contact pressure, friction and gap at the vertices of the body.
 #[pyclass(frozen, get_all, name = "ContactField", module = "voxsoft._core")]
@@ -24,7 +24,7 @@ impl Touching {
     pub(crate) fn field(
         &self,
         py: Python<'_>,
-        touch: &Touch,
+        touch: &SurfaceContact,
         positions: &[Vec3],
     ) -> PyResult<Py<PyContactField>> {
         let found = touch.field(&self.seen(positions), self.own(), self.flips());

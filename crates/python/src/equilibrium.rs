@@ -129,7 +129,7 @@ pub fn equilibrium(
         memory,
         ..Settings::default()
     };
-    let pressures = pressures.map(|found| problem.brick_pressures(&found));
+    let pressures = pressures.map(|found| problem.hex8_pressures(&found));
     let pressures = pressures.transpose()?;
     let positions = start.map(|start| problem.positions(&start)).transpose()?;
     let start = positions.map(|positions| Start {

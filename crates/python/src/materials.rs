@@ -3,8 +3,8 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Fiber, Growth, GrowthFactor, History, HyperelasticMaterial, LatticeMaterial, Material, Model,
-    Mullins, ProblemError, Share, Winding,
+    Eigenstrain, EigenstrainFactor, Fiber, History, HyperelasticMaterial, LatticeMaterial,
+    Material, Model, Mullins, ProblemError, Share, Winding,
 };
 
 use crate::arrays::rows;
@@ -182,7 +182,7 @@ impl PyMaterial {
                 Some(field) => Share::Field(rows("field", &field)?.into()),
             };
             let history = History::new(times, stretches).map_err(to_python)?;
-            Ok(GrowthFactor {
+            Ok(EigenstrainFactor {
                 history,
                 power,
                 share,
@@ -190,11 +190,11 @@ impl PyMaterial {
         };
         let growth = |factors: Vec<Factor<'_>>| {
             let each = factors.into_iter().map(factor);
-            Growth::new(each.collect::<PyResult<_>>()?).map_err(to_python)
+            Eigenstrain::new(each.collect::<PyResult<_>>()?).map_err(to_python)
         };
         let (of_material, of_fibers) = (growth(of_material)?, growth(of_fibers)?);
         let rubber = self.rubber(py, "activations")?;
-        made(Ok(rubber.with_growth(of_material, of_fibers)))
+        made(Ok(rubber.with_eigenstrain(of_material, of_fibers)))
     }
 
     /// Young's modulus in Pa at small strain, for voxels with edges of `voxel_size` m.

@@ -4,24 +4,24 @@ use std::sync::atomic::Ordering;
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use voxsoft_contact::touch::Touch;
+use voxsoft_contact::surface_contact::SurfaceContact;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Problem, RecordedContact};
 use voxsoft_statics::Varied;
 
 use crate::arrays::from_rows;
+use crate::contact_answer::PyContact;
 use crate::equilibrium::to_python;
 use crate::gate;
 use crate::simulate::PyProblem;
-use crate::touch::touch_of;
-use crate::touch_answer::PyContact;
+use crate::surface_contact::contact_of;
 
 /// Copy of a problem that records its load path for `sensitivities`.
 #[pyfunction]
 pub fn recording(problem: PyRef<'_, PyProblem>) -> PyResult<PyProblem> {
-    problem.look_at_touch(|_| ())?;
+    problem.look_at_contact(|_| ())?;
     Ok(problem.with(|problem| {
-        if let Some(touch) = touch_mut(problem) {
+        if let Some(touch) = contact_mut(problem) {
             touch.record();
         }
     }))
@@ -32,7 +32,7 @@ pub fn recording(problem: PyRef<'_, PyProblem>) -> PyResult<PyProblem> {
 /// first step.
 #[pyfunction]
 pub fn recorded_contact(problem: PyRef<'_, PyProblem>) -> PyResult<(bool, f64, f64)> {
-    problem.look_at_touch(|touch| {
+    problem.look_at_contact(|touch| {
         (
             touch.recorded_precisely(),
             touch.recorded_slip(),
@@ -46,7 +46,7 @@ pub fn recorded_contact(problem: PyRef<'_, PyProblem>) -> PyResult<(bool, f64, f
 pub fn same_surfaces(problem: PyRef<'_, PyProblem>, other: PyRef<'_, PyProblem>) -> PyResult<bool> {
     let vertices = |problem: &PyProblem| problem.now().body().rest().len();
     let same = problem
-        .look_at_touch(|touch| other.look_at_touch(|other| touch.has_surfaces_of(other)))??;
+        .look_at_contact(|touch| other.look_at_contact(|other| touch.has_surfaces_of(other)))??;
     Ok(same && vertices(&problem) == vertices(&other))
 }
 
@@ -65,13 +65,13 @@ pub fn contacts_at(
 }
 
 impl PyProblem {
-    fn look_at_touch<T>(&self, look: impl FnOnce(&Touch) -> T) -> PyResult<T> {
+    fn look_at_contact<T>(&self, look: impl FnOnce(&SurfaceContact) -> T) -> PyResult<T> {
         let nothing = || PyValueError::new_err("nothing touches in this problem");
-        touch_of(&self.now()).map(look).ok_or_else(nothing)
+        contact_of(&self.now()).map(look).ok_or_else(nothing)
     }
 }
 
-fn touch_mut(problem: &mut Problem) -> Option<&mut Touch> {
+fn contact_mut(problem: &mut Problem) -> Option<&mut SurfaceContact> {
     problem.contact_mut()?.found_by_mut().downcast_mut()
 }
 
@@ -94,13 +94,13 @@ pub fn sensitivities<'py>(
     memory: u64,
 ) -> PyResult<Vec<Vec<PyEnd<'py>>>> {
     let own = problem.own();
-    problem.look_at_touch(|_| ())?;
+    problem.look_at_contact(|_| ())?;
     let mut inner = Problem::clone(&problem.now());
-    let moments = touch_mut(&mut inner).map_or_else(Vec::new, |touch| touch.take_recorded());
+    let moments = contact_mut(&mut inner).map_or_else(Vec::new, |touch| touch.take_recorded());
     let mut parameters: Vec<Vec<Varied>> = Vec::new();
     for parameter in &varied {
         let shared = parameter.iter().map(|(problem, offset, weight)| {
-            problem.look_at_touch(|_| ())?;
+            problem.look_at_contact(|_| ())?;
             Ok(Varied {
                 problem: Problem::clone(&problem.now()),
                 offset: *offset,
@@ -111,7 +111,7 @@ pub fn sensitivities<'py>(
     }
     let (ends, parameters) = gate::run_owned(py, move |cancel| {
         let mut stop = || cancel.load(Ordering::Relaxed);
-        let ends = voxsoft_statics::sensitivities::<Touch>(
+        let ends = voxsoft_statics::sensitivities::<SurfaceContact>(
             &inner,
             &moments,
             &factors,

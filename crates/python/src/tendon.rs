@@ -5,7 +5,7 @@ use serde::Deserialize;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Drive, History, Load, LoadKind, Place, Problem, Tendon};
 
-use crate::touch::TouchParts;
+use crate::surface_contact::ContactParts;
 
 /// A point on the path of a tendon.
 #[derive(Debug, Clone, Deserialize)]
@@ -31,7 +31,7 @@ impl TendonPart {
     pub(crate) fn load(
         self,
         history: History,
-        touch: Option<&TouchParts>,
+        touch: Option<&ContactParts>,
         first: usize,
     ) -> Option<Load> {
         let place = |part| match part {

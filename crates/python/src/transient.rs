@@ -3,17 +3,17 @@ use std::sync::{Arc, Mutex};
 
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
-use voxsoft_contact::touch::PairReport;
+use voxsoft_contact::surface_contact::PairReport;
 use voxsoft_solid::vector::{Vec3, axpy, dot};
 use voxsoft_solid::{Damping, Progress, State, elastic};
 use voxsoft_statics::Transient;
 use voxsoft_xpbd::Answer;
 
 use crate::answer::PyAnswer;
+use crate::contact_answer::PyTouchHistory;
 use crate::gate;
 use crate::simulate::PyProblem;
-use crate::touch::touch_of;
-use crate::touch_answer::PyTouchHistory;
+use crate::surface_contact::contact_of;
 use crate::watch::{Watch, collect_sensors};
 
 /// Solves for the motion by implicit steps of `step` seconds, to `end_time` or to rest. Without a rate (1/s), `damping`
@@ -60,7 +60,7 @@ pub fn transient(
                 let mut seen = seen.lock().expect("no holder of the lock panics");
                 // Contact has no forces yet before the first step.
                 let started = now.steps > 0;
-                let touch = touch_of(now.problem).filter(|_| started);
+                let touch = contact_of(now.problem).filter(|_| started);
                 let pairs = touch.map(|touch| touch.pairs(&positions));
                 seen.pairs.push(pairs.unwrap_or_default());
                 seen.frames.push(positions[touching.own()..].to_vec());
@@ -144,7 +144,7 @@ impl Seen {
         let contacts = self
             .pairs
             .into_iter()
-            .map(|pairs| crate::touch_answer::to_python(py, pairs));
+            .map(|pairs| crate::contact_answer::to_python(py, pairs));
         let objects = self.frames.iter().map(|frames| touching.poses(py, frames));
         let history = PyTouchHistory {
             contacts: contacts.collect::<PyResult<_>>()?,

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use voxsoft_contact::touch::live::LiveTouch;
-use voxsoft_contact::touch::{Carried, Description, Surface};
+use voxsoft_contact::surface::{Carried, Surface};
+use voxsoft_contact::surface_contact::Description;
+use voxsoft_contact::surface_contact::live::LiveSurfaceContact;
 use voxsoft_player::{Placed, Touching as Played};
 use voxsoft_solid::{Problem, ProblemError, Rigid, Springs};
 
@@ -27,7 +28,7 @@ impl Touching {
     /// Adds this contact to a problem; returns it with the names and objects for a player.
     pub(crate) fn add_to(&self, problem: Problem) -> Result<(Problem, Played), ProblemError> {
         let description = self.description.clone();
-        let contact = LiveTouch::new(description, problem.body().rest())?;
+        let contact = LiveSurfaceContact::new(description, problem.body().rest())?;
         let problem = problem
             .with_term(Arc::new(self.springs.clone()))?
             .with_rigid(self.rigid.clone())?

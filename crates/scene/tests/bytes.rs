@@ -1,8 +1,9 @@
 //! Round trips of scenes, and reading of damaged bytes without panics.
 
 use proptest::prelude::*;
-use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Description, Surface};
+use voxsoft_contact::surface::Surface;
+use voxsoft_contact::surface_contact::Description;
+use voxsoft_contact::surface_contact::rigid::Frame;
 use voxsoft_player::{Cast, Control, Placed, Probe};
 use voxsoft_scene::{Scene, SceneError, Touching};
 use voxsoft_solid::matrix::IDENTITY;

@@ -15,18 +15,19 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::brick::Within;
-use crate::coarse::Coarse;
-use crate::color::{color_order, interleave};
+use crate::element::coarse::Coarse;
+use crate::element::hex8::Within;
+use crate::element::ties::Ties;
 use crate::hyperelastic::LocalMaterials;
-use crate::lattice::LatticeConstants;
+use crate::lattice::color::{color_order, interleave};
+use crate::lattice::material::LatticeConstants;
 use crate::matrix::{IDENTITY, Mat3, apply_transposed};
-use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
-use crate::ties::Ties;
+use crate::term::Term;
+use crate::terms::{Attachment, Edge, Edges, Hex8s, Membranes, Tet, Tets};
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use crate::{
-    Brick, Contact, Filling, Growth, HyperelasticMaterial, LatticeMaterial, Material, Membrane,
-    ProblemError, Warping, cube, free_faces,
+    Contact, Eigenstrain, Filling, Hex8, HyperelasticMaterial, LatticeMaterial, Material, Membrane,
+    ProblemError, WarpingModes, element::free_faces, lattice::cube,
 };
 
 /// The six edges of a tetrahedron and, for each, the two vertices opposite to it.
@@ -86,7 +87,7 @@ pub struct Body {
     edges: Edges,
     tets: Tets,
     voxels: Vec<[u32; 8]>,
-    bricks: Bricks,
+    hex8s: Hex8s,
     coarse: Coarse,
     membranes: Membranes,
     attachments: Vec<Attachment>,
@@ -123,8 +124,8 @@ impl Body {
         }
 
         let mut masses = vec![0.0; mesh.vertices.len()];
-        let (mut voxels, mut bricks) = (Vec::new(), Vec::new());
-        let mut brick_of = vec![u32::MAX; mesh.tets.len()];
+        let (mut voxels, mut hex8s) = (Vec::new(), Vec::new());
+        let mut hex8_of = vec![u32::MAX; mesh.tets.len()];
         let mut local = LocalMaterials::beside(materials.len());
         for membrane in &mesh.membranes {
             membrane.add_mass(&mut masses);
@@ -190,13 +191,13 @@ impl Body {
                     let (vertices, side) = cube.ok_or(ProblemError::NotCubes { tet: block[0] })?;
                     let part = u32::from(mesh.tet_part[block[0]]);
                     let filling = filling_of(mesh, block);
-                    let mut brick = Brick {
+                    let mut hex8 = Hex8 {
                         vertices,
                         material: part,
                         side,
                         fraction,
                         filling,
-                        warping: Warping::NONE,
+                        warping: WarpingModes::NONE,
                         peak: material.first_peak(),
                     };
                     if material.is_local() {
@@ -206,16 +207,16 @@ impl Body {
                         let place = add(scale(0.5, add(ends[0], ends[1])), shift);
                         let number = mesh.tet_block[block[0]] as usize;
                         let here = material.at(number, place, side, &axes)?;
-                        brick.material = local.number(part, here);
+                        hex8.material = local.number(part, here);
                     }
                     // An eighth for each corner: the shares of the tetrahedra differ five to one between
-                    // corners, which a brick's modes would feel as a rattle.
+                    // corners, which an element's modes would feel as a rattle.
                     for vertex in vertices {
                         masses[vertex as usize] +=
                             material.density() * (fraction * side.powi(3)) / 8.0;
                     }
-                    brick_of[mesh.tet_block[block[0]] as usize] = bricks.len() as u32;
-                    bricks.push(brick);
+                    hex8_of[mesh.tet_block[block[0]] as usize] = hex8s.len() as u32;
+                    hex8s.push(hex8);
                 }
                 owned.push((first_new..found.len()).collect());
                 volume_constraints.push(constraints);
@@ -227,15 +228,15 @@ impl Body {
         }
         let (mut coarse, mut ties) = (Coarse::default(), Ties::default());
         if !mesh.coarse.is_empty() {
-            let number = |block: u32| brick_of.get(block as usize).copied().unwrap_or(u32::MAX);
+            let number = |block: u32| hex8_of.get(block as usize).copied().unwrap_or(u32::MAX);
             let groups: Vec<[u32; 8]> = mesh.coarse.iter().map(|g| g.map(number)).collect();
-            (coarse, bricks, ties) = Coarse::of(bricks, &groups, masses.len())?;
+            (coarse, hex8s, ties) = Coarse::of(hex8s, &groups, masses.len())?;
             ties.hand_over_numbers(&mut masses);
         }
         let edges: Vec<Edge> = edge_order.into_iter().map(|index| found[index]).collect();
         // The list of hyperelastic materials keeps the indices of the parts; the entry of a lattice is filled with that
-        // of a neighbor, which no brick uses. Materials that differ from voxel to voxel follow.
-        let hyperelastic: Vec<HyperelasticMaterial> = if bricks.is_empty() {
+        // of a neighbor, which no element uses. Materials that differ from voxel to voxel follow.
+        let hyperelastic: Vec<HyperelasticMaterial> = if hex8s.is_empty() {
             Vec::new()
         } else {
             let some = materials.iter().find_map(Material::hyperelastic);
@@ -246,17 +247,17 @@ impl Body {
                 .chain(local.materials)
                 .collect()
         };
-        let stuff = |brick: &Brick| &hyperelastic[brick.material as usize];
-        let stiffness = |brick: &Brick| stuff(brick).young() * brick.volume(stuff(brick));
-        let brick_energy = bricks.iter().map(stiffness).sum::<f64>();
+        let stuff = |hex8: &Hex8| &hyperelastic[hex8.material as usize];
+        let stiffness = |hex8: &Hex8| stuff(hex8).young() * hex8.volume(stuff(hex8));
+        let hex8_energy = hex8s.iter().map(stiffness).sum::<f64>();
         let edge_energy = edges
             .iter()
             .map(|e| e.stiffness * e.length.powi(2))
             .sum::<f64>();
         let mut strain_forces = edge_forces(&edges, masses.len());
-        for brick in &bricks {
-            for vertex in brick.vertices {
-                strain_forces[vertex as usize] += stiffness(brick) / brick.free_side(stuff(brick));
+        for hex8 in &hex8s {
+            for vertex in hex8.vertices {
+                strain_forces[vertex as usize] += stiffness(hex8) / hex8.free_side(stuff(hex8));
             }
         }
         let mut membranes = Membranes(mesh.membranes.clone());
@@ -267,14 +268,14 @@ impl Body {
         }
         let mut body = Self {
             unit_strain_force: strain_forces.iter().map(|f| f * f).sum::<f64>().sqrt(),
-            unit_strain_energy: (edge_energy + brick_energy) / 2.0,
+            unit_strain_energy: (edge_energy + hex8_energy) / 2.0,
             size: size_of(mesh),
             rest: mesh.vertices.clone(),
             masses,
             edges: Edges(edges),
             tets: Tets(tets),
             voxels,
-            bricks: Bricks::new(bricks, hyperelastic, ties),
+            hex8s: Hex8s::new(hex8s, hyperelastic, ties),
             coarse,
             membranes,
             attachments,
@@ -290,43 +291,45 @@ impl Body {
     /// Lets the free faces of hyperelastic voxels warp, except those `held` (axes for each vertex). `pressed` are the
     /// triangles under pressure.
     pub(crate) fn warp_unless(&mut self, held: &[[bool; 3]], pressed: &[[u32; 3]]) {
-        let (small, materials) = (self.small_bricks(), &self.bricks.materials);
+        let (small, materials) = (self.small_hex8s(), &self.hex8s.materials);
         let membranes = &self.membranes.0;
         let mut faces =
             free_faces::faces_of(small, materials, &self.voxels, membranes, held, pressed);
         if !self.coarse.is_empty() {
             faces = self.coarse.merged(&faces);
         }
-        for (brick, faces) in self.bricks.bricks.iter_mut().zip(&faces) {
-            brick.warping = faces.as_ref().map_or(Warping::NONE, Warping::of);
+        for (hex8, faces) in self.hex8s.hex8s.iter_mut().zip(&faces) {
+            hex8.warping = faces.as_ref().map_or(WarpingModes::NONE, WarpingModes::of);
         }
     }
 
     /// Sets the peak isochoric energies (J/m³) of voxels that soften.
     pub(crate) fn set_peaks(&mut self, peaks: &[f64]) {
-        self.bricks.set_peaks(peaks);
+        self.hex8s.set_peaks(peaks);
     }
 
     /// Sets the response of hyperelastic voxels within a time step; `None` for the elastic response.
     pub(crate) fn set_within(&mut self, within: Option<Vec<Within>>) {
-        self.bricks.set_within(within);
+        self.hex8s.set_within(within);
     }
 
     /// Sets the free stretch of all materials to that of a time (s).
     pub(crate) fn begin(&mut self, time: f64) {
-        for material in &mut self.bricks.materials {
+        for material in &mut self.hex8s.materials {
             material.begin(time);
         }
     }
 
     /// The time in s after which no free stretch changes.
-    pub fn growth_end(&self) -> f64 {
-        self.growths().map(Growth::end).fold(0.0, f64::max)
+    pub fn eigenstrain_end(&self) -> f64 {
+        self.eigenstrains()
+            .map(Eigenstrain::end)
+            .fold(0.0, f64::max)
     }
 
-    fn growths(&self) -> impl Iterator<Item = &Growth> {
-        let materials = self.bricks.materials.iter();
-        materials.flat_map(HyperelasticMaterial::growths)
+    fn eigenstrains(&self) -> impl Iterator<Item = &Eigenstrain> {
+        let materials = self.hex8s.materials.iter();
+        materials.flat_map(HyperelasticMaterial::eigenstrains)
     }
 
     /// Positions at rest in m.
@@ -377,20 +380,20 @@ impl Body {
 
     /// All terms of the energy, block by block.
     pub fn terms(&self) -> impl Iterator<Item = &dyn Term> {
-        let own: [&dyn Term; 4] = [&self.edges, &self.tets, &self.bricks, &self.membranes];
+        let own: [&dyn Term; 4] = [&self.edges, &self.tets, &self.hex8s, &self.membranes];
         own.into_iter().chain(self.attached())
     }
 
     /// All terms but hyperelastic voxels, whose response within a step depends on more than positions
     /// ([`crate::elastic::respond`]).
-    pub fn terms_but_bricks(&self) -> impl Iterator<Item = &dyn Term> {
+    pub fn terms_but_hex8s(&self) -> impl Iterator<Item = &dyn Term> {
         let own: [&dyn Term; 3] = [&self.edges, &self.tets, &self.membranes];
         own.into_iter().chain(self.attached())
     }
 
     /// All terms but membranes, whose stiffness some solvers treat separately.
     pub fn terms_but_membranes(&self) -> impl Iterator<Item = &dyn Term> {
-        let own: [&dyn Term; 3] = [&self.edges, &self.tets, &self.bricks];
+        let own: [&dyn Term; 3] = [&self.edges, &self.tets, &self.hex8s];
         own.into_iter().chain(self.attached())
     }
 
@@ -407,26 +410,26 @@ impl Body {
     }
 
     /// All hyperelastic voxels as one block.
-    pub fn brick_term(&self) -> &Bricks {
-        &self.bricks
+    pub fn hex8_term(&self) -> &Hex8s {
+        &self.hex8s
     }
 
     /// Ties of the hanging nodes: which vertices follow others.
     pub fn ties(&self) -> &Ties {
-        &self.bricks.ties
+        &self.hex8s.ties
     }
 
-    /// The hyperelastic voxels of the mesh: those of [`Body::bricks`], but with the eight small ones in place of each
+    /// The hyperelastic voxels of the mesh: those of [`Body::hex8s`], but with the eight small ones in place of each
     /// coarse element.
-    pub fn small_bricks(&self) -> &[Brick] {
+    pub fn small_hex8s(&self) -> &[Hex8] {
         if self.coarse.is_empty() {
-            &self.bricks.bricks
+            &self.hex8s.hex8s
         } else {
             &self.coarse.small
         }
     }
 
-    /// Index in [`Body::bricks`] of the element that a voxel of the mesh is, or is a part of.
+    /// Index in [`Body::hex8s`] of the element that a voxel of the mesh is, or is a part of.
     pub fn element_of(&self, small: usize) -> usize {
         let element = self.coarse.element.get(small);
         element.map_or(small, |element| *element as usize)
@@ -454,13 +457,13 @@ impl Body {
     }
 
     /// All hyperelastic voxels, blocks of one color after the other.
-    pub fn bricks(&self) -> &[Brick] {
-        &self.bricks.bricks
+    pub fn hex8s(&self) -> &[Hex8] {
+        &self.hex8s.hex8s
     }
 
     /// The material of a hyperelastic voxel.
-    pub fn material_of(&self, brick: &Brick) -> &HyperelasticMaterial {
-        self.bricks.material_of(brick)
+    pub fn material_of(&self, hex8: &Hex8) -> &HyperelasticMaterial {
+        self.hex8s.material_of(hex8)
     }
 
     /// All membranes.

@@ -59,7 +59,7 @@ impl<M: Debug + Clone + PartialEq + Send + Sync + 'static> Remembered for M {
 ///
 /// Its energy is that of the Lagrange multipliers and the friction anchors that it holds (augmented Lagrangian). A
 /// solver finds an equilibrium under these, lets them be [corrected](Contact::correct) until that changes little, and
-/// then [accepts](Contact::accept) the state or [goes back](Contact::go_back) to the last accepted one.
+/// then [accepts](Contact::accept) the state or [goes back](Contact::rollback) to the last accepted one.
 pub trait Contact: Term + Any {
     /// Clones the contact with its memory.
     fn boxed(&self) -> Box<dyn Contact>;
@@ -77,7 +77,7 @@ pub trait Contact: Term + Any {
     fn remember(&mut self, memory: &ContactMemory);
 
     /// Clears the memory; `positions` (m) become the accepted state.
-    fn start(&mut self, positions: &[Vec3]);
+    fn reset(&mut self, positions: &[Vec3]);
 
     /// Updates the contact pairs at `positions`. Returns whether the pattern of the stiffness has changed: it couples
     /// vertices that it did not before, or no longer many that it did. To be called before the stiffness is assembled.
@@ -85,7 +85,7 @@ pub trait Contact: Term + Any {
 
     /// Announces a new solve, or an initial guess for one: the next calls of [`follow`](Contact::follow) search for all
     /// contact pairs anew, not only near the last ones.
-    fn look_anew(&mut self);
+    fn relist(&mut self);
 
     /// Updates the multipliers to the forces at `positions`, an equilibrium. Returns whether they were converged
     /// already, and nothing has changed. Forces of the size `negligible` (N) do not matter. `precision` scales the
@@ -100,7 +100,7 @@ pub trait Contact: Term + Any {
 
     /// Releases bonds whose strength the forces at `positions`, an equilibrium, exceed. Returns whether any was
     /// released; its load goes to the others then.
-    fn let_go(&mut self, positions: &[Vec3]) -> bool;
+    fn release_bonds(&mut self, positions: &[Vec3]) -> bool;
 
     /// Tests whether the solution depends on the load path, as with friction and with bonds that may break.
     fn depends_on_way(&self) -> bool;
@@ -111,7 +111,7 @@ pub trait Contact: Term + Any {
     /// Accepts `positions` as the end of a step that was not solved to convergence: the multipliers are updated to the
     /// forces there, once. Returns `false`, and accepts nothing, where surfaces overlap so deeply that the side from
     /// which they came is no longer known.
-    fn take_step(&mut self, positions: &[Vec3]) -> bool {
+    fn commit_partial(&mut self, positions: &[Vec3]) -> bool {
         self.accept(positions);
         true
     }
@@ -128,7 +128,7 @@ pub trait Contact: Term + Any {
     }
 
     /// Restores the last accepted state.
-    fn go_back(&mut self);
+    fn rollback(&mut self);
 
     /// Tests whether the load path is being recorded, to be replayed.
     fn is_recorded(&self) -> bool {
@@ -159,7 +159,7 @@ pub trait RecordedContact: Contact {
     /// The contact state at a moment.
     type Memory: Clone + PartialEq + Send + Sync;
 
-    /// Starts recording at the next [`start`](Contact::start).
+    /// Starts recording at the next [`reset`](Contact::reset).
     fn record(&mut self);
 
     /// Takes the recorded moments of the accepted path, and stops recording.

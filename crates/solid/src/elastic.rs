@@ -2,8 +2,8 @@
 
 use crate::assembly::{ElementsVisitor, Visitor};
 use crate::body::Body;
-use crate::brick::{Tangent, Within};
-use crate::terms::Term;
+use crate::element::hex8::{Tangent, Within};
+use crate::term::Term;
 use crate::vector::Vec3;
 
 /// The elastic energy in J.
@@ -13,19 +13,19 @@ pub fn energy(body: &Body, positions: &[Vec3]) -> f64 {
 
 /// The elastic energy in J without the viscous potential of a time step.
 pub fn stored_energy(body: &Body, positions: &[Vec3]) -> f64 {
-    if body.brick_term().is_elastic() {
+    if body.hex8_term().is_elastic() {
         return energy(body, positions);
     }
-    let others = body.terms_but_bricks();
+    let others = body.terms_but_hex8s();
     let others: f64 = others.map(|term| term.energy(positions)).sum();
-    body.brick_term().elastic_energy(positions) + others
+    body.hex8_term().elastic_energy(positions) + others
 }
 
 /// Adds the elastic forces in N, minus the gradient of [`stored_energy`]: without viscous stress.
 pub fn add_stored_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
-    body.terms_but_bricks()
+    body.terms_but_hex8s()
         .for_each(|term| term.add_forces(positions, forces));
-    body.brick_term().add_elastic_forces(positions, forces);
+    body.hex8_term().add_elastic_forces(positions, forces);
 }
 
 /// Adds the elastic forces in N, minus the gradient of [`energy`].
@@ -44,12 +44,12 @@ pub fn respond(
     pressures: &mut [f64],
 ) -> (f64, f64) {
     let mut other = 0.0;
-    for term in body.terms_but_bricks() {
+    for term in body.terms_but_hex8s() {
         other += term.energy(positions);
         term.add_forces(positions, forces);
     }
-    let bricks = body.brick_term();
-    let (elastic, potential) = bricks.respond(positions, within, forces, pressures);
+    let hex8s = body.hex8_term();
+    let (elastic, potential) = hex8s.respond(positions, within, forces, pressures);
     (other + elastic, other + potential)
 }
 
@@ -73,11 +73,11 @@ pub fn visit_tangent(
     tangent: Tangent,
     visit: Visitor<'_>,
 ) {
-    for term in body.terms_but_bricks() {
+    for term in body.terms_but_hex8s() {
         term.visit_tangent(positions, tangent, visit);
     }
-    let bricks = body.brick_term();
-    bricks.visit_tangent_within(positions, within, tangent, visit);
+    let hex8s = body.hex8_term();
+    hex8s.visit_tangent_within(positions, within, tangent, visit);
 }
 
 /// Computes, for every vertex, a bound in N/m on the row sum of the stiffness matrix at `positions`, membranes taut.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::assembly::{Visitor, check_indices};
 use crate::fluid::Coupling;
-use crate::loads::Vertices;
+use crate::loads::external_force::Vertices;
 use crate::vector::Vec3;
 use crate::{
     Body, Clamp, Contact, Floor, Fluid, History, Load, LoadKind, ProblemError, Rigid, Term,
@@ -216,8 +216,8 @@ impl Problem {
         self.add_scaled_loads(positions, &|load| load.history.at(time), forces);
     }
 
-    /// Adds the external forces (N) at `time` (s) except those of length-controlled tendons, whose stiffness would take a
-    /// prescribed motion for a vibration. Forces of a fluid are not added.
+    /// Adds the external forces (N) at `time` (s) except those of length-controlled tendons, whose stiffness would take
+    /// a prescribed motion for a vibration. Forces of a fluid are not added.
     pub fn add_soft_loads(&self, positions: &[Vec3], time: f64, forces: &mut [Vec3]) {
         let positions = &*self.seen(positions);
         let on = self.vertices(positions);
@@ -289,7 +289,7 @@ impl Problem {
     /// Tests whether the solution depends on the load path.
     pub fn depends_on_way(&self) -> bool {
         let contact = self.contact().is_some_and(Contact::depends_on_way);
-        let softens = self.body.brick_term().soften();
+        let softens = self.body.hex8_term().soften();
         contact || softens || self.loads.iter().any(|load| load.kind.depends_on_way())
     }
 

@@ -1,7 +1,7 @@
 //! Interface of steppers, which move a problem through time while its caller changes loads and pulls at it.
 
 use crate::breakdown::Breakdown;
-use crate::hands::Grab;
+use crate::loads::grabs::Grab;
 use crate::vector::Vec3;
 use crate::{Problem, ProblemError, State};
 

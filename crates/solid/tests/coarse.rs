@@ -4,7 +4,7 @@ use voxsoft_solid::conformance::check_term;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{
     Body, Clamp, Gravity, HyperelasticMaterial, Load, Mesh, Pressure, Problem, ProblemError,
-    Warping, elastic,
+    WarpingModes, elastic,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 
@@ -87,7 +87,7 @@ fn voxels_of_two_sizes_keep_the_laws_of_a_term() {
         .map(|&x| add(stretched(x), wave(x)))
         .collect();
     body.ties().follow(&mut positions);
-    check_term(body.brick_term(), body.rest(), &positions).unwrap();
+    check_term(body.hex8_term(), body.rest(), &positions).unwrap();
 }
 
 #[test]
@@ -214,20 +214,20 @@ fn a_face_between_sizes_is_not_free() {
     // One large cube at the end of small ones.
     let mesh = boxed([2, 1, 1], |[i, ..]| i == 0);
     let body = body(&mesh);
-    let large = body.bricks().iter().find(|b| b.side > 1.5).unwrap();
+    let large = body.hex8s().iter().find(|b| b.side > 1.5).unwrap();
     assert_eq!(large.side, 2.0);
     // Free on all sides but one, like the end of a bar of its size.
-    let mut faces = voxsoft_solid::Faces {
+    let mut faces = voxsoft_solid::FaceConditions {
         free: [[true; 2]; 3],
         ..Default::default()
     };
     faces.free[0][1] = false;
-    assert_eq!(large.warping, Warping::of(&faces));
+    assert_eq!(large.warping, WarpingModes::of(&faces));
     // The small voxels are as they are without it.
     let plain = boxed([2, 1, 1], |_| false);
     let plain = self::body(&plain);
-    for brick in body.bricks().iter().filter(|b| b.side < 1.5) {
-        assert!(plain.bricks().contains(brick));
+    for hex8 in body.hex8s().iter().filter(|b| b.side < 1.5) {
+        assert!(plain.hex8s().contains(hex8));
     }
 }
 

@@ -4,9 +4,9 @@ use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::conformance::{Broken, Law, check_load, check_term};
 use voxsoft_solid::vector::{Vec3, add, axpy, norm, scale, sub};
 use voxsoft_solid::{
-    Body, ExternalForce, Fiber, Gravity, HyperelasticMaterial, Images, LatticeMaterial, Material,
-    Membrane, MembraneMaterial, Membranes, Mesh, Mirrored, PointForces, Pressure, ProblemError,
-    Strain, Term, Vertices, elastic,
+    AssumedStrain, Body, ExternalForce, Fiber, Gravity, HyperelasticMaterial, Images,
+    LatticeMaterial, Material, Membrane, MembraneMaterial, Membranes, Mesh, Mirrored, PointForces,
+    Pressure, ProblemError, Term, Vertices, elastic,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 
@@ -232,13 +232,13 @@ impl Term for Springs {
     }
 
     /// Prediction without data, with the fault [`Fault::Prediction`].
-    fn predict(&self, _: &[Vec3], _: &[Vec3]) -> Option<Strain> {
-        (self.1 == Fault::Prediction).then(|| Strain::Numbers(Vec::new()))
+    fn predict(&self, _: &[Vec3], _: &[Vec3]) -> Option<AssumedStrain> {
+        (self.1 == Fault::Prediction).then(|| AssumedStrain::Numbers(Vec::new()))
     }
 
-    fn add_predicted_forces(&self, _: &Strain, _: &[Vec3], _: &mut [Vec3]) {}
+    fn add_predicted_forces(&self, _: &AssumedStrain, _: &[Vec3], _: &mut [Vec3]) {}
 
-    fn visit_predicted_stiffness(&self, _: &Strain, _: &[Vec3], _: Visitor<'_>) {}
+    fn visit_predicted_stiffness(&self, _: &AssumedStrain, _: &[Vec3], _: Visitor<'_>) {}
 }
 
 #[cfg(feature = "threads")]

@@ -87,7 +87,7 @@ proptest! {
             .zip(&moves)
             .map(|(x, m)| std::array::from_fn(|k| 1.1 * x[k] + m[k]))
             .collect();
-        check_term(problem.body().brick_term(), rest, &places).unwrap();
+        check_term(problem.body().hex8_term(), rest, &places).unwrap();
     }
 }
 
@@ -127,12 +127,12 @@ fn initial_peak_softens_from_the_beginning() {
     let mut before = problem(soft(YEOH, 0.0));
     let far = drawn(&before, 1.5, 0.0);
     accept(&mut before, &far);
-    let peaks = before.body().brick_term().peaks().unwrap();
+    let peaks = before.body().hex8_term().peaks().unwrap();
     assert!((peaks[0] - peaks[1]).abs() < 1e-12);
     let conditioned = problem(soft(YEOH, peaks[0]));
     let there = drawn(&before, 1.2, 0.03);
     let pair = [&before, &conditioned].map(|problem| forces(problem, &there));
     assert!(largest_difference(&pair[0], &pair[1]) < 1e-12);
-    assert!(problem(rubber(YEOH)).body().brick_term().peaks().is_none());
+    assert!(problem(rubber(YEOH)).body().hex8_term().peaks().is_none());
     assert!(before.depends_on_way() && !problem(rubber(YEOH)).depends_on_way());
 }

@@ -1,7 +1,7 @@
 //! Strips against plain loops over the same constraints.
 
 use proptest::prelude::*;
-use voxsoft_solid::strips::{Columns, Strips, Sweep};
+use voxsoft_solid::lattice::strips::{Columns, Strips, Sweep};
 use voxsoft_solid::vector::{Vec3, axpy, dot, sub};
 use voxsoft_solid::{Body, LatticeMaterial, Mesh, elastic};
 use voxsoft_voxel::{Grid, tet_mesh};

@@ -37,40 +37,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod adjoint;
-mod along;
-mod bordered;
-mod control;
-mod coupled;
-mod direct;
 mod ensemble;
-mod equilibrium;
-mod implicit;
 mod inertia;
-mod iterative;
-mod loose;
-mod modes;
-mod multigrid;
-mod ordering;
+mod linear;
+mod motion;
 mod path;
-mod point;
-mod rank;
-mod row_pattern;
 mod sensitivity;
-mod settings;
-mod settle;
-mod snap;
-mod step_length;
-mod system;
-mod transient;
-mod volume;
 
-pub use adjoint::{AdjointError, adjoint};
 pub use ensemble::{Ensemble, Settled, Variant};
-pub use implicit::{Implicit, ImplicitSettings};
-pub use modes::{Mode, modes};
-pub use path::{Start, solve};
-pub use sensitivity::{Varied, sensitivities};
-pub use settings::{Answer, Control, LinearSolver, PathPoint, Settings};
-pub use transient::{Motion, Transient};
+pub use linear::options::LinearSolver;
+pub use motion::implicit::{Implicit, ImplicitSettings};
+pub use motion::modes::{Mode, modes};
+pub use motion::transient::{Motion, Transient};
+pub use path::follow::{Start, solve};
+pub use path::settings::{Answer, Control, PathPoint, Settings};
+pub use sensitivity::adjoint::{AdjointError, adjoint};
+pub use sensitivity::parameters::{Varied, sensitivities};
 pub use voxsoft_solid::Status;

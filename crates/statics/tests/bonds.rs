@@ -9,15 +9,17 @@ use common::touching::{
     NONE, YOUNG, add_box, add_rigid, corners_of, join, moved, pairs_at, touch_of,
 };
 use common::{block, rubber, vertices_where};
-use voxsoft_contact::touch::bonds::{Bond, Side, Solid};
-use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Description, Surface, Touch};
+use voxsoft_contact::surface::Surface;
+use voxsoft_contact::surface_contact::bonds::Bond;
+use voxsoft_contact::surface_contact::rigid::Frame;
+use voxsoft_contact::surface_contact::tie::{Side, Solid};
+use voxsoft_contact::surface_contact::{Description, SurfaceContact};
 use voxsoft_solid::balance::balance;
 use voxsoft_solid::conformance::check_term;
 use voxsoft_solid::matrix::IDENTITY;
 use voxsoft_solid::vector::{Vec3, norm, scale, sub};
 use voxsoft_solid::{
-    Body, Brick, Clamp, Contact, Load, Mesh, Problem, Progress, Springs, Status, Warping,
+    Body, Clamp, Contact, Hex8, Load, Mesh, Problem, Progress, Springs, Status, WarpingModes,
 };
 use voxsoft_statics::{Answer, Settings, solve};
 
@@ -61,7 +63,7 @@ fn bonded(
         voxel: 3e-3,
         young: YOUNG,
     };
-    let touch = Touch::new(description, &mesh.vertices).unwrap();
+    let touch = SurfaceContact::new(description, &mesh.vertices).unwrap();
     let problem = Problem::new(body, clamps, loads, None).unwrap();
     problem.with_contact(Box::new(touch)).unwrap()
 }
@@ -113,12 +115,12 @@ fn bonded_faces_do_not_warp() {
     // Voxels in the middle of the bonded faces have no other outer face.
     for corner in [[4e-3; 3], [3e-3, 3e-3, 8e-3]] {
         let middle = |body: &Body| {
-            let lowest = |brick: &&Brick| body.rest()[brick.vertices[0] as usize];
-            let is_there = |brick: &&Brick| norm(sub(lowest(brick), corner)) < 1e-6;
-            *body.bricks().iter().find(is_there).unwrap()
+            let lowest = |hex8: &&Hex8| body.rest()[hex8.vertices[0] as usize];
+            let is_there = |hex8: &&Hex8| norm(sub(lowest(hex8), corner)) < 1e-6;
+            *body.hex8s().iter().find(is_there).unwrap()
         };
-        assert_eq!(middle(problem.body()).warping, Warping::NONE);
-        assert_ne!(middle(&apart).warping, Warping::NONE);
+        assert_eq!(middle(problem.body()).warping, WarpingModes::NONE);
+        assert_ne!(middle(&apart).warping, WarpingModes::NONE);
     }
 }
 

@@ -6,7 +6,8 @@ use std::ops::ControlFlow;
 
 use common::touching::{NONE, add_box, join, moved, pairs_at, touching};
 use common::{block, mesh_of, rubber, vertices_where};
-use voxsoft_contact::touch::{PairReport, Surface};
+use voxsoft_contact::surface::Surface;
+use voxsoft_contact::surface_contact::PairReport;
 use voxsoft_solid::balance::balance;
 use voxsoft_solid::vector::{Vec3, norm};
 use voxsoft_solid::{Body, Clamp, Mesh, Problem, Status};

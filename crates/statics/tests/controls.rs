@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use common::touching::{NONE, add_box, moved, pairs_at, touching};
 use common::{block, vertices_where};
-use voxsoft_contact::touch::Surface;
+use voxsoft_contact::surface::Surface;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Clamp, History, Load, Mesh, Pressure, Problem, Spring, Springs, Status};
 use voxsoft_statics::{Answer, Control, Settings, Start, solve};

@@ -389,9 +389,9 @@ fn free_fall_is_exact_from_the_first_step() {
 fn flattest(run: &Implicit) -> f64 {
     let positions = &run.state().positions;
     let body = run.problem().body();
-    let bricks = body.bricks().iter();
-    bricks
-        .map(|brick| determinant(&brick.deformation(body.material_of(brick), positions)))
+    let hex8s = body.hex8s().iter();
+    hex8s
+        .map(|hex8| determinant(&hex8.deformation(body.material_of(hex8), positions)))
         .fold(f64::INFINITY, f64::min)
 }
 

@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use common::touching::{NONE, YOUNG, add_box, add_rigid, corners_of, join};
 use common::{block, rubber, vertices_where};
-use voxsoft_contact::touch::live::LiveTouch;
-use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Description, Surface};
+use voxsoft_contact::surface::Surface;
+use voxsoft_contact::surface_contact::Description;
+use voxsoft_contact::surface_contact::live::LiveSurfaceContact;
+use voxsoft_contact::surface_contact::rigid::Frame;
 use voxsoft_solid::matrix::IDENTITY;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{
@@ -82,7 +83,7 @@ impl Scene {
             voxel: SIDE,
             young: YOUNG,
         };
-        let touch = LiveTouch::new(description, body.rest()).unwrap();
+        let touch = LiveSurfaceContact::new(description, body.rest()).unwrap();
         let springs = frames.iter().flat_map(|(frame, first)| {
             let stiffness = frame.stiffness(&frame.vertices(), YOUNG, SIDE);
             frame.springs(*first, stiffness)
@@ -128,14 +129,14 @@ fn mean(vectors: &[Vec3]) -> Vec3 {
 }
 
 /// Contact of a run.
-fn live(run: &Implicit) -> &LiveTouch {
+fn live(run: &Implicit) -> &LiveSurfaceContact {
     let contact = run.problem().contact().unwrap();
     contact.found_by().downcast_ref().unwrap()
 }
 
 /// Contact force on the body, N.
 fn force_on_body(run: &Implicit) -> Vec3 {
-    let pairs = live(run).touch().pairs(&run.state().positions);
+    let pairs = live(run).contact().pairs(&run.state().positions);
     pairs
         .iter()
         .fold([0.0; 3], |sum, pair| add(sum, pair.force))

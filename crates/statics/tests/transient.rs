@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use common::touching::{NONE, YOUNG, add_box, add_rigid, corners_of, join, touching};
 use common::{block, rubber, vertices_where};
-use voxsoft_contact::touch::Surface;
-use voxsoft_contact::touch::rigid::Frame;
+use voxsoft_contact::surface::Surface;
+use voxsoft_contact::surface_contact::rigid::Frame;
 use voxsoft_solid::matrix::IDENTITY;
 use voxsoft_solid::vector::{Vec3, add, cross, norm, scale, sub};
 use voxsoft_solid::{

@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use textbook::Textbook;
 use voxsoft_solid::balance::balance;
-use voxsoft_solid::strips::{Columns, Strips, Sweep};
+use voxsoft_solid::lattice::strips::{Columns, Strips, Sweep};
 use voxsoft_solid::vector::{Vec3, norm, sub};
 use voxsoft_solid::{Body, Clamp, LatticeMaterial, Load, Mesh, Problem, State};
 use voxsoft_voxel::{Grid, tet_mesh};

@@ -1,7 +1,7 @@
 //! Vertex updates of a step, axis by axis on columns, with SIMD dispatch at run time.
 
 use pulp::{Simd, WithSimd};
-use voxsoft_solid::strips::Columns;
+use voxsoft_solid::lattice::strips::Columns;
 
 /// Number of parallel partial sums: the order of a sum does not depend on the processor. Columns are padded to a
 /// multiple.

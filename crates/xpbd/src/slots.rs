@@ -1,6 +1,6 @@
 //! Loads, clamps and floor of a problem on the slots of its strips.
 
-use voxsoft_solid::strips::{Columns, Strips};
+use voxsoft_solid::lattice::strips::{Columns, Strips};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{ExternalForce, Load, Problem, Vertices};
 

@@ -1,4 +1,4 @@
-use voxsoft_solid::strips::{Columns, Strips};
+use voxsoft_solid::lattice::strips::{Columns, Strips};
 use voxsoft_solid::vector::{Vec3, axpy, dot, scale};
 use voxsoft_solid::{Problem, elastic};
 

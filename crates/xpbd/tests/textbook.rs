@@ -7,7 +7,7 @@ mod common;
 
 use common::{beam, block, problem, where_};
 use textbook::Textbook;
-use voxsoft_solid::strips::{Columns, Strips, Sweep};
+use voxsoft_solid::lattice::strips::{Columns, Strips, Sweep};
 use voxsoft_solid::vector::{Vec3, axpy, norm, scale, sub};
 use voxsoft_solid::{Clamp, Problem};
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use voxsoft_solid::vector::{Vec3, dot, sub};
 
-use crate::touch::Carried;
+use crate::surface::Carried;
 
 /// Tolerance, in voxels, within which a point counts as on the face of a voxel or on its midplane: far less than the
 /// clearance of contact, and fewer vertices carry it then.

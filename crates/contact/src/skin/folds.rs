@@ -6,7 +6,7 @@ use voxsoft_solid::vector::{Vec3, axpy, dot, norm, sub};
 
 use super::TRIANGLES;
 use super::crossing::Crossing;
-use crate::touch::gap::doubled;
+use crate::gap::doubled;
 
 /// Smallest area of a triangle, doubled, in squares of a voxel (a quarter on flat faces): one of a thousandth of a
 /// voxel each way, below which its normal is rounding.

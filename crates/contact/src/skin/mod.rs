@@ -23,9 +23,9 @@ use std::array;
 
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 
-use crate::touch::gap::{doubled, unit};
-use crate::touch::surface::{Face, outer_faces};
-use crate::touch::{Carried, Surface};
+use crate::gap::{doubled, unit};
+use crate::surface::{Carried, Surface};
+use crate::surface::{Face, outer_faces};
 pub(crate) use carrier::Carriers;
 use crossing::{Crossing, Field};
 use folds::Folds;

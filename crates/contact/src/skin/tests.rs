@@ -7,8 +7,8 @@ use proptest::prelude::*;
 use voxsoft_solid::vector::{Vec3, cross, dot, norm, sub};
 
 use super::Skin;
-use crate::touch::Surface;
-use crate::touch::gap::doubled;
+use crate::gap::doubled;
+use crate::surface::Surface;
 use crate::tree::Tree;
 use crate::triangles::{Meeting, meeting};
 

@@ -1,7 +1,7 @@
 use std::collections::HashSet;
 
+use super::law::{Law, Outcome, Subject};
 use super::numbers::{ROUNDING, SLACK, STEP, TRIES, distance, extent, inner, plus, random, size};
-use super::{Law, Outcome, Subject};
 use crate::assembly::add_product;
 use crate::vector::Vec3;
 use crate::{ExternalForce, Vertices};

@@ -1,7 +1,7 @@
 use std::ops::ControlFlow;
 
+use super::law::{Law, Outcome, Subject};
 use super::numbers::{ROUNDING, bits, extent, on_threads};
-use super::{Law, Outcome, Subject};
 use crate::balance::{balance, total_load};
 use crate::vector::{Vec3, add, norm, sub};
 use crate::{Problem, Solution, Solver, Status};

@@ -1,5 +1,5 @@
+use super::law::{Law, Outcome, Subject};
 use super::numbers::{bits, distance, on_threads};
-use super::{Law, Outcome, Subject};
 use crate::balance::balance_of_forces;
 use crate::vector::{add, norm, sub};
 use crate::{Ask, LiveStatus, Method, Stepper, elastic};

@@ -1,10 +1,10 @@
 use std::collections::HashSet;
 
+use super::law::{Law, Outcome, Subject};
 use super::numbers::{
     ROUNDING, SLACK, STEP, TRIES, bits, carried, distance, extent, inner, on_threads, plus, random,
     size, turned,
 };
-use super::{Law, Outcome, Subject};
 use crate::Term;
 use crate::assembly::{Visitor, add_product};
 use crate::vector::Vec3;

@@ -15,7 +15,7 @@ pub(super) struct Piece {
 #[derive(Debug, Clone)]
 pub(super) enum Element {
     /// A hyperelastic element of the body, and the voxel of the mesh that it is or contains.
-    Brick(u32, u32),
+    Hex8(u32, u32),
     Lattice(Vec<Piece>),
 }
 
@@ -23,13 +23,11 @@ impl Element {
     /// Calls `found` with the corners, the rest volume in m³ and the element, for all of a body: first hyperelastic
     /// voxels, then those of lattices, then tetrahedra that are no part of a voxel.
     pub fn for_each(body: &Body, mut found: impl FnMut(&[u32], f64, &dyn Fn() -> Self)) {
-        for (index, brick) in body.small_bricks().iter().enumerate() {
+        for (index, hex8) in body.small_hex8s().iter().enumerate() {
             let element = body.element_of(index) as u32;
-            found(
-                &brick.vertices,
-                brick.volume(body.material_of(brick)),
-                &|| Self::Brick(element, index as u32),
-            );
+            found(&hex8.vertices, hex8.volume(body.material_of(hex8)), &|| {
+                Self::Hex8(element, index as u32)
+            });
         }
         if body.tets().is_empty() {
             return;

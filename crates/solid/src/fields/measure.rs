@@ -56,9 +56,9 @@ impl Element {
     /// Derivatives of the mean deformation gradient by each vertex: `F = Σ x ⊗ g`.
     pub fn gradients(&self, body: &Body) -> Vec<(u32, Vec3)> {
         let pieces = match self {
-            Self::Brick(index, _) => {
-                let brick = &body.bricks()[*index as usize];
-                return brick.gradients(body.material_of(brick)).to_vec();
+            Self::Hex8(index, _) => {
+                let hex8 = &body.hex8s()[*index as usize];
+                return hex8.gradients(body.material_of(hex8)).to_vec();
             }
             Self::Lattice(pieces) => pieces,
         };
@@ -77,9 +77,9 @@ impl Element {
     /// The mean deformation gradient.
     pub fn deformation(&self, body: &Body, positions: &[Vec3]) -> Mat3 {
         let mut sum = [[0.0; 3]; 3];
-        if let Self::Brick(index, _) = self {
-            let brick = &body.bricks()[*index as usize];
-            return brick.deformation(body.material_of(brick), positions);
+        if let Self::Hex8(index, _) = self {
+            let hex8 = &body.hex8s()[*index as usize];
+            return hex8.deformation(body.material_of(hex8), positions);
         }
         for (vertex, gradient) in self.gradients(body) {
             add_outer(&mut sum, 1.0, positions[vertex as usize], gradient);
@@ -90,9 +90,9 @@ impl Element {
     /// The smallest volume ratio, see [`Measure::volume_ratio`].
     pub fn volume_ratio(&self, body: &Body, positions: &[Vec3]) -> f64 {
         match self {
-            Self::Brick(index, _) => {
-                let brick = &body.bricks()[*index as usize];
-                brick.smallest_volume_ratio(body.material_of(brick), positions)
+            Self::Hex8(index, _) => {
+                let hex8 = &body.hex8s()[*index as usize];
+                hex8.smallest_volume_ratio(body.material_of(hex8), positions)
             }
             Self::Lattice(pieces) => pieces
                 .iter()
@@ -107,9 +107,9 @@ impl Element {
     /// The Cauchy stress in Pa of an element that is not inverted.
     fn upright_stress(&self, body: &Body, positions: &[Vec3]) -> Mat3 {
         let pieces = match self {
-            Self::Brick(index, _) => {
-                let brick = &body.bricks()[*index as usize];
-                return brick.cauchy_stress(body.material_of(brick), positions);
+            Self::Hex8(index, _) => {
+                let hex8 = &body.hex8s()[*index as usize];
+                return hex8.cauchy_stress(body.material_of(hex8), positions);
             }
             Self::Lattice(pieces) => pieces,
         };
@@ -141,10 +141,10 @@ impl Element {
     /// The energy density, see [`Measure::energy_density`].
     pub fn energy_density(&self, body: &Body, positions: &[Vec3]) -> f64 {
         let pieces = match self {
-            Self::Brick(index, _) => {
-                let brick = &body.bricks()[*index as usize];
-                let material = body.material_of(brick);
-                return brick.energy(material, positions) / brick.volume(material);
+            Self::Hex8(index, _) => {
+                let hex8 = &body.hex8s()[*index as usize];
+                let material = body.material_of(hex8);
+                return hex8.energy(material, positions) / hex8.volume(material);
             }
             Self::Lattice(pieces) => pieces,
         };

@@ -160,7 +160,7 @@ impl Fields {
         let blocks = mesh.tets.iter().zip(&mesh.tet_block);
         let of: HashMap<[u32; 4], u32> = blocks.map(|(tet, &b)| (sorted(*tet), b)).collect();
         let block = |element: &Element| match element {
-            Element::Brick(_, small) => tets_of(&body.small_bricks()[*small as usize].vertices)
+            Element::Hex8(_, small) => tets_of(&body.small_hex8s()[*small as usize].vertices)
                 .find_map(|tet| of.get(&sorted(tet)).copied())
                 .expect("a voxel of the mesh"),
             Element::Lattice(pieces) => of[&sorted(body.tets()[pieces[0].tet as usize].vertices)],

@@ -20,10 +20,10 @@ mod small;
 
 use std::sync::Arc;
 
-pub use self::motion::State as FluidMemory;
-use self::motion::State;
+pub use self::motion::FluidMemory;
 use crate::assembly::Visitor;
-use crate::loads::{ExternalForce, Pressure, Vertices};
+use crate::loads::Pressure;
+use crate::loads::external_force::{ExternalForce, Vertices};
 use crate::vector::{Vec3, axpy};
 use crate::{History, Load, LoadKind, PointForces, ProblemError};
 
@@ -80,7 +80,7 @@ pub struct Fluid {
     part: Load,
     /// Auxiliary load whose factor is that fraction times the time in s, up to the end of all histories.
     clock: Load,
-    state: State,
+    state: FluidMemory,
 }
 
 /// The low-rank part of the stiffness, which couples all of a chamber's wall: `Σ gᵢ Cᵢⱼ gⱼᵀ`.
@@ -124,12 +124,12 @@ impl Fluid {
             walls: Arc::new(walls),
             part: nothing(History::constant()),
             clock: nothing(clock),
-            state: State {
+            state: FluidMemory {
                 exchanged: vec![0.0; count],
                 before: vec![0.0; count],
                 work: vec![0.0; count],
                 energy: vec![0.0; count],
-                ..State::default()
+                ..FluidMemory::default()
             },
         })
     }

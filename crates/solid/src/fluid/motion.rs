@@ -6,7 +6,7 @@ use crate::vector::Vec3;
 
 /// Memory of a fluid between steps and iterations.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct State {
+pub struct FluidMemory {
     pub(super) step: Option<Step>,
     /// Pressures carried by Newton's method.
     pub(super) carried: Option<Vec<f64>>,
@@ -88,7 +88,7 @@ impl Fluid {
             None => vec![0.0; n],
         };
         let masses = network.masses(&volumes, &pressures, part, instant);
-        self.state = State {
+        self.state = FluidMemory {
             step: None,
             carried: None,
             largest: 0.0,
@@ -267,7 +267,7 @@ impl Fluid {
     }
 }
 
-impl State {
+impl FluidMemory {
     /// Accumulates work and energy up to a new state, by the trapezoidal rule.
     fn count(&mut self, network: &Network, now: Last) {
         if let Some(last) = &self.last {

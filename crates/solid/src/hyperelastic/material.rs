@@ -1,60 +1,10 @@
-use super::{Fiber, Mullins, Winding};
+use super::fiber::Fiber;
+use super::model::Model;
+use super::mullins::Mullins;
+use super::winding::Winding;
 use crate::matrix::Mat3;
 use crate::vector::{Vec3, norm};
-use crate::{Growth, ProblemError};
-
-/// The isochoric part of a hyperelastic energy, constants in Pa unless they have no unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Model {
-    /// `C₁₀ (Ī₁ − 3)`; the initial shear modulus is `2 C₁₀`.
-    NeoHookean {
-        /// `C₁₀`.
-        c10: f64,
-    },
-    /// `C₁₀ (Ī₁ − 3) + C₀₁ (Ī₂ − 3)`; the initial shear modulus is `2 (C₁₀ + C₀₁)`.
-    MooneyRivlin {
-        /// `C₁₀`.
-        c10: f64,
-        /// `C₀₁`.
-        c01: f64,
-    },
-    /// `Σ Cᵢ₀ (Ī₁ − 3)ⁱ` with three terms; the initial shear modulus is `2 C₁₀`.
-    Yeoh {
-        /// `C₁₀, C₂₀, C₃₀`.
-        c: [f64; 3],
-    },
-    /// `Σ 2μᵢ/αᵢ² (λ̄₁^αᵢ + λ̄₂^αᵢ + λ̄₃^αᵢ − 3)`; the initial shear modulus is `Σ μᵢ`. Terms with
-    /// `μ = 0` are not used.
-    Ogden {
-        /// Pairs of `μᵢ` (Pa) and `αᵢ`.
-        terms: [(f64, f64); 3],
-    },
-    /// `−μ Jₘ/2 ln(1 − (Ī₁ − 3)/Jₘ)`; the initial shear modulus is `μ`. Past
-    /// [`Model::GENT_REACH`] of the limit the logarithm is continued as its Taylor polynomial.
-    Gent {
-        /// `μ`.
-        shear: f64,
-        /// `Jₘ`, the limit of `Ī₁ − 3`.
-        limit: f64,
-    },
-}
-
-impl Model {
-    /// The part of Gent's limit up to which the logarithm is used: a solver may step past the limit
-    /// on its way and must find a finite energy there.
-    pub const GENT_REACH: f64 = 0.98;
-
-    /// The initial shear modulus in Pa.
-    pub fn shear(&self) -> f64 {
-        match self {
-            Self::NeoHookean { c10 } => 2.0 * c10,
-            Self::MooneyRivlin { c10, c01 } => 2.0 * (c10 + c01),
-            Self::Yeoh { c } => 2.0 * c[0],
-            Self::Ogden { terms } => terms.iter().map(|(mu, _)| mu).sum(),
-            Self::Gent { shear, .. } => *shear,
-        }
-    }
-}
+use crate::{Eigenstrain, ProblemError};
 
 /// A hyperelastic material, with fibers if it has any.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,8 +17,8 @@ pub struct HyperelasticMaterial {
     prony: Vec<(f64, f64)>,
     swelling: f64,
     mullins: Option<Mullins>,
-    growth: Growth,
-    fiber_growth: Growth,
+    eigenstrain: Eigenstrain,
+    fiber_eigenstrain: Eigenstrain,
 }
 
 impl HyperelasticMaterial {
@@ -104,8 +54,8 @@ impl HyperelasticMaterial {
             prony: Vec::new(),
             swelling: 1.0,
             mullins: None,
-            growth: Growth::none(),
-            fiber_growth: Growth::none(),
+            eigenstrain: Eigenstrain::none(),
+            fiber_eigenstrain: Eigenstrain::none(),
         })
     }
 
@@ -144,11 +94,15 @@ impl HyperelasticMaterial {
 
     /// Tests whether it differs from voxel to voxel.
     pub(crate) fn is_local(&self) -> bool {
-        !self.windings.is_empty() || self.growths().iter().any(|growth| growth.is_field())
+        !self.windings.is_empty()
+            || self
+                .eigenstrains()
+                .iter()
+                .any(|eigenstrain| eigenstrain.is_field())
     }
 
     /// The material as it is at a place (m) in a voxel of a side (m) with edges along `axes` (unit vectors row by row),
-    /// the `block`th: wound fibers have one direction there, and growth that is a field is that of the voxel.
+    /// the `block`th: wound fibers have one direction there, and eigenstrain that is a field is that of the voxel.
     pub(crate) fn at(
         &self,
         block: usize,
@@ -163,8 +117,8 @@ impl HyperelasticMaterial {
         Ok(Self {
             fibers,
             windings: Vec::new(),
-            growth: self.growth.in_block(block)?,
-            fiber_growth: self.fiber_growth.in_block(block)?,
+            eigenstrain: self.eigenstrain.in_block(block)?,
+            fiber_eigenstrain: self.fiber_eigenstrain.in_block(block)?,
             ..self.clone()
         })
     }
@@ -188,10 +142,10 @@ impl HyperelasticMaterial {
     /// This material swollen over time, on top of [`HyperelasticMaterial::with_swelling`], and with fibers whose free
     /// stretch changes, on top of their own.
     #[must_use]
-    pub fn with_growth(self, of_material: Growth, of_fibers: Growth) -> Self {
+    pub fn with_eigenstrain(self, of_material: Eigenstrain, of_fibers: Eigenstrain) -> Self {
         Self {
-            growth: of_material,
-            fiber_growth: of_fibers,
+            eigenstrain: of_material,
+            fiber_eigenstrain: of_fibers,
             ..self
         }
     }
@@ -199,12 +153,16 @@ impl HyperelasticMaterial {
     /// The present free stretch: stress-free length over that in the body at rest; 1 if it is not swollen.
     #[inline(always)]
     pub fn swelling(&self) -> f64 {
-        self.swelling * self.growth.now()
+        self.swelling * self.eigenstrain.now()
     }
 
-    /// Tests whether two are one material with shares of its growth that differ from voxel to voxel.
-    pub(crate) fn differs_in_growth_alone(&self, other: &Self) -> bool {
-        let local = |of: &Self| of.growths().iter().any(|growth| growth.is_local());
+    /// Tests whether two are one material with shares of its eigenstrain that differ from voxel to voxel.
+    pub(crate) fn differs_in_eigenstrain_alone(&self, other: &Self) -> bool {
+        let local = |of: &Self| {
+            of.eigenstrains()
+                .iter()
+                .any(|eigenstrain| eigenstrain.is_local())
+        };
         let stuff = |of: &Self| (of.model, of.bulk, of.mullins);
         local(self) && local(other) && stuff(self) == stuff(other) && self.fibers == other.fibers
     }
@@ -213,23 +171,23 @@ impl HyperelasticMaterial {
     /// axis, over their mean.
     #[inline(always)]
     pub(crate) fn bent(&self) -> Vec3 {
-        self.growth.bent()
+        self.eigenstrain.bent()
     }
 
     /// Tests whether its free stretch varies within a voxel.
     pub(crate) fn varies(&self) -> bool {
-        self.growth.varies()
+        self.eigenstrain.varies()
     }
 
-    /// The growth of the material and that of its fibers.
-    pub fn growths(&self) -> [&Growth; 2] {
-        [&self.growth, &self.fiber_growth]
+    /// The eigenstrain of the material and that of its fibers.
+    pub fn eigenstrains(&self) -> [&Eigenstrain; 2] {
+        [&self.eigenstrain, &self.fiber_eigenstrain]
     }
 
     /// Sets the free stretches of the material and its fibers to those at a time in s.
     pub(crate) fn begin(&mut self, time: f64) {
-        self.growth.begin(time);
-        self.fiber_growth.begin(time);
+        self.eigenstrain.begin(time);
+        self.fiber_eigenstrain.begin(time);
     }
 
     /// The initial peak: the largest isochoric energy (J/m³) of a voxel before it is strained.
@@ -239,9 +197,9 @@ impl HyperelasticMaterial {
 
     /// Its fibers with their present free stretch.
     pub(crate) fn fibers_now(&self) -> impl Iterator<Item = Fiber> + '_ {
-        let growth = self.fiber_growth.now();
+        let eigenstrain = self.fiber_eigenstrain.now();
         self.fibers.iter().map(move |fiber| Fiber {
-            free: fiber.free * growth,
+            free: fiber.free * eigenstrain,
             ..*fiber
         })
     }

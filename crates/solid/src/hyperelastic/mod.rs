@@ -12,6 +12,7 @@
 pub(crate) mod fiber;
 mod local;
 mod material;
+mod model;
 mod mullins;
 pub mod principal;
 pub mod symmetric;
@@ -19,7 +20,8 @@ mod winding;
 
 pub use fiber::Fiber;
 pub(crate) use local::LocalMaterials;
-pub use material::{HyperelasticMaterial, Model};
+pub use material::HyperelasticMaterial;
+pub use model::Model;
 pub use mullins::Mullins;
 pub use symmetric::{Response, Sym};
 pub use winding::Winding;

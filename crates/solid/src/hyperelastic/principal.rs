@@ -1,6 +1,6 @@
 //! Energies in principal stretches with their first and second derivatives.
 
-use super::Model;
+use super::model::Model;
 use crate::vector::Vec3;
 
 /// The volume ratio below which `J^(−1/3)` is continued as a polynomial. Rubber in equilibrium stays within percents of

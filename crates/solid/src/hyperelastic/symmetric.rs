@@ -1,6 +1,6 @@
 //! Energies, stresses and tangents as functions of a symmetric stretch tensor.
 
-use super::Model;
+use super::model::Model;
 use super::principal::{self, Principal};
 use crate::matrix::{Mat3, cofactors, determinant, symmetric_eigen};
 

@@ -1,6 +1,6 @@
 //! Fibers wound about an axis: their direction differs from place to place.
 
-use super::Fiber;
+use super::fiber::Fiber;
 use crate::ProblemError;
 use crate::matrix::{Mat3, apply};
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};

@@ -1,8 +1,8 @@
 use serde::{Deserialize, Serialize};
 
-use super::{ExternalForce, Vertices, check_finite};
 use crate::ProblemError;
 use crate::assembly::{Visitor, check_indices};
+use crate::loads::external_force::{ExternalForce, Vertices, check_finite};
 use crate::matrix::{Mat3, cross_matrix};
 use crate::vector::{Vec3, axpy, cross, dot, scale};
 

@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 
-use super::{ExternalForce, Vertices, check_finite};
 use crate::ProblemError;
+use crate::loads::external_force::{ExternalForce, Vertices, check_finite};
 use crate::vector::{Vec3, axpy, dot, sub};
 
 /// An acceleration of all mass.

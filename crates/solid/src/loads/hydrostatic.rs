@@ -1,9 +1,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::pressure::closed_stiffness;
-use super::{ExternalForce, Vertices, check_finite};
 use crate::ProblemError;
 use crate::assembly::{Visitor, check_indices};
+use crate::loads::external_force::{ExternalForce, Vertices, check_finite};
 use crate::terms::{Tet, volume_hessian};
 use crate::vector::{Vec3, axpy, cross, dot, scale, sub};
 

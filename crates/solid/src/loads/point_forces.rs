@@ -1,8 +1,8 @@
 use serde::{Deserialize, Serialize};
 
-use super::{ExternalForce, Vertices, check_finite};
 use crate::ProblemError;
 use crate::assembly::check_indices;
+use crate::loads::external_force::{ExternalForce, Vertices, check_finite};
 use crate::vector::{Vec3, axpy, dot, sub};
 
 /// Forces on vertices, fixed in direction.

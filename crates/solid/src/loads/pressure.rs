@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 
-use super::{ExternalForce, Vertices, check_finite};
 use crate::assembly::{Visitor, check_indices};
+use crate::loads::external_force::{ExternalForce, Vertices, check_finite};
 use crate::matrix::{cross_matrix, plus};
 use crate::terms::{Tet, volume_hessian};
 use crate::vector::{Vec3, axpy, cross, scale, sub};

@@ -1,9 +1,10 @@
 //! Memory of a problem: its data that depend on the load path.
 
 use super::Problem;
-use crate::brick::Within;
+use crate::element::hex8::Within;
 use crate::fluid::FluidMemory;
-use crate::loads::{TendonMemory, Vertices};
+use crate::loads::TendonMemory;
+use crate::loads::external_force::Vertices;
 use crate::vector::Vec3;
 use crate::{Contact, ContactMemory, Load, LoadKind, Tendon};
 
@@ -32,7 +33,7 @@ impl Problem {
         });
         Memory {
             time: self.time,
-            peaks: self.body.brick_term().peaks(),
+            peaks: self.body.hex8_term().peaks(),
             tendons: tendons.collect(),
             fluid: self.fluid.as_ref().map(|fluid| fluid.memory().clone()),
             contact: self.contact().map(Contact::memory),
@@ -59,7 +60,7 @@ impl Problem {
     /// Takes over the memory of another problem on the same body, except that of contact.
     pub fn remember_but_contact(&mut self, other: &Self) {
         self.begin(other.time);
-        if let Some(peaks) = other.body.brick_term().peaks() {
+        if let Some(peaks) = other.body.hex8_term().peaks() {
             self.set_peaks(&peaks);
         }
         let kept = other.loads.iter().filter_map(|load| match &load.kind {
@@ -75,7 +76,7 @@ impl Problem {
     /// Sets the free stretches of all materials to those at a time in s.
     pub fn begin(&mut self, time: f64) {
         self.time = time;
-        if self.body.growth_end() > 0.0 {
+        if self.body.eigenstrain_end() > 0.0 {
             self.body_mut().begin(time);
         }
     }
@@ -88,8 +89,8 @@ impl Problem {
 
     /// Clears the memory of tendons and of materials that soften.
     pub fn start_loads(&mut self) {
-        if self.body.brick_term().soften() {
-            let first = self.body.brick_term().first_peaks();
+        if self.body.hex8_term().soften() {
+            let first = self.body.hex8_term().first_peaks();
             self.body_mut().set_peaks(&first);
         }
         self.tendons_mut().for_each(|tendon| tendon.remember(None));
@@ -97,8 +98,8 @@ impl Problem {
 
     /// Accepts `positions` as the state from which the load path continues, for tendons and materials that soften.
     pub fn accept_loads(&mut self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) {
-        if self.body.brick_term().soften() {
-            let peaks = self.body.brick_term().peaks_after(positions);
+        if self.body.hex8_term().soften() {
+            let peaks = self.body.hex8_term().peaks_after(positions);
             self.body_mut().set_peaks(&peaks);
         }
         let body = &*self.body;
@@ -127,7 +128,7 @@ impl Problem {
 
     /// Sets the largest isochoric energy (J/m³) so far of each hyperelastic voxel; does nothing if none softens.
     pub fn set_peaks(&mut self, peaks: &[f64]) {
-        if self.body.brick_term().soften() {
+        if self.body.hex8_term().soften() {
             self.body_mut().set_peaks(peaks);
         }
     }

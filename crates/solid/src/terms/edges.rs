@@ -1,6 +1,6 @@
-use super::{Strain, Term};
 use crate::assembly::Visitor;
-use crate::brick::Tangent;
+use crate::element::hex8::Tangent;
+use crate::term::{AssumedStrain, Term};
 use crate::vector::{Vec3, axpy, dot, norm, scale, sub};
 
 /// An edge constraint.
@@ -106,17 +106,22 @@ impl Term for Edges {
         }
     }
 
-    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<AssumedStrain> {
         let changes = self.0.iter().map(|edge| {
             let (change, gradient) = edge.evaluate(positions);
             let [a, b] = edge.vertices.map(|v| moves[v as usize]);
             change + dot(gradient, sub(a, b))
         });
-        Some(Strain::Numbers(changes.collect()))
+        Some(AssumedStrain::Numbers(changes.collect()))
     }
 
     /// Forces need no prediction: a constraint is linear in its strain, so that they are those at `positions`.
-    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+    fn visit_predicted_stiffness(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        visit: Visitor<'_>,
+    ) {
         for (edge, change) in self.0.iter().zip(strain.numbers()) {
             let matrix = edge.hessian(positions, Some(*change));
             visit(&edge.vertices, matrix.as_flattened());

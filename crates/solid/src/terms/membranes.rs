@@ -1,8 +1,8 @@
 use serde::{Deserialize, Serialize};
 
-use super::{Strain, Term};
 use crate::assembly::{Visitor, add_product, add_row_sums};
-use crate::membrane::Membrane;
+use crate::element::membrane::Membrane;
+use crate::term::{AssumedStrain, Term};
 use crate::vector::Vec3;
 
 /// All membranes of a body.
@@ -67,18 +67,28 @@ impl Term for Membranes {
         });
     }
 
-    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<AssumedStrain> {
         let strain = |membrane: &Membrane| membrane.predict_strain(positions, moves);
-        Some(Strain::Planes(self.0.iter().map(strain).collect()))
+        Some(AssumedStrain::Planes(self.0.iter().map(strain).collect()))
     }
 
-    fn add_predicted_forces(&self, strain: &Strain, positions: &[Vec3], forces: &mut [Vec3]) {
+    fn add_predicted_forces(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        forces: &mut [Vec3],
+    ) {
         for (membrane, strain) in self.0.iter().zip(strain.planes()) {
             membrane.add_predicted_forces(*strain, positions, forces);
         }
     }
 
-    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+    fn visit_predicted_stiffness(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        visit: Visitor<'_>,
+    ) {
         for (membrane, strain) in self.0.iter().zip(strain.planes()) {
             let matrix = membrane.stiffness(positions, Some(*strain));
             visit(&membrane.vertices(), matrix.as_flattened());

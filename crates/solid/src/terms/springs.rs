@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Term;
 use crate::ProblemError;
 use crate::assembly::{Visitor, check_indices};
-use crate::brick::Tangent;
+use crate::element::hex8::Tangent;
+use crate::term::Term;
 use crate::vector::{Vec3, axpy, norm, scale};
 
 /// A spring along `d = Σ w_i x_i − anchor`, with the energy `k (|d| − L)²/2`.

@@ -1,7 +1,7 @@
-use super::{Strain, Term};
 use crate::assembly::Visitor;
-use crate::brick::Tangent;
+use crate::element::hex8::Tangent;
 use crate::matrix::cross_matrix;
+use crate::term::{AssumedStrain, Term};
 use crate::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 
 /// A volume constraint.
@@ -148,17 +148,22 @@ impl Term for Tets {
         }
     }
 
-    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<Strain> {
+    fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<AssumedStrain> {
         let changes = self.0.iter().map(|tet| {
             let (change, gradients) = tet.evaluate(positions);
             let along = tet.vertices.into_iter().zip(gradients);
             change + along.map(|(v, g)| dot(g, moves[v as usize])).sum::<f64>()
         });
-        Some(Strain::Numbers(changes.collect()))
+        Some(AssumedStrain::Numbers(changes.collect()))
     }
 
     /// Forces need no prediction: a constraint is linear in its strain, so that they are those at `positions`.
-    fn visit_predicted_stiffness(&self, strain: &Strain, positions: &[Vec3], visit: Visitor<'_>) {
+    fn visit_predicted_stiffness(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        visit: Visitor<'_>,
+    ) {
         for (tet, change) in self.0.iter().zip(strain.numbers()) {
             let matrix = tet.hessian(positions, Some(*change));
             visit(&tet.vertices, matrix.as_flattened());

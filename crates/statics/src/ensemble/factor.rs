@@ -1,7 +1,7 @@
 //! Factorization `L D Lᵀ` of one tangent for each lane, on a shared envelope.
 
 use pulp::{Simd, WithSimd};
-use voxsoft_solid::lanes::Lanes;
+use voxsoft_solid::lattice::lanes::Lanes;
 
 use super::layout::{Layout, Row};
 

@@ -4,14 +4,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use pulp::{Simd, WithSimd};
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
-use voxsoft_solid::lanes::Lanes;
+use voxsoft_solid::lattice::lanes::Lanes;
 use voxsoft_solid::vector::{Vec3, norm, sub};
 
 use super::factor::{Factor, Solve};
 use super::lane::{Lane, Look};
 use super::layout::Layout;
 use super::tangent::{Advance, Forces, Tangent};
-use super::{Settled, Task};
+use super::task::{Settled, Task};
 use voxsoft_solid::Status;
 
 struct Count;
@@ -111,7 +111,7 @@ impl<'a> Group<'a> {
         let mut restored = vec![false; self.width];
         for lane in 0..self.width {
             match self.look(lane) {
-                Some(Look::Lost) => restored[lane] = self.go_back(lane),
+                Some(Look::Lost) => restored[lane] = self.rollback(lane),
                 look => balanced[lane] = look == Some(Look::Balanced),
             }
         }
@@ -145,7 +145,7 @@ impl<'a> Group<'a> {
                 continue;
             };
             if !state.took(sum, largest, size, moved) {
-                self.go_back(lane);
+                self.rollback(lane);
             }
         }
     }
@@ -163,7 +163,7 @@ impl<'a> Group<'a> {
             return false;
         };
         if !stable && state.refuses_unstable() {
-            self.go_back(lane);
+            self.rollback(lane);
             return false;
         }
         if !stable {
@@ -204,7 +204,7 @@ impl<'a> Group<'a> {
 
     /// Goes back to the last equilibrium with a shorter step, or gives the candidate up; returns true if the lane is
     /// still in use.
-    fn go_back(&mut self, lane: usize) -> bool {
+    fn rollback(&mut self, lane: usize) -> bool {
         let Some(mut state) = self.lanes[lane].take() else {
             return false;
         };

@@ -3,8 +3,8 @@
 
 use voxsoft_solid::vector::Vec3;
 
-use crate::equilibrium::{MIXED_ITERATIONS, PATIENCE, is_standstill};
-use crate::path::{EASY, UNSTABLE_CUTS};
+use crate::path::equilibrium::{MIXED_ITERATIONS, PATIENCE, is_standstill};
+use crate::path::load_path::{EASY, UNSTABLE_CUTS};
 
 /// Smallest step, as a part of the full load.
 const LEAST_STEP: f64 = 1e-3;

@@ -92,7 +92,7 @@ impl Layout {
     pub fn of(problem: &Problem) -> Option<Self> {
         let body = problem.body();
         let beyond = body.attached().count() + body.membranes().len();
-        let plain = body.bricks().is_empty() && beyond == 0;
+        let plain = body.hex8s().is_empty() && beyond == 0;
         let still = problem.clamps().iter().all(|clamp| clamp.motion.is_none());
         let dead = problem.loads().iter().all(|load| !load.kind.follows());
         if !plain || !still || !dead || problem.floor().is_some() || body.edges().is_empty() {

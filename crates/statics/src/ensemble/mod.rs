@@ -3,9 +3,10 @@
 //!
 //! Each SIMD lane of the processor holds one candidate, so that constraints and blocks of the tangent are processed one
 //! after the other with contiguous loads, whatever the mesh. All lanes take a mixed Newton step together, with strains
-//! as unknowns ([`voxsoft_solid::mixed`]); the position on the load path is individual. A candidate that has come to
-//! rest makes room for the next one, so a slow one holds up no other. Groups of lanes run side by side on threads. A
-//! lane never sees its neighbors: the bits of a result depend neither on them, nor on the number of lanes or threads.
+//! as unknowns ([`voxsoft_solid::element::assumed_strain`]); the position on the load path is individual. A candidate
+//! that has come to rest makes room for the next one, so a slow one holds up no other. Groups of lanes run side by side
+//! on threads. A lane never sees its neighbors: the bits of a result depend neither on them, nor on the number of lanes
+//! or threads.
 //!
 //! # Why Newton's method and not relaxation
 //!
@@ -20,58 +21,22 @@ mod group;
 mod lane;
 mod layout;
 mod tangent;
+mod task;
 
 use std::sync::atomic::AtomicUsize;
 
 use voxsoft_solid::Problem;
-use voxsoft_solid::vector::Vec3;
 
 use group::Group;
 use layout::Layout;
+use task::Task;
+pub use task::{Settled, Variant};
 use voxsoft_solid::Status;
-
-/// Parameters of one candidate, as factors on the common problem.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Variant {
-    /// Factor on the stiffness of all edges.
-    pub edge: f64,
-    /// Factor on the stiffness of all tetrahedra.
-    pub bulk: f64,
-    /// Factor on gravity: of another density, or another acceleration.
-    pub weight: f64,
-    /// Factor on all other forces.
-    pub forces: f64,
-}
-
-/// Result of one candidate.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Settled {
-    /// Last equilibrium, in m.
-    pub positions: Vec<Vec3>,
-    /// [`Status::AtRest`] in a stable equilibrium under the full load; [`Status::NotConverged`] if [`crate::solve`],
-    /// which has more methods, may still find one; [`Status::Cancelled`].
-    pub status: Status,
-    /// Relative residual force.
-    pub residual: f64,
-    /// Newton steps.
-    pub iterations: u32,
-    /// Cuts of the load step.
-    pub back_offs: u32,
-}
 
 /// Problem laid out for many candidates at a time.
 pub struct Ensemble {
     layout: Layout,
     arch: pulp::Arch,
-}
-
-/// Input of all groups.
-struct Task<'a> {
-    layout: &'a Layout,
-    arch: pulp::Arch,
-    variants: &'a [Variant],
-    tolerance: f64,
-    stop: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl Ensemble {

@@ -1,7 +1,7 @@
 //! Forces, tangents and steps of all lanes: constraint after constraint, a candidate in each lane.
 
 use pulp::{Simd, WithSimd};
-use voxsoft_solid::lanes::{Lanes, Spans, Volumes, Wide};
+use voxsoft_solid::lattice::lanes::{Lanes, Spans, Volumes, Wide};
 
 use super::layout::{EdgePiece, Layout, NONE, TetPiece};
 

@@ -1,7 +1,8 @@
 //! Bodies with contact.
 
-use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Carried, Description, PairReport, Surface, Touch};
+use voxsoft_contact::surface::{Carried, Surface};
+use voxsoft_contact::surface_contact::rigid::Frame;
+use voxsoft_contact::surface_contact::{Description, PairReport, SurfaceContact};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Clamp, History, Load, Mesh, Motion, Problem};
 use voxsoft_statics::Answer;
@@ -88,13 +89,13 @@ pub fn touching(
         voxel,
         young,
     };
-    let touch = Touch::new(description, &mesh.vertices).unwrap();
+    let touch = SurfaceContact::new(description, &mesh.vertices).unwrap();
     let problem = Problem::new(body, clamps, loads, None).unwrap();
     problem.with_contact(Box::new(touch)).unwrap()
 }
 
 /// Contact of a problem.
-pub fn touch_of(problem: &Problem) -> &Touch {
+pub fn touch_of(problem: &Problem) -> &SurfaceContact {
     let contact = problem.contact().unwrap();
     contact.found_by().downcast_ref().unwrap()
 }

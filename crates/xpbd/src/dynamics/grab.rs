@@ -6,7 +6,7 @@
 //! infinite stiffness puts the vertex on the anchor.
 
 use voxsoft_solid::Grab;
-use voxsoft_solid::strips::Columns;
+use voxsoft_solid::lattice::strips::Columns;
 use voxsoft_solid::vector::{Vec3, add, axpy, scale};
 
 /// Adds the forces (N) of all grabs.

@@ -1,7 +1,7 @@
 //! Interactive run that continues between calls, with changes of loads and grabs.
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
-use voxsoft_solid::hands::{Hands, loads_end, shortest_edge, still_state};
+use voxsoft_solid::loads::grabs::{Grabs, loads_end, shortest_edge, still_state};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
     Ask, Grab, LiveStatus, Look, Method, Problem, ProblemError, State, Stepper, elastic,
@@ -52,7 +52,7 @@ const MAX_STUCK: u32 = 3;
 pub struct Live {
     problem: Problem,
     settings: Dynamics,
-    hands: Hands,
+    grabs: Grabs,
     arrays: Box<dyn Arrays + Send>,
     /// Last good state, from the last check.
     state: State,
@@ -83,7 +83,7 @@ impl Live {
         let state = State::at_rest(problem.body());
         arrays.load(&state);
         Self {
-            hands: Hands::new(&problem),
+            grabs: Grabs::new(&problem),
             arrays,
             state,
             first_substep: substep,
@@ -103,7 +103,7 @@ impl Live {
     }
 
     fn take_substep(&mut self) {
-        let pulls = self.hands.follow(ANCHOR_TRAVEL * self.shortest_edge);
+        let pulls = self.grabs.follow(ANCHOR_TRAVEL * self.shortest_edge);
         self.problem.begin(self.arrays.time() + self.substep);
         let subject = Subject {
             problem: &self.problem,
@@ -119,7 +119,7 @@ impl Live {
         let mut now = self.state.clone();
         self.arrays.store(&mut now);
         self.problem.begin(now.time);
-        let pulls: Vec<Grab> = self.hands.grabs().iter().map(|(_, grab)| *grab).collect();
+        let pulls: Vec<Grab> = self.grabs.all().iter().map(|(_, grab)| *grab).collect();
         let subject = Subject {
             problem: &self.problem,
             settings: &self.settings,
@@ -144,7 +144,7 @@ impl Live {
         self.residual = balance.relative_residual();
         self.state = now;
         let tolerance = self.settings.tolerance;
-        let settled = self.hands.arrived() && self.state.time >= loads_end(&self.problem);
+        let settled = self.grabs.arrived() && self.state.time >= loads_end(&self.problem);
         if settled && at_rest(&self.problem, &self.state, self.residual, tolerance) {
             self.status = LiveStatus::AtRest;
         } else if settled
@@ -236,7 +236,7 @@ impl Stepper for Live {
     }
 
     fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError> {
-        self.hands.set_load(&mut self.problem, load, factor)?;
+        self.grabs.set_load(&mut self.problem, load, factor)?;
         self.arrays.renew_loads(&self.problem);
         self.wake();
         Ok(())
@@ -250,14 +250,14 @@ impl Stepper for Live {
         stiffness: f64,
     ) -> Result<(), ProblemError> {
         let positions = &self.state.positions;
-        self.hands
+        self.grabs
             .grab(positions, number, vertex, target, stiffness)?;
         self.wake();
         Ok(())
     }
 
     fn release(&mut self, number: u32) -> bool {
-        let released = self.hands.release(number);
+        let released = self.grabs.release(number);
         if released {
             self.wake();
         }
@@ -265,11 +265,11 @@ impl Stepper for Live {
     }
 
     fn grabs(&self) -> &[(u32, Grab)] {
-        self.hands.grabs()
+        self.grabs.all()
     }
 
     fn reset(&mut self) {
-        self.hands.release_all();
+        self.grabs.release_all();
         self.substep = self.first_substep;
         (self.substeps, self.back_offs, self.stuck) = (0, 0, 0);
         self.start_from(State::at_rest(self.problem.body()));
@@ -277,7 +277,7 @@ impl Stepper for Live {
 
     fn seek(&mut self, positions: Vec<Vec3>, time: f64) -> Result<(), ProblemError> {
         let state = still_state(&self.problem, positions, time)?;
-        self.hands.release_all();
+        self.grabs.release_all();
         self.start_from(state);
         Ok(())
     }

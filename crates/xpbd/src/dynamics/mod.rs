@@ -10,8 +10,8 @@ use std::ops::ControlFlow;
 
 use voxsoft_solid::balance::{Balance, is_still};
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
-use voxsoft_solid::hands::loads_end;
-use voxsoft_solid::strips::Strips;
+use voxsoft_solid::lattice::strips::Strips;
+use voxsoft_solid::loads::grabs::loads_end;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Damping, Grab, Observer, Problem, Progress, Solution, Solver, State, Status};
 

@@ -1,7 +1,7 @@
 //! Substeps of a lattice body of voxels, several constraints at a time in SIMD lanes.
 
 use voxsoft_solid::balance::{Balance, balance_of_forces};
-use voxsoft_solid::strips::{Columns, Strips, Sweep};
+use voxsoft_solid::lattice::strips::{Columns, Strips, Sweep};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Floor, Problem, State};
 

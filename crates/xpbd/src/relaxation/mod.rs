@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use voxsoft_solid::balance::{Balance, is_still};
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
-use voxsoft_solid::strips::Strips;
+use voxsoft_solid::lattice::strips::Strips;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Observer, Problem, Progress, Solution, Solver, State, Status, elastic};
 

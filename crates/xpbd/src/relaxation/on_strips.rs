@@ -1,7 +1,7 @@
 //! Relaxation of a lattice body of voxels, several constraints at a time in SIMD lanes.
 
 use voxsoft_solid::balance::{Balance, balance_of_forces};
-use voxsoft_solid::strips::{Columns, Strips};
+use voxsoft_solid::lattice::strips::{Columns, Strips};
 use voxsoft_solid::{Problem, State};
 
 use super::{Arrays, damped};

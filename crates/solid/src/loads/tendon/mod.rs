@@ -13,9 +13,9 @@ mod tangent;
 
 use serde::{Deserialize, Serialize};
 
-use super::{ExternalForce, Vertices, check_finite};
 use crate::ProblemError;
 use crate::assembly::{Visitor, check_indices};
+use crate::loads::external_force::{ExternalForce, Vertices, check_finite};
 use crate::vector::{Vec3, axpy};
 
 use capstan::Tensions;

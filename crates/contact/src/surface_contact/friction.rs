@@ -1,0 +1,114 @@
+//! Coulomb friction with the multipliers, bounds and anchors of samples.
+
+use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
+
+use super::law::{Along, Law, Tangential};
+use super::state::{ContactState, SampleMemory};
+use super::{Spot, SurfaceContact};
+use crate::gap::unit;
+
+/// Friction on one sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Friction {
+    /// Force, stiffness and energy by the contact law.
+    pub found: Tangential,
+    pub anchor: (u32, [f64; 3]),
+    /// Place on an edge where it acts, as a part of the way between its ends.
+    pub along: f64,
+}
+
+impl SurfaceContact {
+    /// Friction of a sample that was in contact at the last correction and had an anchor: also if it has lost contact
+    /// since, or its force would jump.
+    pub(super) fn friction(
+        &self,
+        state: &ContactState,
+        sample: u32,
+        points: &[Vec3],
+    ) -> Option<Friction> {
+        let memory = &state.now[sample as usize];
+        let point = self.place(sample, memory.along, points);
+        let k = state.stick * self.penalty(sample);
+        let free = self.free_ways(sample, point, points);
+        Friction::new(
+            memory,
+            k,
+            point,
+            free,
+            |triangle| self.law(sample, triangle),
+            |triangle| self.corners(triangle, points),
+        )
+    }
+}
+
+impl Friction {
+    /// Place where the force acts.
+    pub(super) fn spot(&self, sample: u32) -> Spot {
+        Spot {
+            sample,
+            along: self.along,
+            triangle: self.anchor.0,
+            weights: self.anchor.1,
+        }
+    }
+
+    /// Friction of a sample at `point` with a slip penalty `k` (N/m), which moves along the axes that are `free`, by
+    /// the law and at the corners of the triangle of its anchor; `None` without a bound or an anchor.
+    pub(super) fn new<'a>(
+        memory: &SampleMemory,
+        k: f64,
+        point: Vec3,
+        free: [bool; 3],
+        law_of: impl FnOnce(u32) -> &'a dyn Law,
+        corners_of: impl FnOnce(u32) -> [Vec3; 3],
+    ) -> Option<Self> {
+        let anchor = memory.anchor.filter(|_| memory.bound > 0.0)?;
+        let kept = |v: Vec3| [0, 1, 2].map(|axis| if free[axis] { v[axis] } else { 0.0 });
+        let n = if free == [true; 3] {
+            memory.plane
+        } else {
+            unit(kept(memory.plane))
+        };
+        let along = |v: Vec3| {
+            let v = kept(v);
+            sub(v, scale(dot(v, n), n))
+        };
+        let mut slip = point;
+        for (weight, corner) in anchor.1.iter().zip(corners_of(anchor.0)) {
+            axpy(&mut slip, -weight, corner);
+        }
+        let found = law_of(anchor.0).tangential(Along {
+            multiplier: along(memory.friction),
+            penalty: k,
+            slip: along(slip),
+            normal: n,
+            free,
+            bound: memory.bound,
+        });
+        Some(Self {
+            found,
+            anchor,
+            along: memory.along,
+        })
+    }
+}
+
+impl SurfaceContact {
+    /// Calls `take` with the friction of every sample that has some.
+    pub(super) fn each_friction(
+        &self,
+        state: &ContactState,
+        positions: &[Vec3],
+        mut take: impl FnMut(u32, Friction),
+    ) {
+        if !state.now.iter().any(|memory| memory.bound > 0.0) {
+            return;
+        }
+        let points = self.points_at(positions);
+        for sample in 0..self.samples.len() as u32 {
+            if let Some(friction) = self.friction(state, sample, &points) {
+                take(sample, friction);
+            }
+        }
+    }
+}

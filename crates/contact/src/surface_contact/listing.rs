@@ -1,0 +1,163 @@
+//! Broad phase of the contact search: candidate triangles of each sample.
+
+use voxsoft_solid::vector::{Vec3, dot};
+
+use super::SurfaceContact;
+use super::state::ContactState;
+use crate::bounds::Bounds;
+use crate::gap::{closest, normal};
+use crate::threads;
+use crate::tree::Tree;
+
+/// Distance between a sample and a triangle within which the triangle is listed, in voxels.
+pub(super) const REACH: f64 = 0.5;
+/// Largest motion of points for which listed candidates are kept, in voxels: little beside [`REACH`].
+pub(super) const SAME: f64 = 1e-3;
+/// Largest depth of a sample in another surface at an accepted state, in voxels: less than half of the thinnest wall.
+pub(super) const DEPTH: f64 = 0.25;
+/// Largest product of the normals of faces that can meet: they look at each other. A sample on an edge has several
+/// normals, of which those along the other face do not meet it.
+const FACING: f64 = -0.1;
+/// Distance of two places of one surface in the unloaded body, in voxels, within which its shape there decides if they
+/// can meet. The two sides of a wall cannot, however thin it is or becomes: rubber does not press a thicker one to
+/// [`DEPTH`], and a thin one does not roll up so tightly that its sides meet around its end.
+const WALL: f64 = 3.0;
+/// Distance, in voxels, within which places whose normals have at least the product `SAME_WAY` are one patch of the
+/// surface. A fold there is a folded element.
+const PATCH: f64 = 1.0;
+const SAME_WAY: f64 = 0.3;
+/// Largest depth of a sample in a near triangle that did not face it in the unloaded body, in voxels. A fold first has
+/// to bring the two in front of each other; around a convex edge a sample is behind the other side by less than a
+/// voxel.
+const BESIDE: f64 = 0.01;
+
+impl SurfaceContact {
+    /// Lists for every sample the triangles that come near it on the straight way from the last accepted state to
+    /// `points`, and in front of which it was at that state.
+    pub(super) fn list(&self, state: &mut ContactState, points: Vec<Vec3>) {
+        let reach = REACH * self.description.voxel + self.laws.range();
+        let swept = |triangle: &[u32; 3]| {
+            let each = triangle.iter().map(|p| *p as usize);
+            let ends = each.flat_map(|p| [state.accepted_points[p], points[p]]);
+            grown(Bounds::of(ends), reach)
+        };
+        let boxes: Vec<Bounds> = self.triangles.iter().map(swept).collect();
+        let tree = Tree::new(&boxes);
+        let accepted = &state.accepted_points;
+        let all = 0..self.triangles.len() as u32;
+        let normals: Vec<Vec3> = all.map(|t| normal(self.corners(t, accepted))).collect();
+        let meets = |index: usize| {
+            if self.weight(index as u32) == 0.0 {
+                return Vec::new();
+            }
+            let ends = self.samples[index].ends.map(|p| p as usize);
+            let bounds = Bounds::of(ends.into_iter().flat_map(|p| [accepted[p], points[p]]));
+            let mut found = Vec::new();
+            tree.meeting(&bounds, |triangle| {
+                if self.may_meet(index, triangle, &normals, state) {
+                    found.push(triangle);
+                }
+            });
+            found.sort_unstable();
+            found
+        };
+        state.candidates = threads::map(self.samples.len(), meets);
+        // The facing is kept: the forces are still those of the state for which it was found.
+        state.facing.resize(self.samples.len(), None);
+        state.looks = state.looks.max(1);
+        state.listed_points = points;
+    }
+
+    /// Tests whether a sample may meet a triangle; `normals` are those of all triangles at the accepted state.
+    fn may_meet(
+        &self,
+        index: usize,
+        triangle: u32,
+        normals: &[Vec3],
+        state: &ContactState,
+    ) -> bool {
+        let sample = &self.samples[index];
+        if self.coefficient(index as u32, triangle).is_nan() {
+            return false;
+        }
+        let n = normals[triangle as usize];
+        let faces = |own: &u32| dot(normals[*own as usize], n) < FACING;
+        if !sample.triangles.iter().any(faces) {
+            return false;
+        }
+        let other = self.surface_of[triangle as usize];
+        if sample
+            .ends
+            .iter()
+            .any(|end| self.is_bonded(state, *end, other))
+        {
+            return false;
+        }
+        let itself = sample.surface == other;
+        if itself {
+            let of = self.triangles[triangle as usize];
+            let mut own = sample.triangles.iter().map(|t| self.triangles[*t as usize]);
+            if own.any(|own| own.iter().any(|point| of.contains(point))) {
+                return false;
+            }
+        }
+        if sample.is_edge() {
+            return !itself || self.depth_of_edge(sample.ends, triangle).is_some();
+        }
+        self.was_in_front(state, index, triangle)
+    }
+
+    /// Largest depth of an edge in a triangle of its own surface at an accepted state, in voxels: the smaller one of
+    /// its ends.
+    pub(super) fn depth_of_edge(&self, ends: [u32; 2], triangle: u32) -> Option<f64> {
+        let [first, second] = ends.map(|end| self.depth_at_rest(end as usize, triangle));
+        Some(first?.min(second?))
+    }
+
+    /// Tests whether a sample was in front of a triangle at the accepted state, or not too deep behind it, so that it
+    /// may meet it.
+    pub(super) fn was_in_front(&self, state: &ContactState, index: usize, triangle: u32) -> bool {
+        let itself = self.samples[index].surface == self.surface_of[triangle as usize];
+        let depth = if itself {
+            self.depth_at_rest(index, triangle)
+        } else {
+            Some(DEPTH)
+        };
+        let start = state.accepted_points[index];
+        depth.is_some_and(|depth| self.is_in_front(triangle, start, &state.accepted_points, depth))
+    }
+
+    /// Largest depth of a sample in a triangle of its own surface at an accepted state to count as in front of it, in
+    /// voxels; `None` if the unloaded body shows that they never meet.
+    fn depth_at_rest(&self, index: usize, triangle: u32) -> Option<f64> {
+        let points = &self.rest_points;
+        let corners = self.corners(triangle, points);
+        let found = closest(points[index], corners);
+        let distance = found.distance / self.description.voxel;
+        if distance > WALL {
+            return Some(DEPTH);
+        }
+        let n = normal(corners);
+        let own = self.samples[index].triangles.iter();
+        let least = own
+            .map(|own| dot(normal(self.corners(*own, points)), n))
+            .fold(1.0, f64::min);
+        let behind = dot(
+            found.away,
+            self.normal_beside(triangle, found.weights, points),
+        ) < 0.0;
+        match (least < FACING, behind) {
+            (true, true) => None,
+            (true, false) => Some(DEPTH),
+            (false, _) if distance <= PATCH && least > SAME_WAY => None,
+            (false, _) => Some(BESIDE),
+        }
+    }
+}
+
+fn grown(bounds: Bounds, by: f64) -> Bounds {
+    Bounds {
+        low: bounds.low.map(|x| x - by),
+        high: bounds.high.map(|x| x + by),
+    }
+}

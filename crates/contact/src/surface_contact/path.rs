@@ -1,0 +1,476 @@
+//! Contact along a load path: contact search, corrections of multipliers, motion of anchors.
+
+use std::any::Any;
+use std::collections::{BTreeMap, BTreeSet};
+
+use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
+use voxsoft_solid::{Contact, ContactMemory};
+
+use super::state::{ContactState, Facing, Hold, Recording, SampleMemory};
+use super::{
+    APART, BOUND, CREEP, ContactPair, DEEPEST, LOOKS, PATIENCE, PRECISE, STICK, STIFFER, STRAYED,
+    Spot, SurfaceContact, listing,
+};
+use crate::gap::{self, normal};
+use crate::surface::Carried;
+use crate::threads;
+
+/// Largest ratio of pairs in the sparsity pattern to pairs with stiffness, if these are [`MANY`]. Sliding samples pass
+/// many triangles, and a diverging iteration any.
+const WASTE: usize = 2;
+const MANY: usize = 100;
+/// Largest extrapolation of multipliers, in steps.
+const LONGEST_EXTRAPOLATION: f64 = 2.0;
+
+impl Contact for SurfaceContact {
+    fn boxed(&self) -> Box<dyn Contact> {
+        Box::new(self.clone())
+    }
+
+    fn found_by(&self) -> &dyn Any {
+        self
+    }
+
+    fn found_by_mut(&mut self) -> &mut dyn Any {
+        self
+    }
+
+    fn memory(&self) -> ContactMemory {
+        ContactMemory::new(self.state.clone())
+    }
+
+    fn remember(&mut self, memory: &ContactMemory) {
+        if let Some(state) = memory.get::<ContactState>() {
+            self.state.clone_from(state);
+        }
+    }
+
+    fn visit_bonded(&self, visit: &mut dyn FnMut(u32)) {
+        for (_, tie) in self.ties() {
+            for side in [&tie.first, &tie.second] {
+                side.vertices.iter().for_each(|&vertex| visit(vertex));
+            }
+        }
+    }
+
+    fn reset(&mut self, positions: &[Vec3]) {
+        self.change(|contact, state| {
+            let points = contact.points_at(positions);
+            let nothing = vec![SampleMemory::default(); contact.samples.len()];
+            let untouched = vec![Hold::default(); contact.ties().count()];
+            *state = ContactState {
+                accepted_points: points.clone(),
+                accepted_facing: vec![None; contact.samples.len()],
+                accepted: nothing.clone(),
+                before: nothing.clone(),
+                now: nothing,
+                accepted_holds: untouched.clone(),
+                holds: untouched,
+                stick: STICK[0],
+                crept: f64::INFINITY,
+                recording: state.recording.is_some().then(Recording::default),
+                ..ContactState::default()
+            };
+            contact.list_from_accepted(state, points);
+            contact.face(state, positions, true);
+        })
+    }
+
+    fn follow(&mut self, positions: &[Vec3]) -> bool {
+        self.change(|contact, state| {
+            let points = contact.points_at(positions);
+            if !(contact.farthest_from_listed(state, &points) <= listing::REACH / 2.0) {
+                contact.list(state, points);
+                state.listed_at_rest = false;
+            }
+            let all = state.looks > 0;
+            state.looks = state.looks.saturating_sub(1);
+            contact.face(state, positions, all);
+            let before = state.pattern.len();
+            let pairs = contact.pairs_of_stiffness(state, positions);
+            state.pattern.extend(pairs);
+            let shrank = std::mem::take(&mut state.pattern_shrank);
+            state.pattern.len() > before || shrank
+        })
+    }
+
+    fn relist(&mut self) {
+        self.state.looks = LOOKS;
+    }
+
+    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
+        self.change(|contact, state| {
+            state.keep_moment(positions);
+            let now = contact.corrected(state, positions);
+            state.corrections += 1;
+            let patient = state.corrections <= PATIENCE;
+            let mut largest =
+                contact.off_bounds(&state.now, &now, BOUND[usize::from(!patient)], negligible);
+            let mut farthest = 0.0f64;
+            for (sample, (old, new)) in state.now.iter().zip(&now).enumerate() {
+                if old == new {
+                    continue;
+                }
+                let unit = contact.penalty(sample as u32) * contact.description.voxel;
+                let pressed = (new.normal - old.normal) / unit;
+                let crept = norm(sub(new.friction, old.friction)) / (state.stick * unit);
+                largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
+                farthest = farthest.max(crept / CREEP);
+            }
+            let (holds, off) = contact.corrected_ties(state, positions);
+            largest = largest.max(farthest).max(off);
+            let enough = if state.corrections <= PRECISE {
+                precision
+            } else {
+                1.0
+            };
+            if farthest > enough && farthest > state.crept / STIFFER {
+                state.stick = (STIFFER * state.stick).min(STICK[1]);
+            }
+            state.crept = farthest;
+            // The forces of a settled state are those of its equilibrium, not of multipliers that came after. Edges
+            // search once points have settled: while these are still too deep, the edges beside them are so too.
+            let settled = largest <= enough && !(patient && contact.face_edges(state, positions));
+            if settled {
+                state.settle_moment(enough <= precision);
+            } else {
+                state.now = now;
+                state.holds = holds;
+                state.looks = u32::from(patient);
+            }
+            settled
+        })
+    }
+
+    fn length(&self) -> f64 {
+        self.description.voxel
+    }
+
+    fn release_bonds(&mut self, positions: &[Vec3]) -> bool {
+        self.change(|contact, state| {
+            let any = contact.break_ties(state, positions);
+            if any {
+                // Surfaces whose ties broke may be in contact now.
+                let points = contact.points_at(positions);
+                contact.list(state, points);
+                (state.listed_at_rest, state.corrections) = (false, 0);
+                state.looks = LOOKS;
+            }
+            any
+        })
+    }
+
+    fn depends_on_way(&self) -> bool {
+        let table = self.description.friction.iter().flatten();
+        let rough = table.into_iter().any(|coefficient| *coefficient > 0.0);
+        rough
+            || self
+                .description
+                .bonds
+                .iter()
+                .any(|bond| bond.strength.is_finite())
+    }
+
+    fn accept(&mut self, positions: &[Vec3]) {
+        self.change(|contact, state| {
+            let moved = contact.carried_on(state, positions);
+            state.keep_step();
+            let pairs = contact.pairs_of_stiffness(state, positions);
+            if state.pattern.len() > WASTE * pairs.len().max(MANY) {
+                state.pattern = pairs;
+                state.pattern_shrank = true;
+            }
+            let points = contact.points_at(positions);
+            state.accepted_points.clone_from(&points);
+            state.accepted_facing = state.facing.clone();
+            state.before = std::mem::replace(&mut state.accepted, moved.clone());
+            state.now = moved;
+            state.accepted_holds = state.holds.clone();
+            (state.crept, state.corrections) = (f64::INFINITY, 0);
+            contact.list_from_accepted(state, points);
+        })
+    }
+
+    fn rollback(&mut self) {
+        self.change(|contact, state| {
+            state.drop_step();
+            state.extrapolated = None;
+            state.now = state.accepted.clone();
+            state.facing = state.accepted_facing.clone();
+            if state
+                .holds
+                .iter()
+                .zip(&state.accepted_holds)
+                .any(|(a, b)| a.broken != b.broken)
+            {
+                state.listed_at_rest = false;
+            }
+            state.holds = state.accepted_holds.clone();
+            (state.stick, state.crept, state.corrections) = (STICK[0], f64::INFINITY, 0);
+            let points = state.accepted_points.clone();
+            contact.list_from_accepted(state, points);
+        })
+    }
+
+    fn is_recorded(&self) -> bool {
+        self.state.recording.is_some()
+    }
+
+    fn extrapolate(&mut self, ratio: f64) {
+        let state = &mut self.state;
+        state.extrapolated = Some(ratio);
+        let ratio = ratio.min(LONGEST_EXTRAPOLATION);
+        let ContactState {
+            now,
+            accepted,
+            before,
+            ..
+        } = state;
+        for (now, (last, before)) in now.iter_mut().zip(accepted.iter().zip(before)) {
+            if !(last.normal > 0.0 && before.normal > 0.0) {
+                continue;
+            }
+            let on = |last: f64, before: f64| last + ratio * (last - before);
+            now.normal = on(last.normal, before.normal).max(0.0);
+            now.bound = on(last.bound, before.bound).max(0.0);
+            let friction = [0, 1, 2].map(|i| on(last.friction[i], before.friction[i]));
+            let most = now.bound / norm(friction).max(now.bound);
+            now.friction = if most.is_finite() {
+                scale(most, friction)
+            } else {
+                [0.0; 3]
+            };
+        }
+    }
+}
+
+impl SurfaceContact {
+    /// Multipliers and anchors of samples after a correction with the forces at `positions`.
+    pub(super) fn corrected(&self, state: &ContactState, positions: &[Vec3]) -> Vec<SampleMemory> {
+        // A sample that loses contact for now keeps its anchor: it may come back before the state is accepted.
+        let anchor_of = |memory: &SampleMemory| SampleMemory {
+            anchor: memory.anchor,
+            along: memory.along,
+            since: memory.since,
+            ..SampleMemory::default()
+        };
+        let mut now: Vec<SampleMemory> = state.now.iter().map(anchor_of).collect();
+        self.each_contact(state, positions, |meeting, normal, points| {
+            let pressure = normal.pressure;
+            if !(pressure > 0.0) {
+                return;
+            }
+            let sample = meeting.sample as usize;
+            let memory = &state.now[sample];
+            let friction = self.friction(state, meeting.sample, points);
+            let law = self.law(meeting.sample, meeting.triangle);
+            let coefficient = self.coefficient(meeting.sample, meeting.triangle);
+            let (anchor, along, since) = memory.anchor.map_or_else(
+                || self.first_anchor(state, meeting, points),
+                |anchor| (anchor, memory.along, memory.since),
+            );
+            now[sample] = SampleMemory {
+                normal: pressure,
+                friction: friction.map_or([0.0; 3], |friction| friction.found.force),
+                plane: meeting.normal,
+                bound: law.bound(coefficient, pressure),
+                anchor: Some(anchor),
+                along,
+                since,
+            };
+        });
+        now
+    }
+
+    /// Multipliers and anchors of samples from an accepted state on: the anchors of slipping samples move along.
+    pub(super) fn carried_on(&self, state: &ContactState, positions: &[Vec3]) -> Vec<SampleMemory> {
+        let mut moved = vec![SampleMemory::default(); self.samples.len()];
+        self.each_contact(state, positions, |meeting, normal, points| {
+            if !(normal.pressure > 0.0) {
+                return;
+            }
+            let memory = &mut moved[meeting.sample as usize];
+            *memory = state.now[meeting.sample as usize];
+            let friction = self.friction(state, meeting.sample, points);
+            if friction.is_none_or(|friction| friction.found.slips) {
+                memory.friction = friction.map_or([0.0; 3], |friction| friction.found.force);
+                (memory.anchor, memory.along) = (Some(self.foot(meeting, points)), meeting.along);
+            }
+        });
+        moved
+    }
+
+    /// Lists candidates from the accepted state on, unless that state has not moved since they were listed.
+    fn list_from_accepted(&self, state: &mut ContactState, points: Vec<Vec3>) {
+        if !(state.listed_at_rest && self.farthest_from_listed(state, &points) <= listing::SAME) {
+            self.list(state, points);
+            state.listed_at_rest = true;
+        }
+        state.looks = LOOKS;
+    }
+
+    /// Samples and triangles that have stiffness at `positions`.
+    pub(super) fn pairs_of_stiffness(
+        &self,
+        state: &ContactState,
+        positions: &[Vec3],
+    ) -> BTreeSet<(u32, u32)> {
+        let mut pairs = BTreeSet::new();
+        self.each_contact(state, positions, |meeting, _, _| {
+            pairs.insert((meeting.sample, meeting.triangle));
+        });
+        self.each_friction(state, positions, |sample, friction| {
+            pairs.insert((sample, friction.anchor.0));
+        });
+        pairs
+    }
+
+    /// Largest motion of any point since candidates were listed, in voxels.
+    pub(super) fn farthest_from_listed(&self, state: &ContactState, points: &[Vec3]) -> f64 {
+        let moved = |(a, b): (&Vec3, &Vec3)| norm(sub(*a, *b));
+        let farthest = points.iter().zip(&state.listed_points).map(moved);
+        farthest.fold(0.0, f64::max) / self.description.voxel
+    }
+
+    /// Largest change of the friction bounds relative to its tolerance: on vertices, with the tolerance `off_vertex`,
+    /// and summed over each pair of surfaces.
+    ///
+    /// Surfaces that do not fit can distribute a pressure among their samples in many ways, between which multipliers
+    /// converge slowly without any motion: there are more samples than vertices that carry them. So bounds of single
+    /// samples do not count.
+    fn off_bounds(
+        &self,
+        old: &[SampleMemory],
+        new: &[SampleMemory],
+        off_vertex: f64,
+        negligible: f64,
+    ) -> f64 {
+        let mut pairs: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();
+        let mut vertices: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
+        for (index, (old, new)) in old.iter().zip(new).enumerate() {
+            let Some((triangle, weights)) = new.anchor else {
+                continue;
+            };
+            let change = new.bound - old.bound;
+            let mut pair = [
+                self.samples[index].surface,
+                self.surface_of[triangle as usize],
+            ];
+            pair.sort_unstable();
+            let entry = pairs.entry(pair).or_default();
+            entry[0] += change;
+            entry[1] += new.bound;
+            let spot = Spot {
+                sample: index as u32,
+                along: new.along,
+                triangle,
+                weights,
+            };
+            for (factor, point) in self.relative(spot) {
+                let is_own = self.samples[index].ends.contains(&point);
+                let part = if is_own { factor } else { -factor };
+                let Carried {
+                    vertices: carriers,
+                    weights,
+                } = self.share(point);
+                for (vertex, weight) in carriers.iter().zip(weights) {
+                    let entry = vertices.entry(*vertex).or_default();
+                    entry[0] += part * weight * change;
+                    entry[1] += part * weight * new.bound;
+                }
+            }
+        }
+        let largest = vertices
+            .values()
+            .map(|[_, size]| *size)
+            .fold(negligible, f64::max);
+        let of_vertices = vertices
+            .values()
+            .map(|[change, _]| change.abs() / (off_vertex * largest));
+        let of_pairs = pairs
+            .values()
+            .map(|[change, size]| change.abs() / (BOUND[0] * size.max(negligible)));
+        // A ratio 0/0 without any bound counts as zero.
+        of_vertices.chain(of_pairs).fold(0.0, f64::max)
+    }
+
+    /// Foot of a sample on the triangle that it faces.
+    fn foot(&self, meeting: &ContactPair, points: &[Vec3]) -> (u32, [f64; 3]) {
+        let weights = match meeting.facing {
+            Facing::Across(..) => meeting.weights,
+            _ => {
+                let point = self.place(meeting.sample, meeting.along, points);
+                gap::affine(point, self.corners(meeting.triangle, points))
+            }
+        };
+        (meeting.triangle, weights)
+    }
+
+    /// First anchor of a sample that has come into contact since the last accepted state: the place where it met the
+    /// surface, back along its way by the ratio of the gaps. An edge sticks where it first presses at an equilibrium.
+    /// Returns the place on the triangle, the place on the edge, and the part of the step that remained.
+    fn first_anchor(
+        &self,
+        state: &ContactState,
+        meeting: &ContactPair,
+        points: &[Vec3],
+    ) -> ((u32, [f64; 3]), f64, f64) {
+        if matches!(meeting.facing, Facing::Across(..)) {
+            return (self.foot(meeting, points), meeting.along, 0.0);
+        }
+        let point = points[meeting.sample as usize];
+        let corners = self.corners(meeting.triangle, points);
+        let before = self.corners(meeting.triangle, &state.accepted_points);
+        let start = state.accepted_points[meeting.sample as usize];
+        let first = gap::affine(start, before);
+        let mut foot = [0.0; 3];
+        let mut foot_now = [0.0; 3];
+        for c in 0..3 {
+            axpy(&mut foot, first[c], before[c]);
+            axpy(&mut foot_now, first[c], corners[c]);
+        }
+        let clearance = self.mobility(meeting) * self.clearance(meeting.sample);
+        let gap_before = dot(sub(start, foot), normal(before)) - clearance;
+        let gap_now = meeting.gap - clearance;
+        let given = state.given_since.get(meeting.sample as usize);
+        let since = if let Some(given) = given {
+            *given
+        } else if gap_before > 0.0 && gap_before > gap_now {
+            1.0 - gap_before / (gap_before - gap_now.min(0.0))
+        } else {
+            1.0
+        };
+        // A contact that only just begins has `since` near 0: it has not slipped yet.
+        let slip = sub(point, foot_now);
+        let anchor = add(point, scale(-since, slip));
+        ((meeting.triangle, gap::affine(anchor, corners)), 0.0, since)
+    }
+
+    /// Updates the faces that samples meet: of all of them, or of those that have strayed from theirs.
+    pub(super) fn face(&self, state: &mut ContactState, positions: &[Vec3], all: bool) {
+        let points = self.points_at(positions);
+        let facing = |index: usize| {
+            if state.candidates[index].is_empty() {
+                return None;
+            }
+            if self.samples[index].is_edge() {
+                return self.keep_across(state, index, &points);
+            }
+            let point = points[index];
+            let strayed = match state.facing[index] {
+                Some(Facing::Plane(triangle)) => {
+                    let weights = gap::affine(point, self.corners(triangle, &points));
+                    weights.iter().any(|w| *w < -STRAYED)
+                }
+                Some(_) => false,
+                None => true,
+            };
+            if all || strayed {
+                self.look(state, index, point, &points)
+            } else {
+                state.facing[index]
+            }
+        };
+        state.facing = threads::map(self.samples.len(), facing);
+    }
+}

@@ -1,0 +1,122 @@
+//! State of contact between evaluations.
+
+use std::collections::BTreeSet;
+
+use voxsoft_solid::Moment;
+use voxsoft_solid::vector::Vec3;
+
+/// Multipliers and friction anchor of one contact sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SampleMemory {
+    /// Lagrange multiplier of the gap: a force in N that pushes apart.
+    pub normal: f64,
+    /// Lagrange multiplier of the slip: the friction in N, along the surface.
+    pub friction: Vec3,
+    /// Normal of the friction plane, of the last correction.
+    pub plane: Vec3,
+    /// Bound of friction, in N.
+    pub bound: f64,
+    /// Anchor of friction on the other surface: a triangle, and affine coordinates in it.
+    pub anchor: Option<(u32, [f64; 3])>,
+    /// Place of an edge that sticks there, as a part of the way between its ends.
+    pub along: f64,
+    /// Part of its step that remained when it came into contact there.
+    pub since: f64,
+}
+
+/// Face that a sample meets, fixed for some steps of Newton's method, so that the minimized energy has no kinks where a
+/// sample slides over an edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Facing {
+    /// Plane of a triangle.
+    Plane(u32),
+    /// Point on an edge or corner of a triangle, with its barycentric coordinates, and the normal there.
+    Edge(u32, [f64; 3], Vec3),
+    /// Edge of a triangle, from the given corner to the next; true if the normal is the cross product of the two edges,
+    /// that of the sample first, false if its opposite.
+    Across(u32, usize, bool),
+}
+
+impl Facing {
+    pub fn triangle(self) -> u32 {
+        match self {
+            Self::Plane(triangle) | Self::Edge(triangle, ..) | Self::Across(triangle, ..) => {
+                triangle
+            }
+        }
+    }
+}
+
+/// Multiplier and damage of one tie.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Hold {
+    /// Multiplier: the force on the first surface, N.
+    pub force: Vec3,
+    /// True once the tie is broken.
+    pub broken: bool,
+}
+
+/// Multipliers and facing of all samples at an equilibrium, before its correction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Held {
+    pub(super) now: Vec<SampleMemory>,
+    pub(super) facing: Vec<Option<Facing>>,
+    pub(super) stick: f64,
+    pub(super) extrapolated: Option<f64>,
+    pub(super) precise: bool,
+}
+
+/// Recorded part of a path.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Recording {
+    pub(super) accepted: Vec<Moment<Held>>,
+    /// Moments since the last accepted state.
+    pub(super) pending: Vec<Moment<Held>>,
+}
+
+/// State of all samples.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct ContactState {
+    /// Points of all surfaces at the last accepted state, m.
+    pub accepted_points: Vec<Vec3>,
+    /// Facing of each sample at the last accepted state.
+    pub accepted_facing: Vec<Option<Facing>>,
+    /// Multipliers and anchors at the last accepted state.
+    pub accepted: Vec<SampleMemory>,
+    /// Multipliers and anchors at the accepted state before that.
+    pub before: Vec<SampleMemory>,
+    /// Steps by which the multipliers are extrapolated, until a correction.
+    pub extrapolated: Option<f64>,
+    /// Current multipliers and anchors.
+    pub now: Vec<SampleMemory>,
+    /// Multipliers of the ties at the last accepted state, and the current ones.
+    pub accepted_holds: Vec<Hold>,
+    pub holds: Vec<Hold>,
+    /// Points when candidates were last listed.
+    pub listed_points: Vec<Vec3>,
+    /// True if those were the points of the accepted state.
+    pub listed_at_rest: bool,
+    /// Candidate triangles of each sample on the way from the last accepted state.
+    pub candidates: Vec<Vec<u32>>,
+    /// Current facing of each sample.
+    pub facing: Vec<Option<Facing>>,
+    /// Slip penalty, relative to the contact penalty.
+    pub stick: f64,
+    /// Largest creep of sticking samples at the last correction, relative to its tolerance.
+    pub crept: f64,
+    /// Corrections since the last accepted state.
+    pub corrections: u32,
+    /// Remaining searches of all samples before their facing is fixed.
+    pub looks: u32,
+    /// Sparsity pattern: samples and triangles whose stiffness has entries.
+    pub pattern: BTreeSet<(u32, u32)>,
+    /// True if the pattern has shrunk since [`follow`](voxsoft_solid::Contact::follow) last reported a change.
+    pub pattern_shrank: bool,
+    /// True while a path is retraced, for which the stiffness has to be exact.
+    pub retraces: bool,
+    /// Values of [`SampleMemory::since`] of all samples, prescribed while a path is retraced: for a sample that was
+    /// only just apart it changes steeply, and soon no more.
+    pub given_since: Vec<f64>,
+    /// Recorded path, if derivatives will need it.
+    pub recording: Option<Recording>,
+}

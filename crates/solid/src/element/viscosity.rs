@@ -1,0 +1,148 @@
+//! Viscous stress of hyperelastic voxels.
+//!
+//! Both kinds act on the deviatoric stress `s` in the voxel's rotated frame (the volumetric response of rubber is
+//! elastic):
+//!
+//! - Kelvin–Voigt with the retardation time `τ`: `τ ds/dt`.
+//! - Prony branches `(γ, τ)`: `dq/dt + q/τ = γ ds/dt`, integrated exactly for a rate that is constant in a
+//!   step: `q ← e^(−h/τ) q + γ e^(−h/2τ) Δs` (Simo 1987, doi 10.1016/0045-7825(87)90107-1, with the
+//!   midpoint of the exponential). Neither depends on the step as long as it resolves the motion.
+//!
+//! Explicit substeps add the stress to the forces ([`Viscosity::add_forces`]). Over an implicit step both kinds are a
+//! share of `s` and a stress that is known at its start ([`Viscosity::start`]), so that the step keeps its potential:
+//! `s` is the gradient of the deviatoric energy, the other is linear in the strain.
+
+use crate::Body;
+use crate::element::hex8::{Hex8Stress, Within};
+use crate::vector::Vec3;
+
+/// Viscous history variables of all voxels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Viscosity {
+    retardation: f64,
+    /// Stress `s` after the last step; `None` where no rate is known: at first and after a jump.
+    before: Option<Vec<Hex8Stress>>,
+    branches: Vec<Vec<Hex8Stress>>,
+}
+
+impl Viscosity {
+    /// No history, with the retardation time in s of Kelvin–Voigt damping.
+    pub fn new(body: &Body, retardation: f64) -> Self {
+        let branches = |hex8| {
+            let branches = body.material_of(hex8).branches();
+            branches.map(|_| Hex8Stress::ZERO).collect()
+        };
+        Self {
+            retardation,
+            before: None,
+            branches: body.hex8s().iter().map(branches).collect(),
+        }
+    }
+
+    /// History variables of a body with viscous stress; `None` for one without.
+    pub fn of_viscous(body: &Body, retardation: f64) -> Option<Self> {
+        let new = Self::new(body, retardation);
+        let relaxes = new.branches.iter().any(|branches| !branches.is_empty());
+        (relaxes || (retardation > 0.0 && !new.branches.is_empty())).then_some(new)
+    }
+
+    /// Discards the last stress, whose rate is meaningless after a jump; branches stay.
+    pub fn jump(&mut self) {
+        self.before = None;
+    }
+
+    /// Resets the history: the body has been at its positions for ever.
+    pub fn restart(&mut self) {
+        self.before = None;
+        for branches in &mut self.branches {
+            branches.fill(Hex8Stress::ZERO);
+        }
+    }
+
+    /// Adds the forces (N) of all voxels, elastic and viscous, after `h` seconds since the last call.
+    pub fn add_forces(&mut self, body: &Body, positions: &[Vec3], h: f64, forces: &mut [Vec3]) {
+        let fresh = self.before.is_none();
+        let count = body.hex8s().len();
+        let before = self
+            .before
+            .get_or_insert_with(|| vec![Hex8Stress::ZERO; count]);
+        let retardation = self.retardation;
+        for (index, hex8) in body.hex8s().iter().enumerate() {
+            let material = body.material_of(hex8);
+            let before = &mut before[index];
+            let branches = &mut self.branches[index];
+            let viscous = |now: &Hex8Stress| {
+                let last = std::mem::replace(before, *now);
+                if fresh {
+                    return branches
+                        .iter()
+                        .fold(Hex8Stress::ZERO, |sum, q| sum.plus_scaled(1.0, q));
+                }
+                let change = now.plus_scaled(-1.0, &last);
+                let mut sum = Hex8Stress::ZERO.plus_scaled(retardation / h, &change);
+                for (q, branch) in branches.iter_mut().zip(material.branches()) {
+                    *q = after(q, branch, h, &change);
+                    sum = sum.plus_scaled(1.0, q);
+                }
+                sum
+            };
+            let corners = hex8.viscous_forces(material, positions, viscous);
+            hex8.add_to(&corners, forces);
+        }
+    }
+
+    /// Adds the viscous stress over a step of `step` seconds from `positions`.
+    pub fn start(&mut self, body: &Body, positions: &[Vec3], step: f64, within: &mut [Within]) {
+        let before = self.before.get_or_insert_with(|| stresses(body, positions));
+        let hex8s = body.hex8s().iter().zip(before).zip(&self.branches);
+        for (((hex8, before), branches), within) in hex8s.zip(within) {
+            let mut share = self.retardation / step;
+            let mut stress = Hex8Stress::ZERO;
+            let material = body.material_of(hex8);
+            for (q, (stiffness, time)) in branches.iter().zip(material.branches()) {
+                let half = half_decay(step, time);
+                share += stiffness * half;
+                stress = stress.plus_scaled(half * half, q);
+            }
+            within.share = share;
+            within.stress = stress.plus_scaled(-share, before);
+        }
+    }
+
+    /// Updates the history at the end of that step.
+    pub fn end(&mut self, body: &Body, positions: &[Vec3], step: f64) {
+        let now = stresses(body, positions);
+        if let Some(before) = &self.before {
+            let hex8s = body.hex8s().iter().zip(before).zip(&now);
+            for (((hex8, before), now), branches) in hex8s.zip(&mut self.branches) {
+                let change = now.plus_scaled(-1.0, before);
+                for (q, branch) in branches.iter_mut().zip(body.material_of(hex8).branches()) {
+                    *q = after(q, branch, step, &change);
+                }
+            }
+        }
+        self.before = Some(now);
+    }
+}
+
+/// Decay `e^(−h/2τ)` of a branch over half a step.
+fn half_decay(step: f64, time: f64) -> f64 {
+    libm::exp(-step / (2.0 * time))
+}
+
+/// Stress of a branch `(γ, τ)` after a step in which `s` has changed.
+fn after(q: &Hex8Stress, branch: (f64, f64), step: f64, change: &Hex8Stress) -> Hex8Stress {
+    let (stiffness, time) = branch;
+    let half = half_decay(step, time);
+    Hex8Stress::ZERO
+        .plus_scaled(half * half, q)
+        .plus_scaled(stiffness * half, change)
+}
+
+fn stresses(body: &Body, positions: &[Vec3]) -> Vec<Hex8Stress> {
+    let positions = &*body.ties().seen(positions);
+    let hex8s = body.hex8s().iter();
+    hex8s
+        .map(|hex8| hex8.deviatoric_stress(body.material_of(hex8), positions))
+        .collect()
+}

@@ -1,0 +1,476 @@
+//! Iterative solver of a large voxel body: conjugate gradients with a multigrid preconditioner.
+//!
+//! The memory and the work of one iteration grow with the number of voxels, while those of a direct factor in three
+//! dimensions grow with its powers 4/3 and 2.
+
+use voxsoft_solid::assembly::Elements;
+use voxsoft_solid::element::assumed_strain::AssumedStrains;
+use voxsoft_solid::vector::{Vec3, axpy, dot};
+use voxsoft_solid::{Load, Problem, Term, elastic};
+
+use crate::linear::error::FactorError;
+use crate::linear::multigrid::{
+    BlockMatrix, Coarsest, Hierarchy, Part, Workspace, cells_of, color, for_each, for_each_large,
+    sum,
+};
+use crate::linear::options::LinearOptions;
+use crate::linear::rank::rank;
+use crate::linear::row_pattern::pattern;
+
+/// Memory per vertex: 27 blocks of 76 bytes, an eighth more for coarser levels, and patterns, strains and vectors. 3.9
+/// kB were measured on a cube of 10⁵ voxels, the mesh included.
+const BYTES_PER_VERTEX: u64 = 4_000;
+/// Iterations after which a solution counts as stalled.
+const MAX_ITERATIONS: usize = 400;
+/// Factor on the smallest sufficient rank-one stiffness that is added across a direction.
+const BEYOND: f64 = 10.0;
+/// Number of elements from which parts of the rows are worth a task each, and number of these parts.
+const MANY: usize = 64;
+const PARTS: usize = 8;
+/// Relative error that is still of use to Newton's method.
+const USEFUL: f64 = 0.1;
+/// Iterations between two polls of `stop`.
+const LOOK: usize = 5;
+/// Tolerance of solutions that search for negative curvature.
+const DEFINITE_TOLERANCE: f64 = 1e-4;
+
+/// Tangent as 3 × 3 blocks by vertices, with rows and columns of held coordinates zero.
+pub(crate) struct IterativeSystem {
+    /// Row of each vertex.
+    places: Vec<u32>,
+    held: Vec<[bool; 3]>,
+    matrix: BlockMatrix,
+    /// Relative shift of the diagonal.
+    lifted: f64,
+    hierarchy: Hierarchy,
+    /// Vectors by rows whose outer products are added to the tangent but not to its preconditioner: each costs an
+    /// iteration or two.
+    coupled: Vec<Vec<Vec3>>,
+}
+
+/// Linear system to be solved with the tangent.
+struct Equation<'a> {
+    side: &'a [f64],
+    /// Initial guess of the solution.
+    guess: Option<&'a [f64]>,
+    border: Option<Border<'a>>,
+}
+
+/// Rank-one term added to the tangent: `factor` times the outer product of a vector.
+struct Border<'a> {
+    vector: &'a [Vec3],
+    factor: f64,
+}
+
+/// Preconditioner, and true if solutions must be descent directions.
+pub(crate) struct IterativeFactor {
+    coarsest: Coarsest,
+    downhill: bool,
+}
+
+/// End of an iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum End {
+    Converged,
+    /// Direction along which the tangent is not positive; the solution is the one before.
+    NegativeCurvature,
+    Stalled,
+    Cancelled,
+}
+
+impl IterativeSystem {
+    /// Sparsity pattern and hierarchy; `None` if a component of the body is not made of equal voxels only, or the
+    /// tangent is not symmetric.
+    pub fn new(
+        problem: &Problem,
+        held: &[[bool; 3]],
+        options: LinearOptions,
+    ) -> Result<Option<Self>, FactorError> {
+        let body = problem.body();
+        let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.small_hex8s().len();
+        let loads = problem.loads().iter();
+        let local = body.attached().all(Term::is_local)
+            && loads.map(|load| &load.kind).all(|kind| kind.is_local());
+        if !whole || !local || !problem.is_conservative() {
+            return Ok(None);
+        }
+        let Some(mut cells) = cells_of(body) else {
+            return Ok(None);
+        };
+        // Coarser levels do not represent vertices that are no corners of cells, such as those of free objects.
+        let mut known: Vec<bool> = held.iter().map(|held| held.iter().all(|h| *h)).collect();
+        for node in cells.iter().flat_map(|cell| cell.nodes) {
+            known[node as usize] = true;
+        }
+        if !known.into_iter().all(|known| known) {
+            return Ok(None);
+        }
+        options.allow(BYTES_PER_VERTEX * body.rest().len() as u64)?;
+        let draft = pattern(problem);
+        let (coloring, places) = color(&draft);
+        for cell in &mut cells {
+            cell.nodes = cell.nodes.map(|node| places[node as usize]);
+        }
+        let matrix = draft.renumbered(&places);
+        let hierarchy = Hierarchy::new(cells, &matrix, coloring);
+        Ok(Some(Self {
+            places,
+            held: held.to_vec(),
+            matrix,
+            lifted: 0.0,
+            hierarchy,
+            coupled: Vec::new(),
+        }))
+    }
+
+    /// Length of vectors of free coordinates: all coordinates, of which the held ones are zero.
+    pub fn size(&self) -> usize {
+        3 * self.places.len()
+    }
+
+    /// See [`crate::linear::system::System::assemble`].
+    pub fn assemble(
+        &mut self,
+        problem: &Problem,
+        positions: &[Vec3],
+        factor_of: &dyn Fn(&Load) -> f64,
+        strains: Option<&AssumedStrains>,
+        jump: Option<&[Vec3]>,
+        residual: &mut [f64],
+    ) {
+        self.lifted = 0.0;
+        self.matrix.values.clear();
+        let mut target = Target {
+            places: &self.places,
+            held: &self.held,
+            matrix: &mut self.matrix,
+        };
+        let mut add = |elements: Elements<'_>| match jump {
+            Some(jump) => {
+                target.push(elements, jump, residual);
+                target.add(elements);
+            }
+            None => target.add(elements),
+        };
+        match strains {
+            Some(strains) => strains.visit_elements(problem.body(), positions, &mut add),
+            None => elastic::visit_elements(problem.body(), positions, &mut add),
+        }
+        problem.visit_load_stiffness(positions, factor_of, &mut |vertices, matrices| {
+            add(Elements {
+                width: vertices.len(),
+                vertices,
+                matrices,
+            });
+        });
+    }
+
+    /// Adds the outer products of vectors of free coordinates to the assembled tangent.
+    pub fn couple(&mut self, vectors: &[Vec<f64>]) {
+        self.coupled = vectors.iter().map(|vector| self.by_rows(vector)).collect();
+    }
+
+    /// Product with the tangent and its coupled rank-one terms.
+    fn multiply(&self, vector: &[Vec3], image: &mut [Vec3]) {
+        self.matrix.multiply(vector, image);
+        for coupled in &self.coupled {
+            let along = sum(self.places.len(), |row| dot(coupled[row], vector[row]));
+            for_each(image, |row, image| axpy(image, along, coupled[row]));
+        }
+    }
+
+    /// Scales the diagonal of the assembled tangent to `1 + shift` times its original value, where it is positive.
+    pub fn lift(&mut self, shift: f64) {
+        let by = (1.0 + shift) / (1.0 + self.lifted);
+        self.lifted = shift;
+        if by == 1.0 {
+            return;
+        }
+        for &place in &self.matrix.diagonals {
+            for axis in 0..3 {
+                if self.matrix.values.block(place)[4 * axis] > 0.0 {
+                    self.matrix.values.scale(place, axis, axis, by);
+                }
+            }
+        }
+    }
+
+    /// Preconditioner for the assembled tangent.
+    pub fn factor(&mut self, downhill: bool) -> Result<IterativeFactor, FactorError> {
+        if !self.matrix.values.are_finite() {
+            return Err(FactorError::Singular);
+        }
+        Ok(IterativeFactor {
+            coarsest: self.hierarchy.project(&self.matrix),
+            downhill,
+        })
+    }
+
+    /// Solves in place. If the tangent turns out not to be positive definite and the solution must be a descent
+    /// direction, it ends with the current iterate (Steihaug 1983, doi 10.1137/0720042). Otherwise it continues, which
+    /// nearly always works for the few negative eigenvalues of a tangent far from equilibrium.
+    pub fn solve(
+        &self,
+        factor: &IterativeFactor,
+        side: &mut [f64],
+        tolerance: f64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(), FactorError> {
+        self.solve_from(factor, side, None, tolerance, stop)
+    }
+
+    /// Solves from an initial guess of the solution.
+    pub fn solve_from(
+        &self,
+        factor: &IterativeFactor,
+        side: &mut [f64],
+        guess: Option<&[f64]>,
+        tolerance: f64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(), FactorError> {
+        let equation = Equation {
+            side,
+            guess,
+            border: None,
+        };
+        let (answer, end) = self.iterate(factor, equation, tolerance, stop);
+        for (vertex, &place) in self.places.iter().enumerate() {
+            side[3 * vertex..3 * vertex + 3].copy_from_slice(&answer[place as usize]);
+        }
+        match end {
+            End::Converged | End::NegativeCurvature => Ok(()),
+            End::Stalled => Err(FactorError::Stalled),
+            End::Cancelled => Err(FactorError::Cancelled),
+        }
+    }
+
+    /// See [`crate::linear::system::System::is_held_across`]: the tangent plus `ρ g ⊗ g` is then positive definite for
+    /// all ρ beyond one over that compliance.
+    pub fn is_held_across(&mut self, gradient: &[f64], compliance: f64) -> bool {
+        self.is_positive_definite(Some((gradient, BEYOND / compliance.abs())))
+    }
+
+    /// Tests definiteness by conjugate gradients from zero, which explore every direction in which the preconditioned
+    /// right-hand side has a component; a pseudo-random one has components in all. `border` is a vector with the factor
+    /// of its outer product, which is added to the tangent.
+    pub fn is_positive_definite(&mut self, border: Option<(&[f64], f64)>) -> bool {
+        let Ok(factor) = self.factor(true) else {
+            return false;
+        };
+        let mut side = vec![0.0; self.size()];
+        let mut seed = 0x9e37_79b9_7f4a_7c15u64;
+        for (coordinate, value) in side.iter_mut().enumerate() {
+            if !self.held[coordinate / 3][coordinate % 3] {
+                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                *value = (seed >> 33) as f64 / f64::from(1u32 << 31) - 0.5;
+            }
+        }
+        let border = border.map(|(vector, factor)| (self.by_rows(vector), factor));
+        let border = border.as_ref().map(|(vector, factor)| Border {
+            vector,
+            factor: *factor,
+        });
+        let equation = Equation {
+            side: &side,
+            guess: None,
+            border,
+        };
+        let end = self
+            .iterate(&factor, equation, DEFINITE_TOLERANCE, &mut || false)
+            .1;
+        end != End::NegativeCurvature
+    }
+
+    /// Converts a vector of free coordinates into rows.
+    fn by_rows(&self, side: &[f64]) -> Vec<Vec3> {
+        let mut rows = vec![[0.0; 3]; self.places.len()];
+        for (vertex, &place) in self.places.iter().enumerate() {
+            rows[place as usize].copy_from_slice(&side[3 * vertex..3 * vertex + 3]);
+        }
+        rows
+    }
+
+    /// Preconditioned conjugate gradients; returns the solution by rows.
+    fn iterate(
+        &self,
+        factor: &IterativeFactor,
+        equation: Equation<'_>,
+        tolerance: f64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> (Vec<Vec3>, End) {
+        let count = self.places.len();
+        let mut residual = self.by_rows(equation.side);
+        let inner = |a: &[Vec3], b: &[Vec3]| sum(count, |row| dot(a[row], b[row]));
+        let mut answer = vec![[0.0; 3]; count];
+        let mut image = vec![[0.0; 3]; count];
+        let mut work: Workspace = self.hierarchy.workspace(&self.matrix);
+        let preconditioner = self
+            .hierarchy
+            .preconditioner(&self.matrix, &factor.coarsest);
+        preconditioner.apply(&residual, &mut work);
+        // Energy of the error in the norm of the preconditioner: residual forces would hardly measure soft bending
+        // modes, which carry most of a slender body's displacement.
+        let goal = tolerance * tolerance * sum(count, |row| dot(residual[row], work.answer(row)));
+        if let Some(guess) = equation.guess {
+            answer = self.by_rows(guess);
+            self.multiply(&answer, &mut image);
+            for_each(&mut residual, |row, r| axpy(r, -1.0, image[row]));
+            preconditioner.apply(&residual, &mut work);
+        }
+        let mut direction: Vec<Vec3> = (0..count).map(|row| work.answer(row)).collect();
+        let mut gain = inner(&residual, &direction);
+        if gain == 0.0 || gain.abs() < goal {
+            return (answer, End::Converged);
+        }
+        for iteration in 0..MAX_ITERATIONS {
+            if iteration % LOOK == 0 && stop() {
+                return (answer, End::Cancelled);
+            }
+            self.multiply(&direction, &mut image);
+            if let Some(Border { vector, factor }) = &equation.border {
+                let part = factor * inner(vector, &direction);
+                for_each(&mut image, |row, image| axpy(image, part, vector[row]));
+            }
+            let curvature = inner(&direction, &image);
+            let positive = curvature > 0.0 && gain > 0.0;
+            let lost = !(curvature.abs() > 0.0 && gain.is_finite());
+            if lost || (factor.downhill && !positive) {
+                if iteration == 0 {
+                    answer = direction;
+                }
+                return (answer, End::NegativeCurvature);
+            }
+            let step = gain / curvature;
+            for_each(&mut answer, |row, x| axpy(x, step, direction[row]));
+            for_each(&mut residual, |row, r| axpy(r, -step, image[row]));
+            preconditioner.apply(&residual, &mut work);
+            let next = sum(count, |row| dot(residual[row], work.answer(row)));
+            if next.abs() <= goal {
+                return (answer, End::Converged);
+            }
+            let keep = next / gain;
+            gain = next;
+            for_each(&mut direction, |row, d| {
+                let fresh = work.answer(row);
+                for axis in 0..3 {
+                    d[axis] = keep * d[axis] + fresh[axis];
+                }
+            });
+        }
+        let useful = gain.abs() * tolerance * tolerance <= USEFUL * USEFUL * goal;
+        (answer, if useful { End::Converged } else { End::Stalled })
+    }
+
+    /// Flattens vectors on vertices into all coordinates, zero where held.
+    pub fn gather(&self, vectors: &[Vec3]) -> Vec<f64> {
+        let mut free = vectors.as_flattened().to_vec();
+        for (coordinate, value) in free.iter_mut().enumerate() {
+            if self.held[coordinate / 3][coordinate % 3] {
+                *value = 0.0;
+            }
+        }
+        free
+    }
+
+    /// Expands coordinates into vectors on vertices, zero where held.
+    pub fn spread(&self, free: &[f64]) -> Vec<Vec3> {
+        free.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect()
+    }
+}
+
+/// Matrix into which elements are assembled.
+struct Target<'a> {
+    places: &'a [u32],
+    held: &'a [[bool; 3]],
+    matrix: &'a mut BlockMatrix,
+}
+
+impl Target<'_> {
+    /// Subtracts the forces of held coordinates that are about to move.
+    fn push(&self, elements: Elements<'_>, jump: &[Vec3], residual: &mut [f64]) {
+        for (vertices, entries) in elements.iter() {
+            let width = 3 * vertices.len();
+            for (row, entries) in entries.chunks(width).enumerate() {
+                let (vertex, axis) = (vertices[row / 3] as usize, row % 3);
+                if self.held[vertex][axis] {
+                    continue;
+                }
+                for (column, k) in entries.iter().enumerate() {
+                    let (other, along) = (vertices[column / 3] as usize, column % 3);
+                    if self.held[other][along] {
+                        residual[3 * vertex + axis] -= k * jump[other][along];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds to the matrix: many elements by parts of its rows, so that each row sums them in their order.
+    fn add(&mut self, elements: Elements<'_>) {
+        let Self {
+            places,
+            held,
+            matrix,
+        } = self;
+        let rows = matrix.diagonals.len();
+        let count = if elements.vertices.len() < MANY * elements.width {
+            1
+        } else {
+            PARTS
+        };
+        let BlockMatrix {
+            starts,
+            columns,
+            values,
+            ..
+        } = &mut **matrix;
+        // Rows are numbered by colors, each of which occurs once in a voxel: equal parts are equal work.
+        let ranges = (0..count).map(|part| rows * part / count..rows * (part + 1) / count);
+        let sizes = ranges
+            .clone()
+            .map(|rows| starts[rows.end] - starts[rows.start]);
+        let values = values.parts(sizes);
+        let mut parts: Vec<Rows<'_>> = ranges
+            .zip(values)
+            .map(|(range, values)| Rows { range, values })
+            .collect();
+        for_each_large(&mut parts, |_, rows| {
+            for (vertices, entries) in elements.iter() {
+                for (a, &vertex) in vertices.iter().enumerate() {
+                    let row = places[vertex as usize] as usize;
+                    if !rows.range.contains(&row) {
+                        continue;
+                    }
+                    let columns = &columns[starts[row]..starts[row + 1]];
+                    let first = starts[row] - starts[rows.range.start];
+                    let fixed = held[vertex as usize];
+                    let width = 3 * vertices.len();
+                    let entries = &entries[3 * a * width..(3 * a + 3) * width];
+                    for (b, &other) in vertices.iter().enumerate() {
+                        let mut block = [0.0; 9];
+                        for i in 0..3 {
+                            let entries = &entries[i * width + 3 * b..][..3];
+                            block[3 * i..3 * i + 3].copy_from_slice(entries);
+                        }
+                        let across = held[other as usize];
+                        if fixed != [false; 3] || across != [false; 3] {
+                            for (k, entry) in block.iter_mut().enumerate() {
+                                if fixed[k / 3] || across[k % 3] {
+                                    *entry = 0.0;
+                                }
+                            }
+                        }
+                        let place = first + rank(columns, places[other as usize]);
+                        rows.values.add(place, &block);
+                    }
+                }
+            }
+        });
+    }
+}
+
+/// Range of rows of a matrix.
+struct Rows<'a> {
+    range: std::ops::Range<usize>,
+    values: Part<'a>,
+}

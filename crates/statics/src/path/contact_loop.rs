@@ -1,0 +1,155 @@
+//! Augmented-Lagrange loop: equilibria in which the active set of the floor and contact have converged, with fixed
+//! loads, a fixed volume, or a fixed arc length.
+
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Contact, Fluid, Observer, Problem};
+
+use crate::path::equilibrium::{Equilibrium, Failure, Found, Strategy};
+use crate::path::load_parameter::LoadParameter;
+use crate::path::settings::Settings;
+
+/// Most corrections of floor and contact at one point of the path.
+const ROUNDS: usize = 100;
+/// Consecutive corrections without a new smallest change, after which the step is cut if possible: active sets that
+/// alternate need a shorter step.
+const STALE: usize = 20;
+/// Tolerance of equilibria at which contact is corrected, and the fraction of the residual after the last correction
+/// that may remain; at the end corrections are checked at the requested tolerance.
+const LOOSE: f64 = 1e-3;
+const LEFT: f64 = 0.05;
+/// Precision of contact under the whole load, where forces are read: on the path, bounds of friction may be off by 0.3
+/// % of the largest one at each vertex, which adds up, and missing reactions to the loads are reported from 0.1 % on.
+const AT_THE_END: f64 = 0.1;
+
+/// Search for an equilibrium with fixed multipliers of contact.
+pub(crate) trait Search: Clone {
+    /// Point of the path of its equilibrium, or of its start.
+    fn point(&self) -> LoadParameter;
+
+    /// Tests whether a shorter step is possible if this one does not settle soon.
+    fn can_be_cut(&self) -> bool {
+        false
+    }
+
+    /// Finds the equilibrium from `positions`, which it changes. In a `round` after the first it begins at one with the
+    /// multipliers before a correction.
+    fn find(
+        &mut self,
+        equilibrium: &mut Equilibrium,
+        positions: &mut Vec<Vec3>,
+        settings: &Settings,
+        round: usize,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure>;
+}
+
+/// Search for the equilibrium under given loads.
+#[derive(Clone, Copy)]
+pub(crate) struct AtLoad {
+    pub point: LoadParameter,
+    /// True if a line search follows when mixed iterations diverge.
+    pub safe: bool,
+    /// Possibility of a shorter step, see [`Search::can_be_cut`].
+    pub can_be_cut: bool,
+}
+
+impl Search for AtLoad {
+    fn point(&self) -> LoadParameter {
+        self.point
+    }
+
+    fn can_be_cut(&self) -> bool {
+        self.can_be_cut
+    }
+
+    fn find(
+        &mut self,
+        equilibrium: &mut Equilibrium,
+        positions: &mut Vec<Vec3>,
+        settings: &Settings,
+        round: usize,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure> {
+        let strategy = strategy_of(round, &equilibrium.problem, self.safe);
+        equilibrium.newton(positions, self.point, settings, strategy, observer)
+    }
+}
+
+impl Equilibrium {
+    /// Finds the equilibrium of a `search` from `positions`, which it changes, with floor and contact settled.
+    pub fn settle(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        search: &mut impl Search,
+        settings: &Settings,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure> {
+        let mut iterations = 0;
+        // With a higher precision, anchors of friction must not depend on the residual of an iteration.
+        let mut loose = self.problem.contact().is_some() && self.precision == 1.0;
+        let mut round = 0;
+        let (mut least, mut stale) = (f64::INFINITY, 0);
+        let enough = if search.can_be_cut() { STALE } else { ROUNDS };
+        while round < ROUNDS && stale < enough {
+            let changed = self.forces(positions, search.point()).relative();
+            stale = if changed < least { 0 } else { stale + 1 };
+            least = least.min(changed);
+            let tolerance = if loose {
+                settings.tolerance.max(LOOSE.min(LEFT * changed))
+            } else {
+                settings.tolerance
+            };
+            let settings = Settings {
+                tolerance,
+                ..*settings
+            };
+            let found = search.find(self, positions, &settings, round, observer)?;
+            iterations += found.iterations;
+            round += 1;
+            let floor_changed = self.update_floor(positions, search.point())?;
+            let settled = !floor_changed && self.is_contact_settled(positions, search.point());
+            if settled && !loose {
+                if self.lets_go(positions) {
+                    (round, loose) = (1, true);
+                    (least, stale) = (f64::INFINITY, 0);
+                    continue;
+                }
+                return Ok(Found {
+                    iterations,
+                    residual: found.residual,
+                });
+            }
+            loose &= !settled;
+        }
+        Err(Failure::Lost)
+    }
+
+    /// Breaks bonds that an equilibrium with settled contact loads beyond their strength; returns true if any broke.
+    fn lets_go(&mut self, positions: &[Vec3]) -> bool {
+        let contact = self.problem.contact_mut();
+        contact.is_some_and(|contact| contact.release_bonds(positions))
+    }
+
+    /// Corrects the multipliers of contact by an equilibrium; returns true if they have settled.
+    fn is_contact_settled(&mut self, positions: &[Vec3], point: LoadParameter) -> bool {
+        let precision = if (point.dead, point.pressure) == (1.0, 1.0) {
+            self.precision.min(AT_THE_END)
+        } else {
+            self.precision
+        };
+        let negligible = self.negligible;
+        let settled = |contact: &mut dyn Contact| contact.correct(positions, negligible, precision);
+        self.problem.contact_mut().is_none_or(settled)
+    }
+}
+
+/// Variant of Newton's method in a round, the first of which has number 0.
+fn strategy_of(round: usize, problem: &Problem, safe: bool) -> Strategy {
+    let is_stiff = problem.fluid().is_some_and(Fluid::is_stiff);
+    match (problem.contact(), safe) {
+        // A line search with a liquid advances by steps that hardly change its volume.
+        (Some(_), _) if round > 0 && !is_stiff => Strategy::LineSearch,
+        (_, true) => Strategy::NewtonThenLineSearch,
+        (_, false) => Strategy::Newton,
+    }
+}

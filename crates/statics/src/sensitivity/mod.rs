@@ -1,0 +1,4 @@
+//! Derivatives of equilibria.
+
+pub(crate) mod adjoint;
+pub(crate) mod parameters;
