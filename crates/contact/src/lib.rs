@@ -60,9 +60,9 @@ pub use predicates::Point;
 /// A deformed body. All indices are of `positions`.
 #[derive(Debug, Clone, Copy)]
 pub struct Body<'a> {
-    /// Vertices of the unloaded body [m].
+    /// Vertices of the unloaded body (m).
     pub rest: &'a [Point],
-    /// Vertices of the deformed body [m]; finite.
+    /// Vertices of the deformed body (m); finite.
     pub positions: &'a [Point],
     /// Tetrahedra, of positive volume in the unloaded body.
     pub tets: &'a [[i32; 4]],
@@ -86,11 +86,11 @@ pub struct Penetration {
 /// One overlap of a component with itself or another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overlap {
-    /// Depth [m]; for membranes, a lower bound of the distance by which an edge reaches through.
+    /// Depth (m); for membranes, a lower bound of the distance by which an edge reaches through.
     pub depth: f64,
-    /// Deepest point of the deformed body [m].
+    /// Deepest point of the deformed body (m).
     pub now: Point,
-    /// The two material points there, in the unloaded body [m]: one on the surface, one in the material that it
+    /// The two material points there, in the unloaded body (m): one on the surface, one in the material that it
     /// penetrates.
     pub rest: [Point; 2],
     /// Tetrahedra of both points; -1 where a membrane has none.

@@ -1,7 +1,7 @@
 //! Signs of determinants, exact for every input (Shewchuk 1997, doi 10.1007/PL00009321).
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
-/// A point [m].
+/// A point (m).
 pub type Point = [f64; 3];
 
 /// Orientation predicate: the side of the plane through `a`, `b`, `c` on which the point `d` lies.

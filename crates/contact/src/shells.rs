@@ -6,7 +6,7 @@ use crate::triangles::holds;
 use crate::union::Sets;
 use crate::vectors::{cross, dot, sub};
 
-/// Triangles connected at vertices, with the enclosed volume [m³], negative around a cavity.
+/// Triangles connected at vertices, with the enclosed volume (m³), negative around a cavity.
 pub(crate) struct Shell {
     pub(crate) triangles: Vec<u32>,
     pub(crate) volume: f64,

@@ -1,4 +1,4 @@
-//! `_core.Problem` and its XPBD solvers.
+//! `_core.Problem` and its XPBD solvers. Long because one Python class collects the operations on a problem, each a method.
 
 use std::sync::Arc;
 

@@ -24,7 +24,7 @@
 //! ```
 //!
 //! # Method
-//! [`Expr`] holds the function with float64 constants. [`sample`] compiles it with fidget, decides
+//! [`Expr`] holds the function with float64 constants. [`sample()`] compiles it with fidget, decides
 //! whole blocks by interval arithmetic, and evaluates the rest in f32; [`range`] bounds the f32
 //! error, and cells within it are evaluated again in float64. Functions that are no expression
 //! (triangle meshes, polygons, Python functions) enter as a [`Field`].

@@ -206,7 +206,7 @@ impl Problem {
         self.floor
     }
 
-    /// Axes of every vertex held by clamps; all axes of a tied one (hanging node, [`Ties`]).
+    /// Axes of every vertex held by clamps; all axes of a tied one (hanging node, [`crate::element::ties::Ties`]).
     pub fn held(&self) -> &[[bool; 3]] {
         &self.held
     }

@@ -9,9 +9,9 @@ use crate::runs::LabeledRuns;
 pub struct Cavity {
     /// Its cells.
     pub region: Component,
-    /// Its volume [m³].
+    /// Its volume (m³).
     pub volume: f64,
-    /// Its surface, the faces it shares with filled cells [m²].
+    /// Its surface, the faces it shares with filled cells (m²).
     pub area: f64,
 }
 

@@ -10,12 +10,12 @@ use crate::vectors::{dot, norm, sub};
 const TIE: f64 = 1e-9;
 
 impl Grid {
-    /// Assigns the cells in the box between `lower` and `upper` [m] to `part` (0 empties them).
+    /// Assigns the cells in the box between `lower` and `upper` (m) to `part` (0 empties them).
     pub fn fill_box(&mut self, lower: [f64; 3], upper: [f64; 3], part: u8) {
         self.fill_where(lower, upper, part, |_| -f64::INFINITY);
     }
 
-    /// Assigns the cells in a sphere [m] to `part` (0 empties them).
+    /// Assigns the cells in a sphere (m) to `part` (0 empties them).
     pub fn fill_sphere(&mut self, center: [f64; 3], radius: f64, part: u8) {
         let lower = center.map(|x| x - radius);
         let upper = center.map(|x| x + radius);
@@ -24,7 +24,7 @@ impl Grid {
 
     /// Assigns the cells in a cylinder to `part` (0 empties them).
     ///
-    /// The cylinder starts at `base` [m] and reaches `height` [m] along the direction `axis`
+    /// The cylinder starts at `base` (m) and reaches `height` (m) along the direction `axis`
     /// (any length, any direction).
     pub fn fill_cylinder(
         &mut self,
@@ -39,7 +39,7 @@ impl Grid {
 
     /// Assigns the cells between two coaxial cylinders to `part` (0 empties them).
     ///
-    /// Fills like [`Grid::fill_cylinder`], without the cells closer to the axis than `inner_radius` [m].
+    /// Fills like [`Grid::fill_cylinder`], without the cells closer to the axis than `inner_radius` (m).
     pub fn fill_tube(
         &mut self,
         base: [f64; 3],

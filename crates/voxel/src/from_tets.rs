@@ -41,7 +41,7 @@ pub enum FromTetsError {
     Position {
         /// The vertex.
         vertex: usize,
-        /// Its position [m].
+        /// Its position (m).
         position: [f64; 3],
     },
     /// A tet without volume.
@@ -49,7 +49,7 @@ pub enum FromTetsError {
     Flat {
         /// The tet.
         tet: usize,
-        /// Its volume [m³].
+        /// Its volume (m³).
         volume: f64,
     },
     /// A face held by more than two tets, or by two that lie on the same side of it.

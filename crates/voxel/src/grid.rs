@@ -48,7 +48,7 @@ pub enum GridError {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
     shape: [usize; 3],
-    /// Position of lattice node (0, 0, 0) [m], within half a voxel of the world's origin.
+    /// Position of lattice node (0, 0, 0) (m), within half a voxel of the world's origin.
     base: [f64; 3],
     /// Lattice index of the first cell.
     offset: [i32; 3],
@@ -57,7 +57,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Makes an empty grid of `shape` cells of side `voxel_size` [m], with its lower corner at `origin` [m].
+    /// Makes an empty grid of `shape` cells of side `voxel_size` (m), with its lower corner at `origin` (m).
     ///
     /// # Errors
     ///
@@ -148,12 +148,12 @@ impl Grid {
         self.shape
     }
 
-    /// Side of a cell [m].
+    /// Side of a cell (m).
     pub fn voxel_size(&self) -> f64 {
         self.voxel_size
     }
 
-    /// Lower corner of the grid [m].
+    /// Lower corner of the grid (m).
     pub fn origin(&self) -> [f64; 3] {
         self.node_position(self.offset)
     }
@@ -207,12 +207,12 @@ impl Grid {
         (i * ny + j) * nz + k
     }
 
-    /// Position of a lattice node [m].
+    /// Position of a lattice node (m).
     pub fn node_position(&self, node: [i32; 3]) -> [f64; 3] {
         std::array::from_fn(|a| self.base[a] + self.voxel_size * f64::from(node[a]))
     }
 
-    /// Position of a cell's center [m].
+    /// Position of a cell's center (m).
     pub fn cell_center(&self, cell: [usize; 3]) -> [f64; 3] {
         std::array::from_fn(|a| {
             let steps = f64::from(self.offset[a]) + cell[a] as f64 + 0.5;
@@ -234,12 +234,12 @@ impl Grid {
         counts
     }
 
-    /// Volume of the filled cells [m³].
+    /// Volume of the filled cells (m³).
     pub fn volume(&self) -> f64 {
         self.count() as f64 * self.voxel_size.powi(3)
     }
 
-    /// Center of mass of the filled cells [m] for equal densities; `None` for an empty grid.
+    /// Center of mass of the filled cells (m) for equal densities; `None` for an empty grid.
     ///
     /// Sums whole indices, so the result does not depend on the order of summation.
     pub fn center_of_mass(&self) -> Option<[f64; 3]> {

@@ -17,7 +17,7 @@ use crate::runs::LabeledRuns;
 pub struct Leak {
     /// Its cells, up to the openings.
     pub region: Component,
-    /// Its volume [m³].
+    /// Its volume (m³).
     pub volume: f64,
     /// Largest width of its openings in one direction, in cells.
     pub width: usize,

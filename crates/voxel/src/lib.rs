@@ -1,8 +1,8 @@
 //! Voxel grids of soft-robot parts, and the tetrahedral meshes made of them.
 //!
 //! A [`Grid`] is a box of cubic cells, each empty or of one part. It gives the regions that matter to a designer
-//! ([`components`], [`cavities`], [`leaks`], [`hinges`], [`wall_thickness`]) and the conforming mesh that the solvers
-//! use ([`tet_mesh`]).
+//! ([`components()`], [`cavities()`], [`leaks()`], [`hinges()`], [`wall_thickness`]) and the conforming mesh that the
+//! solvers use ([`tet_mesh()`]).
 //!
 //! # Conventions
 //!

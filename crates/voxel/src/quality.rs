@@ -6,13 +6,13 @@ use crate::vectors::{tet_volume, triangle_area};
 /// Quality figures of a mesh, counted from its tets and triangles alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quality {
-    /// Sum of the volumes of the tets [m³].
+    /// Sum of the volumes of the tets (m³).
     pub volume: f64,
-    /// Smallest volume of a tet [m³]; positive in a sound mesh.
+    /// Smallest volume of a tet (m³); positive in a sound mesh.
     pub smallest_tet: f64,
-    /// Largest volume of a tet [m³].
+    /// Largest volume of a tet (m³).
     pub largest_tet: f64,
-    /// Area of the boundary [m²].
+    /// Area of the boundary (m²).
     pub area: f64,
     /// Euler number V − E + F − T; 1 for a ball, 0 for a solid ring, 2 for a ball with a cavity.
     pub euler_number: i64,

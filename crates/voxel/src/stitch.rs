@@ -61,7 +61,7 @@ fn needed_bytes(voxels: u64, nodes: u64, exposed: u64) -> u64 {
 /// Makes the five-tet mesh of the filled cells.
 ///
 /// Voxels that touch are stitched, also where they share only an edge or a corner; see
-/// [`crate::hinges`] for these. Cavity surfaces are triangles of the boundary.
+/// [`crate::hinges()`] for these. Cavity surfaces are triangles of the boundary.
 ///
 /// # Errors
 ///

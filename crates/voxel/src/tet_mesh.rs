@@ -5,18 +5,18 @@
 pub struct CavitySurface {
     /// Vertex indices, pointing out of the material, that is into the cavity.
     pub triangles: Vec<[i32; 3]>,
-    /// Enclosed volume [m³].
+    /// Enclosed volume (m³).
     pub volume: f64,
-    /// Area of the triangles [m²].
+    /// Area of the triangles (m²).
     pub area: f64,
 }
 
 /// A conforming mesh of tetrahedra with its edges, its boundary and its cavities.
 ///
-/// Its lists are consistent if they come from [`crate::tet_mesh`] or [`crate::mesh_from_tets`].
+/// Its lists are consistent if they come from [`crate::tet_mesh()`] or [`crate::mesh_from_tets`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct TetMesh {
-    /// Positions [m]; those of a voxel mesh are in C order of their lattice nodes.
+    /// Positions (m); those of a voxel mesh are in C order of their lattice nodes.
     pub vertices: Vec<[f64; 3]>,
     /// The lattice node of each vertex; empty for a mesh that was not made of voxels.
     pub keys: Vec<[i32; 3]>,
@@ -32,8 +32,8 @@ pub struct TetMesh {
     pub tet_part: Vec<u8>,
     /// The lattice index of each voxel, in C order; empty for a mesh that was not made of voxels.
     pub voxel_cells: Vec<[i32; 3]>,
-    /// Side of the voxels [m]; `None` for a mesh that was not made of voxels.
+    /// Side of the voxels (m); `None` for a mesh that was not made of voxels.
     pub voxel_size: Option<f64>,
-    /// The surfaces of the cavities, largest first (in the order of [`crate::cavities`]).
+    /// The surfaces of the cavities, largest first (in the order of [`crate::cavities()`]).
     pub cavities: Vec<CavitySurface>,
 }

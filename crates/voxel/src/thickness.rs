@@ -102,7 +102,7 @@ fn shorten(
     }
 }
 
-/// Thinnest wall around each cavity, in the order of [`crate::cavities`].
+/// Thinnest wall around each cavity, in the order of [`crate::cavities()`].
 ///
 /// A wall is a row of filled cells along an axis with this cavity at one end, and the outside or
 /// another cavity at the other.

@@ -8,7 +8,7 @@ use crate::grid::Grid;
 /// others.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unstitched {
-    /// Positions [m], eight per voxel.
+    /// Positions (m), eight per voxel.
     pub vertices: Vec<[f64; 3]>,
     /// Vertex indices, five per voxel, with positive volume.
     pub tets: Vec<[i32; 4]>,
@@ -18,7 +18,7 @@ pub struct Unstitched {
     pub triangles: Vec<[i32; 3]>,
 }
 
-/// Makes the mesh before stitching, voxels in C order. For study and tests only; see [`crate::tet_mesh`].
+/// Makes the mesh before stitching, voxels in C order. For study and tests only; see [`crate::tet_mesh()`].
 ///
 /// # Panics
 ///
