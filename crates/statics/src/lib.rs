@@ -45,6 +45,10 @@ mod path;
 mod sensitivity;
 
 pub use ensemble::{Ensemble, Settled, Variant};
+pub use linear::conformance;
+pub use linear::conjugate_gradients::{End, Equation, conjugate_gradients};
+pub use linear::lattice_product::LatticeProduct;
+pub use linear::operator::{Jacobi, LinearOperator, Preconditioner, RankUpdated};
 pub use linear::options::LinearSolver;
 pub use motion::implicit::{Implicit, ImplicitSettings};
 pub use motion::modes::{Mode, modes};
