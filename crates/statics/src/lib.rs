@@ -56,5 +56,6 @@ pub use motion::transient::{Motion, Transient};
 pub use path::follow::{Start, solve};
 pub use path::settings::{Answer, Control, PathPoint, Settings};
 pub use sensitivity::adjoint::{AdjointError, adjoint};
+pub use sensitivity::blocks::block_slopes;
 pub use sensitivity::parameters::{Varied, sensitivities};
 pub use voxsoft_solid::Status;

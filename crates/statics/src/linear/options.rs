@@ -20,6 +20,19 @@ pub enum LinearSolver {
 }
 
 impl LinearSolver {
+    /// All solvers by the names that callers give.
+    pub const NAMES: &[(&str, Self)] = &[
+        ("auto", Self::Auto),
+        ("direct", Self::Direct),
+        ("iterative", Self::Iterative),
+    ];
+
+    /// Solver of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        let mut names = Self::NAMES.iter();
+        names.find(|own| own.0 == name).map(|own| own.1)
+    }
+
     /// Back end of conjugate gradients for a body with a number of vertices; `None` for a direct factor. Back ends are
     /// named here and nowhere else.
     pub(crate) fn backend(self, vertices: usize) -> Option<MakeBackend> {
