@@ -112,15 +112,11 @@ pub fn equilibrium(
             return Err(PyValueError::new_err(message));
         }
     };
-    let linear = match linear {
-        "auto" => LinearSolver::Auto,
-        "direct" => LinearSolver::Direct,
-        "iterative" => LinearSolver::Iterative,
-        other => {
-            let message = format!("linear: \"{other}\" is not auto, direct or iterative");
-            return Err(PyValueError::new_err(message));
-        }
-    };
+    let linear = LinearSolver::named(linear).ok_or_else(|| {
+        let names: Vec<&str> = LinearSolver::NAMES.iter().map(|named| named.0).collect();
+        let message = format!("linear: \"{linear}\" is not one of {}", names.join(", "));
+        PyValueError::new_err(message)
+    })?;
     let settings = Settings {
         tolerance,
         first_step,

@@ -123,19 +123,10 @@ impl Body {
             });
         }
 
-        let mut masses = vec![0.0; mesh.vertices.len()];
+        let mut masses = other_masses(mesh);
         let (mut voxels, mut hex8s) = (Vec::new(), Vec::new());
         let mut hex8_of = vec![u32::MAX; mesh.tets.len()];
         let mut local = LocalMaterials::beside(materials.len());
-        for membrane in &mesh.membranes {
-            membrane.add_mass(&mut masses);
-        }
-        for attachment in &mesh.attachments {
-            attachment.add_masses(&mut masses);
-        }
-        for &(vertex, mass) in &mesh.point_masses {
-            masses[vertex as usize] += mass;
-        }
         // Stiffness of the material bonded to membranes: Young's modulus times size, the least around each vertex, N/m.
         let mut behind = vec![f64::INFINITY; mesh.vertices.len()];
         let mut found: Vec<Edge> = Vec::new();
@@ -247,19 +238,6 @@ impl Body {
                 .chain(local.materials)
                 .collect()
         };
-        let stuff = |hex8: &Hex8| &hyperelastic[hex8.material as usize];
-        let stiffness = |hex8: &Hex8| stuff(hex8).young() * hex8.volume(stuff(hex8));
-        let hex8_energy = hex8s.iter().map(stiffness).sum::<f64>();
-        let edge_energy = edges
-            .iter()
-            .map(|e| e.stiffness * e.length.powi(2))
-            .sum::<f64>();
-        let mut strain_forces = edge_forces(&edges, masses.len());
-        for hex8 in &hex8s {
-            for vertex in hex8.vertices {
-                strain_forces[vertex as usize] += stiffness(hex8) / hex8.free_side(stuff(hex8));
-            }
-        }
         let mut membranes = Membranes(mesh.membranes.clone());
         membranes.set_behind(&behind);
         let mut attachments = mesh.attachments.clone();
@@ -267,8 +245,8 @@ impl Body {
             attachment.set_behind(&behind);
         }
         let mut body = Self {
-            unit_strain_force: strain_forces.iter().map(|f| f * f).sum::<f64>().sqrt(),
-            unit_strain_energy: (edge_energy + hex8_energy) / 2.0,
+            unit_strain_force: 0.0,
+            unit_strain_energy: 0.0,
             size: size_of(mesh),
             rest: mesh.vertices.clone(),
             masses,
@@ -284,8 +262,56 @@ impl Body {
             chunk_tets,
             colors: order.colors,
         };
+        body.measure();
         body.warp_unless(&vec![[false; 3]; mesh.vertices.len()], &[]);
         Ok(body)
+    }
+
+    /// Sets the force and the energy of a strain of one from the present stiffness.
+    fn measure(&mut self) {
+        let stuff = |hex8: &Hex8| self.material_of(hex8);
+        let stiffness = |hex8: &Hex8| stuff(hex8).young() * hex8.volume(stuff(hex8));
+        let hex8s = &self.hex8s.hex8s;
+        let edges = &self.edges.0;
+        let hex8_energy = hex8s.iter().map(stiffness).sum::<f64>();
+        let edge_energy = edges
+            .iter()
+            .map(|e| e.stiffness * e.length.powi(2))
+            .sum::<f64>();
+        let mut strain_forces = edge_forces(edges, self.masses.len());
+        for hex8 in hex8s {
+            for vertex in hex8.vertices {
+                strain_forces[vertex as usize] += stiffness(hex8) / hex8.free_side(stuff(hex8));
+            }
+        }
+        self.unit_strain_force = strain_forces.iter().map(|f| f * f).sum::<f64>().sqrt();
+        self.unit_strain_energy = (edge_energy + hex8_energy) / 2.0;
+    }
+
+    /// Sets masses (kg), the stiffness of edges (N/m) and tetrahedra (Pa/m³), and the filled fractions of the
+    /// hyperelastic voxels of the mesh.
+    pub(crate) fn fill(
+        &mut self,
+        masses: Vec<f64>,
+        edges: &[f64],
+        tets: &[f64],
+        fractions: &[f64],
+    ) {
+        self.masses = masses;
+        for (edge, stiffness) in self.edges.0.iter_mut().zip(edges) {
+            edge.stiffness = *stiffness;
+        }
+        for (tet, stiffness) in self.tets.0.iter_mut().zip(tets) {
+            tet.stiffness = *stiffness;
+        }
+        if self.coarse.is_empty() {
+            for (hex8, fraction) in self.hex8s.hex8s.iter_mut().zip(fractions) {
+                hex8.fraction = *fraction;
+            }
+        } else {
+            self.coarse.fill(fractions, &mut self.hex8s.hex8s);
+        }
+        self.measure();
     }
 
     /// Lets the free faces of hyperelastic voxels warp, except those `held` (axes for each vertex). `pressed` are the
@@ -572,6 +598,21 @@ impl EdgesFrom {
     }
 }
 
+/// The masses of all vertices in kg that no tetrahedron brings.
+pub(crate) fn other_masses(mesh: &Mesh) -> Vec<f64> {
+    let mut masses = vec![0.0; mesh.vertices.len()];
+    for membrane in &mesh.membranes {
+        membrane.add_mass(&mut masses);
+    }
+    for attachment in &mesh.attachments {
+        attachment.add_masses(&mut masses);
+    }
+    for &(vertex, mass) in &mesh.point_masses {
+        masses[vertex as usize] += mass;
+    }
+    masses
+}
+
 fn check(mesh: &Mesh, materials: usize) -> Result<(), ProblemError> {
     let expected = mesh.tets.len();
     for (what, got) in [
@@ -670,13 +711,13 @@ fn check(mesh: &Mesh, materials: usize) -> Result<(), ProblemError> {
 }
 
 /// The filled part of a block, given by its tetrahedra.
-fn fraction_of(mesh: &Mesh, block: &[usize]) -> f64 {
+pub(crate) fn fraction_of(mesh: &Mesh, block: &[usize]) -> f64 {
     let index = mesh.tet_block[block[0]] as usize;
     mesh.block_fraction.get(index).copied().unwrap_or(1.0)
 }
 
 /// The edge directions of a block, given by its tetrahedra; `None` for x, y and z.
-fn axes_of(mesh: &Mesh, block: &[usize]) -> Option<Mat3> {
+pub(crate) fn axes_of(mesh: &Mesh, block: &[usize]) -> Option<Mat3> {
     let index = mesh.tet_block[block[0]] as usize;
     mesh.block_axes.get(index).copied()
 }
@@ -705,12 +746,12 @@ fn size_of(mesh: &Mesh) -> f64 {
 }
 
 /// The signed volume of a tetrahedron in m³.
-fn volume(vertices: &[Vec3], tet: [u32; 4]) -> f64 {
+pub(crate) fn volume(vertices: &[Vec3], tet: [u32; 4]) -> f64 {
     let [a, b, c, d] = tet.map(|v| vertices[v as usize]);
     dot(sub(b, a), cross(sub(c, a), sub(d, a))) / 6.0
 }
 
-fn volume_constraint(vertices: [u32; 4], volume: f64, material: LatticeMaterial) -> Tet {
+pub(crate) fn volume_constraint(vertices: [u32; 4], volume: f64, material: LatticeMaterial) -> Tet {
     let stiffness = match material.constants() {
         LatticeConstants::Moduli { bulk, .. } => bulk / volume,
         LatticeConstants::Compliances { volume, .. } => 1.0 / volume,
@@ -743,7 +784,12 @@ fn unstressed_edge(vertices: &[Vec3], [a, b]: [u32; 2]) -> Edge {
 
 /// The stiffness that one tetrahedron adds to one of its edges, or `None` for a raw compliance away
 /// from a voxel of the given side.
-fn edge_stiffness(material: LatticeMaterial, length: f64, share: f64, side: f64) -> Option<f64> {
+pub(crate) fn edge_stiffness(
+    material: LatticeMaterial,
+    length: f64,
+    share: f64,
+    side: f64,
+) -> Option<f64> {
     match material.constants() {
         LatticeConstants::Moduli { edge, .. } => Some(edge * length * share),
         LatticeConstants::Compliances { edge, .. } => {
@@ -764,7 +810,7 @@ fn edge_stiffness(material: LatticeMaterial, length: f64, share: f64, side: f64)
 /// The dihedral angle at an edge of the given length (m) over a full turn, for one of the five tetrahedra that
 /// fill a cube: one of a third of its volume in the middle, regular, and four at its corners, with three right
 /// angles each. `None` for a length that no edge of such a cube has.
-fn share_in_cube(length: f64, volume: f64, side: f64) -> Option<f64> {
+pub(crate) fn share_in_cube(length: f64, volume: f64, side: f64) -> Option<f64> {
     let is_length = |multiple: f64| (length / (side * multiple) - 1.0).abs() < CUBE_SLACK;
     if is_length(1.0) {
         Some(0.25)

@@ -37,6 +37,7 @@
 pub mod assembly;
 pub mod balance;
 mod batches;
+mod blocks;
 pub mod body;
 pub mod breakdown;
 pub mod conformance;
@@ -62,6 +63,7 @@ mod term;
 mod terms;
 pub mod vector;
 
+pub use blocks::{Blocks, PerBlock};
 pub use body::{Body, Mesh};
 pub use breakdown::Breakdown;
 pub use contact::{Contact, ContactMemory, Moment, RecordedContact, Remembered};

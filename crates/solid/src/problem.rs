@@ -125,6 +125,17 @@ impl Problem {
         Arc::make_mut(&mut self.body)
     }
 
+    /// Sets masses, stiffness and filled fractions of the body ([`Body::fill`]).
+    pub(crate) fn fill(
+        &mut self,
+        masses: Vec<f64>,
+        edges: &[f64],
+        tets: &[f64],
+        fractions: &[f64],
+    ) {
+        self.body_mut().fill(masses, edges, tets, fractions);
+    }
+
     /// The triangles under pressure.
     fn pressed(&self) -> Vec<[u32; 3]> {
         let mut pressed = pressed(&self.loads);

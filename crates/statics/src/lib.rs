@@ -45,6 +45,10 @@ mod path;
 mod sensitivity;
 
 pub use ensemble::{Ensemble, Settled, Variant};
+pub use linear::conformance;
+pub use linear::conjugate_gradients::{End, Equation, conjugate_gradients};
+pub use linear::lattice_product::LatticeProduct;
+pub use linear::operator::{Jacobi, LinearOperator, Preconditioner, RankUpdated};
 pub use linear::options::LinearSolver;
 pub use motion::implicit::{Implicit, ImplicitSettings};
 pub use motion::modes::{Mode, modes};
@@ -52,5 +56,6 @@ pub use motion::transient::{Motion, Transient};
 pub use path::follow::{Start, solve};
 pub use path::settings::{Answer, Control, PathPoint, Settings};
 pub use sensitivity::adjoint::{AdjointError, adjoint};
+pub use sensitivity::blocks::block_slopes;
 pub use sensitivity::parameters::{Varied, sensitivities};
 pub use voxsoft_solid::Status;

@@ -39,6 +39,18 @@ pub enum Law {
     Repetition,
     /// Changes of loads and grabs during a run take effect, and nothing else does.
     Changes,
+    /// A product is linear in the vector, and overwrites what was there.
+    Linearity,
+    /// The diagonal is that of the products with unit vectors.
+    Diagonal,
+    /// Held coordinates take no part in a product, and get zero.
+    Held,
+    /// A preconditioner is positive definite on free coordinates.
+    Definiteness,
+    /// The solution of a linear system has an error within the tolerance.
+    LinearSolution,
+    /// Two operators that stand for one matrix give the same products.
+    Agreement,
 }
 
 /// A law that is broken.
@@ -56,13 +68,13 @@ pub struct Broken {
 /// The outcome of a check.
 pub type Outcome = Result<(), Broken>;
 
-/// The implementation whose laws are checked.
-#[derive(Clone, Copy)]
-pub(crate) struct Subject(pub(crate) &'static str);
+/// The implementation whose laws are checked, by its name.
+#[derive(Debug, Clone, Copy)]
+pub struct Subject(pub &'static str);
 
 impl Subject {
     /// Checks that `found` is no more than `allowed`.
-    pub(crate) fn at_most(self, law: Law, what: &str, found: f64, allowed: f64) -> Outcome {
+    pub fn at_most(self, law: Law, what: &str, found: f64, allowed: f64) -> Outcome {
         if found <= allowed {
             return Ok(());
         }
@@ -72,14 +84,16 @@ impl Subject {
         )
     }
 
-    pub(crate) fn holds(self, law: Law, what: &str, holds: bool) -> Outcome {
+    /// Checks that a statement `holds`.
+    pub fn holds(self, law: Law, what: &str, holds: bool) -> Outcome {
         if holds {
             return Ok(());
         }
         self.broken(law, what.to_owned())
     }
 
-    pub(crate) fn broken(self, law: Law, how: String) -> Outcome {
+    /// Reports a broken law.
+    pub fn broken(self, law: Law, how: String) -> Outcome {
         let name = self.0;
         Err(Broken { name, law, how })
     }

@@ -25,12 +25,12 @@
 
 mod law;
 mod loads;
-mod numbers;
+pub mod numbers;
 mod solvers;
 mod steppers;
 mod terms;
 
-pub use law::{Broken, Law, Outcome};
+pub use law::{Broken, Law, Outcome, Subject};
 pub use loads::check_load;
 pub use solvers::check_solver;
 pub use steppers::check_stepper;

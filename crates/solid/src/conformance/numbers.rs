@@ -4,21 +4,21 @@ use crate::matrix::{Mat3, apply};
 use crate::vector::{Vec3, add, axpy, dot, norm, sub};
 
 /// Number of random directions in which a law is tried.
-pub(super) const TRIES: u64 = 4;
+pub const TRIES: u64 = 4;
 
 /// Central differences with this step, over the size of a body, err by its square times the third derivative and
 /// by rounding over it: about 1e-10 of the largest part of a sum each.
-pub(super) const STEP: f64 = 1e-5;
+pub const STEP: f64 = 1e-5;
 
 /// Error allowed in differences, relative to their summands: stiff directions next to soft ones take up to four digits
 /// of the ten that [`STEP`] leaves.
-pub(super) const SLACK: f64 = 1e-6;
+pub const SLACK: f64 = 1e-6;
 
 /// Rounding of sums of many terms that cancel.
-pub(super) const ROUNDING: f64 = 1e-9;
+pub const ROUNDING: f64 = 1e-9;
 
 /// A random field from a seed, components within one of zero.
-pub(super) fn random(count: usize, seed: u64) -> Vec<Vec3> {
+pub fn random(count: usize, seed: u64) -> Vec<Vec3> {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     let mut next = || {
         // Marsaglia's xorshift, doi 10.18637/jss.v008.i14.
@@ -32,16 +32,18 @@ pub(super) fn random(count: usize, seed: u64) -> Vec<Vec3> {
         .collect()
 }
 
-pub(super) fn inner(a: &[Vec3], b: &[Vec3]) -> f64 {
+/// The inner product.
+pub fn inner(a: &[Vec3], b: &[Vec3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| dot(*a, *b)).sum()
 }
 
-pub(super) fn size(field: &[Vec3]) -> f64 {
+/// The Euclidean norm.
+pub fn size(field: &[Vec3]) -> f64 {
     inner(field, field).sqrt()
 }
 
 /// `a + s b`.
-pub(super) fn plus(a: &[Vec3], s: f64, b: &[Vec3]) -> Vec<Vec3> {
+pub fn plus(a: &[Vec3], s: f64, b: &[Vec3]) -> Vec<Vec3> {
     let mut sum = a.to_vec();
     for (sum, b) in sum.iter_mut().zip(b) {
         axpy(sum, s, *b);
@@ -50,12 +52,12 @@ pub(super) fn plus(a: &[Vec3], s: f64, b: &[Vec3]) -> Vec<Vec3> {
 }
 
 /// The norm of the difference.
-pub(super) fn distance(a: &[Vec3], b: &[Vec3]) -> f64 {
+pub fn distance(a: &[Vec3], b: &[Vec3]) -> f64 {
     size(&plus(a, -1.0, b))
 }
 
 /// The largest distance of points from their first.
-pub(super) fn extent(points: &[Vec3]) -> f64 {
+pub fn extent(points: &[Vec3]) -> f64 {
     let first = points.first().copied().unwrap_or_default();
     points
         .iter()
@@ -64,10 +66,10 @@ pub(super) fn extent(points: &[Vec3]) -> f64 {
 }
 
 /// A rotation about an oblique axis.
-pub(super) const TURN: Mat3 = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]];
+pub const TURN: Mat3 = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]];
 
 /// Points rotated and moved away by about their extent.
-pub(super) fn carried(points: &[Vec3]) -> Vec<Vec3> {
+pub fn carried(points: &[Vec3]) -> Vec<Vec3> {
     let away = [
         0.7 * extent(points),
         -0.3 * extent(points),
@@ -77,13 +79,13 @@ pub(super) fn carried(points: &[Vec3]) -> Vec<Vec3> {
 }
 
 /// Vectors rotated.
-pub(super) fn turned(vectors: &[Vec3]) -> Vec<Vec3> {
+pub fn turned(vectors: &[Vec3]) -> Vec<Vec3> {
     vectors.iter().map(|v| apply(&TURN, *v)).collect()
 }
 
 /// Results of the same work on pools of one, two and three threads.
 #[cfg(feature = "threads")]
-pub(super) fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> Vec<T> {
+pub fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> Vec<T> {
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         // A pool that cannot be built leaves nothing to compare.
@@ -94,11 +96,11 @@ pub(super) fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> Vec<T> {
 
 /// Runs the work once: without threads there is one result.
 #[cfg(not(feature = "threads"))]
-pub(super) fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> Vec<T> {
+pub fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> Vec<T> {
     vec![work()]
 }
 
 /// The bits of a field.
-pub(super) fn bits(field: &[Vec3]) -> Vec<u64> {
+pub fn bits(field: &[Vec3]) -> Vec<u64> {
     field.as_flattened().iter().map(|x| x.to_bits()).collect()
 }

@@ -102,6 +102,20 @@ impl Coarse {
         self.small.is_empty()
     }
 
+    /// Sets the filled fractions of the small voxels, and those of the elements to their means.
+    pub fn fill(&mut self, fractions: &[f64], elements: &mut [Hex8]) {
+        for (hex8, fraction) in self.small.iter_mut().zip(fractions) {
+            hex8.fraction = *fraction;
+        }
+        for (element, members) in elements.iter_mut().zip(&self.members) {
+            let fraction = |index: &u32| self.small[*index as usize].fraction;
+            element.fraction = match members {
+                Members::One(index) => fraction(index),
+                Members::Eight(cube) => cube.iter().map(fraction).sum::<f64>() / 8.0,
+            };
+        }
+    }
+
     /// The faces of each element, merged from those of the small voxels.
     pub fn merged(&self, faces: &[Option<FaceConditions>]) -> Vec<Option<FaceConditions>> {
         let each = self.members.iter().map(|members| match members {

@@ -433,6 +433,16 @@ impl DirectSystem {
         }
     }
 
+    /// Visits row, column and value of each entry of the assembled tangent.
+    #[cfg(test)]
+    pub fn visit_entries(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
+        for column in 0..self.size {
+            for entry in self.column_starts[column]..self.column_starts[column + 1] {
+                visit(self.row_indices[entry], column, self.values[entry]);
+            }
+        }
+    }
+
     /// Restricts vectors on vertices to free coordinates.
     pub fn gather(&self, vectors: &[Vec3]) -> Vec<f64> {
         let mut free = vec![0.0; self.size];

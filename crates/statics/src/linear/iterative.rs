@@ -1,18 +1,18 @@
-//! Iterative solver of a large voxel body: conjugate gradients with a multigrid preconditioner.
+//! Iterative solver of a large voxel body: assembly of its tangent for conjugate gradients with a back end.
 //!
 //! The memory and the work of one iteration grow with the number of voxels, while those of a direct factor in three
 //! dimensions grow with its powers 4/3 and 2.
 
 use voxsoft_solid::assembly::Elements;
 use voxsoft_solid::element::assumed_strain::AssumedStrains;
-use voxsoft_solid::vector::{Vec3, axpy, dot};
+use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Load, Problem, Term, elastic};
 
+use crate::linear::backend::{Backend, MakeBackend};
+use crate::linear::conjugate_gradients::{End, Equation, conjugate_gradients};
 use crate::linear::error::FactorError;
-use crate::linear::multigrid::{
-    BlockMatrix, Coarsest, Hierarchy, Part, Workspace, cells_of, color, for_each, for_each_large,
-    sum,
-};
+use crate::linear::multigrid::{BlockMatrix, Part, cells_of, color, for_each_large};
+use crate::linear::operator::RankUpdated;
 use crate::linear::options::LinearOptions;
 use crate::linear::rank::rank;
 use crate::linear::row_pattern::pattern;
@@ -20,17 +20,11 @@ use crate::linear::row_pattern::pattern;
 /// Memory per vertex: 27 blocks of 76 bytes, an eighth more for coarser levels, and patterns, strains and vectors. 3.9
 /// kB were measured on a cube of 10⁵ voxels, the mesh included.
 const BYTES_PER_VERTEX: u64 = 4_000;
-/// Iterations after which a solution counts as stalled.
-const MAX_ITERATIONS: usize = 400;
 /// Factor on the smallest sufficient rank-one stiffness that is added across a direction.
 const BEYOND: f64 = 10.0;
 /// Number of elements from which parts of the rows are worth a task each, and number of these parts.
 const MANY: usize = 64;
 const PARTS: usize = 8;
-/// Relative error that is still of use to Newton's method.
-const USEFUL: f64 = 0.1;
-/// Iterations between two polls of `stop`.
-const LOOK: usize = 5;
 /// Tolerance of solutions that search for negative curvature.
 const DEFINITE_TOLERANCE: f64 = 1e-4;
 
@@ -42,40 +36,16 @@ pub(crate) struct IterativeSystem {
     matrix: BlockMatrix,
     /// Relative shift of the diagonal.
     lifted: f64,
-    hierarchy: Hierarchy,
+    backend: Box<dyn Backend>,
     /// Vectors by rows whose outer products are added to the tangent but not to its preconditioner: each costs an
     /// iteration or two.
     coupled: Vec<Vec<Vec3>>,
 }
 
-/// Linear system to be solved with the tangent.
-struct Equation<'a> {
-    side: &'a [f64],
-    /// Initial guess of the solution.
-    guess: Option<&'a [f64]>,
-    border: Option<Border<'a>>,
-}
-
-/// Rank-one term added to the tangent: `factor` times the outer product of a vector.
-struct Border<'a> {
-    vector: &'a [Vec3],
-    factor: f64,
-}
-
-/// Preconditioner, and true if solutions must be descent directions.
+/// Preconditioner that the back end holds for the assembled tangent.
 pub(crate) struct IterativeFactor {
-    coarsest: Coarsest,
+    /// True if solutions must be descent directions.
     downhill: bool,
-}
-
-/// End of an iteration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum End {
-    Converged,
-    /// Direction along which the tangent is not positive; the solution is the one before.
-    NegativeCurvature,
-    Stalled,
-    Cancelled,
 }
 
 impl IterativeSystem {
@@ -85,6 +55,7 @@ impl IterativeSystem {
         problem: &Problem,
         held: &[[bool; 3]],
         options: LinearOptions,
+        make: MakeBackend,
     ) -> Result<Option<Self>, FactorError> {
         let body = problem.body();
         let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.small_hex8s().len();
@@ -112,13 +83,13 @@ impl IterativeSystem {
             cell.nodes = cell.nodes.map(|node| places[node as usize]);
         }
         let matrix = draft.renumbered(&places);
-        let hierarchy = Hierarchy::new(cells, &matrix, coloring);
+        let backend = make(cells, &matrix, coloring);
         Ok(Some(Self {
             places,
             held: held.to_vec(),
             matrix,
             lifted: 0.0,
-            hierarchy,
+            backend,
             coupled: Vec::new(),
         }))
     }
@@ -126,6 +97,18 @@ impl IterativeSystem {
     /// Length of vectors of free coordinates: all coordinates, of which the held ones are zero.
     pub fn size(&self) -> usize {
         3 * self.places.len()
+    }
+
+    /// The assembled matrix and the back end, for its trials.
+    #[cfg(test)]
+    pub fn parts(&self) -> (&BlockMatrix, &dyn Backend) {
+        (&self.matrix, &*self.backend)
+    }
+
+    /// Row of each vertex.
+    #[cfg(test)]
+    pub fn places(&self) -> &[u32] {
+        &self.places
     }
 
     /// See [`crate::linear::system::System::assemble`].
@@ -170,15 +153,6 @@ impl IterativeSystem {
         self.coupled = vectors.iter().map(|vector| self.by_rows(vector)).collect();
     }
 
-    /// Product with the tangent and its coupled rank-one terms.
-    fn multiply(&self, vector: &[Vec3], image: &mut [Vec3]) {
-        self.matrix.multiply(vector, image);
-        for coupled in &self.coupled {
-            let along = sum(self.places.len(), |row| dot(coupled[row], vector[row]));
-            for_each(image, |row, image| axpy(image, along, coupled[row]));
-        }
-    }
-
     /// Scales the diagonal of the assembled tangent to `1 + shift` times its original value, where it is positive.
     pub fn lift(&mut self, shift: f64) {
         let by = (1.0 + shift) / (1.0 + self.lifted);
@@ -200,15 +174,11 @@ impl IterativeSystem {
         if !self.matrix.values.are_finite() {
             return Err(FactorError::Singular);
         }
-        Ok(IterativeFactor {
-            coarsest: self.hierarchy.project(&self.matrix),
-            downhill,
-        })
+        self.backend.take(&self.matrix);
+        Ok(IterativeFactor { downhill })
     }
 
-    /// Solves in place. If the tangent turns out not to be positive definite and the solution must be a descent
-    /// direction, it ends with the current iterate (Steihaug 1983, doi 10.1137/0720042). Otherwise it continues, which
-    /// nearly always works for the few negative eigenvalues of a tangent far from equilibrium.
+    /// Solves in place, see [`conjugate_gradients`].
     pub fn solve(
         &self,
         factor: &IterativeFactor,
@@ -228,12 +198,9 @@ impl IterativeSystem {
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(), FactorError> {
-        let equation = Equation {
-            side,
-            guess,
-            border: None,
-        };
-        let (answer, end) = self.iterate(factor, equation, tolerance, stop);
+        let guess = guess.map(|guess| self.by_rows(guess));
+        let sides = (self.by_rows(side), guess.as_deref());
+        let (answer, end) = self.iterate(factor, sides, None, tolerance, stop);
         for (vertex, &place) in self.places.iter().enumerate() {
             side[3 * vertex..3 * vertex + 3].copy_from_slice(&answer[place as usize]);
         }
@@ -266,18 +233,9 @@ impl IterativeSystem {
             }
         }
         let border = border.map(|(vector, factor)| (self.by_rows(vector), factor));
-        let border = border.as_ref().map(|(vector, factor)| Border {
-            vector,
-            factor: *factor,
-        });
-        let equation = Equation {
-            side: &side,
-            guess: None,
-            border,
-        };
-        let end = self
-            .iterate(&factor, equation, DEFINITE_TOLERANCE, &mut || false)
-            .1;
+        let border = (border.as_ref()).map(|(vector, factor)| (vector.as_slice(), *factor));
+        let sides = (self.by_rows(&side), None);
+        let (_, end) = self.iterate(&factor, sides, border, DEFINITE_TOLERANCE, &mut || false);
         end != End::NegativeCurvature
     }
 
@@ -290,75 +248,35 @@ impl IterativeSystem {
         rows
     }
 
-    /// Preconditioned conjugate gradients; returns the solution by rows.
+    /// Conjugate gradients on the tangent with its coupled terms and a `border`; returns the solution by rows for a
+    /// right-hand side and an initial guess by rows.
     fn iterate(
         &self,
         factor: &IterativeFactor,
-        equation: Equation<'_>,
+        (side, guess): (Vec<Vec3>, Option<&[Vec3]>),
+        border: Option<(&[Vec3], f64)>,
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> (Vec<Vec3>, End) {
-        let count = self.places.len();
-        let mut residual = self.by_rows(equation.side);
-        let inner = |a: &[Vec3], b: &[Vec3]| sum(count, |row| dot(a[row], b[row]));
-        let mut answer = vec![[0.0; 3]; count];
-        let mut image = vec![[0.0; 3]; count];
-        let mut work: Workspace = self.hierarchy.workspace(&self.matrix);
-        let preconditioner = self
-            .hierarchy
-            .preconditioner(&self.matrix, &factor.coarsest);
-        preconditioner.apply(&residual, &mut work);
-        // Energy of the error in the norm of the preconditioner: residual forces would hardly measure soft bending
-        // modes, which carry most of a slender body's displacement.
-        let goal = tolerance * tolerance * sum(count, |row| dot(residual[row], work.answer(row)));
-        if let Some(guess) = equation.guess {
-            answer = self.by_rows(guess);
-            self.multiply(&answer, &mut image);
-            for_each(&mut residual, |row, r| axpy(r, -1.0, image[row]));
-            preconditioner.apply(&residual, &mut work);
-        }
-        let mut direction: Vec<Vec3> = (0..count).map(|row| work.answer(row)).collect();
-        let mut gain = inner(&residual, &direction);
-        if gain == 0.0 || gain.abs() < goal {
-            return (answer, End::Converged);
-        }
-        for iteration in 0..MAX_ITERATIONS {
-            if iteration % LOOK == 0 && stop() {
-                return (answer, End::Cancelled);
-            }
-            self.multiply(&direction, &mut image);
-            if let Some(Border { vector, factor }) = &equation.border {
-                let part = factor * inner(vector, &direction);
-                for_each(&mut image, |row, image| axpy(image, part, vector[row]));
-            }
-            let curvature = inner(&direction, &image);
-            let positive = curvature > 0.0 && gain > 0.0;
-            let lost = !(curvature.abs() > 0.0 && gain.is_finite());
-            if lost || (factor.downhill && !positive) {
-                if iteration == 0 {
-                    answer = direction;
-                }
-                return (answer, End::NegativeCurvature);
-            }
-            let step = gain / curvature;
-            for_each(&mut answer, |row, x| axpy(x, step, direction[row]));
-            for_each(&mut residual, |row, r| axpy(r, -step, image[row]));
-            preconditioner.apply(&residual, &mut work);
-            let next = sum(count, |row| dot(residual[row], work.answer(row)));
-            if next.abs() <= goal {
-                return (answer, End::Converged);
-            }
-            let keep = next / gain;
-            gain = next;
-            for_each(&mut direction, |row, d| {
-                let fresh = work.answer(row);
-                for axis in 0..3 {
-                    d[axis] = keep * d[axis] + fresh[axis];
-                }
-            });
-        }
-        let useful = gain.abs() * tolerance * tolerance <= USEFUL * USEFUL * goal;
-        (answer, if useful { End::Converged } else { End::Stalled })
+        let tangent = self.backend.operator(&self.matrix);
+        let coupled = self.coupled.iter().map(|vector| (vector.as_slice(), 1.0));
+        let operator = RankUpdated {
+            base: &*tangent,
+            terms: coupled.chain(border).collect(),
+        };
+        let mut preconditioner = self.backend.preconditioner(&self.matrix);
+        let equation = Equation {
+            operator: &operator,
+            side: &side,
+            guess,
+        };
+        conjugate_gradients(
+            &equation,
+            &mut *preconditioner,
+            tolerance,
+            factor.downhill,
+            stop,
+        )
     }
 
     /// Flattens vectors on vertices into all coordinates, zero where held.

@@ -1,13 +1,20 @@
 //! Linear systems of Newton's method: the tangent on free coordinates, factorized or solved iteratively.
 
+pub(crate) mod backend;
+pub mod conformance;
+pub(crate) mod conjugate_gradients;
 pub(crate) mod direct;
 pub(crate) mod error;
 mod iterative;
+pub(crate) mod lattice_product;
 mod low_rank_update;
 mod multigrid;
+pub(crate) mod operator;
 pub(crate) mod options;
 mod ordering;
 mod rank;
 mod row_pattern;
 pub(crate) mod system;
+#[cfg(test)]
+pub(crate) mod trials;
 pub(crate) mod vectors;

@@ -1,6 +1,11 @@
-//! Options of linear solutions.
+//! Options of linear solutions, and the choice of their back end.
 
+use crate::linear::backend::{Backend, MakeBackend};
 use crate::linear::error::FactorError;
+use crate::linear::multigrid::{BlockMatrix, Cell, Coloring, Hierarchy};
+
+/// Number of vertices from which a body is solved iteratively: measured with `benchmarks/statics.py`.
+const LARGE: usize = 4_000;
 
 /// Solver of the linear systems of Newton's method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,6 +17,36 @@ pub enum LinearSolver {
     /// Conjugate gradients with a multigrid preconditioner, if the body is made of equal voxels and its loads have a
     /// potential; otherwise direct.
     Iterative,
+}
+
+impl LinearSolver {
+    /// All solvers by the names that callers give.
+    pub const NAMES: &[(&str, Self)] = &[
+        ("auto", Self::Auto),
+        ("direct", Self::Direct),
+        ("iterative", Self::Iterative),
+    ];
+
+    /// Solver of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        let mut names = Self::NAMES.iter();
+        names.find(|own| own.0 == name).map(|own| own.1)
+    }
+
+    /// Back end of conjugate gradients for a body with a number of vertices; `None` for a direct factor. Back ends are
+    /// named here and nowhere else.
+    pub(crate) fn backend(self, vertices: usize) -> Option<MakeBackend> {
+        match self {
+            Self::Direct => None,
+            Self::Auto if vertices < LARGE => None,
+            Self::Auto | Self::Iterative => Some(multigrid),
+        }
+    }
+}
+
+/// Assembled matrix and V-cycle on the threads of the processor.
+fn multigrid(cells: Vec<Cell>, matrix: &BlockMatrix, coloring: Coloring) -> Box<dyn Backend> {
+    Box::new(Hierarchy::new(cells, matrix, coloring))
 }
 
 /// Solver and memory limit of linear systems.

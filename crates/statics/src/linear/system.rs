@@ -8,10 +8,7 @@ use crate::linear::direct::{DirectFactor, DirectSystem};
 use crate::linear::error::FactorError;
 use crate::linear::iterative::{IterativeFactor, IterativeSystem};
 use crate::linear::low_rank_update::{LowRankUpdate, UpdateSolutions};
-use crate::linear::options::{LinearOptions, LinearSolver};
-
-/// Number of vertices from which a body is solved iteratively: measured with `benchmarks/statics.py`.
-const LARGE: usize = 4_000;
+use crate::linear::options::LinearOptions;
 
 /// Tangent of a problem, kept with its sparsity pattern for many assemblies.
 ///
@@ -47,18 +44,14 @@ impl System {
         held: &[[bool; 3]],
         options: LinearOptions,
     ) -> Result<Self, FactorError> {
-        let large = problem.body().rest().len() >= LARGE;
-        let iterative = match options.solver {
-            LinearSolver::Direct => false,
-            LinearSolver::Iterative => true,
-            LinearSolver::Auto => large,
+        let backend = options.solver.backend(problem.body().rest().len());
+        let tangent = if let Some(make) = backend
+            && let Some(system) = IterativeSystem::new(problem, held, options, make)?
+        {
+            Tangent::Iterative(Box::new(system))
+        } else {
+            Tangent::Direct(Box::new(DirectSystem::new(problem, held, options)?))
         };
-        let tangent =
-            if iterative && let Some(system) = IterativeSystem::new(problem, held, options)? {
-                Tangent::Iterative(Box::new(system))
-            } else {
-                Tangent::Direct(Box::new(DirectSystem::new(problem, held, options)?))
-            };
         Ok(Self {
             tangent,
             coupled: None,

@@ -5,6 +5,7 @@ use voxsoft_solid::vector::Vec3;
 use super::cells::Interpolation;
 use super::parallel;
 use super::values::{Block, Values};
+use crate::linear::operator::LinearOperator;
 
 /// Sparse matrix of 3 × 3 blocks by rows, with rising columns; every row has its diagonal.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -137,6 +138,28 @@ impl BlockMatrix {
                 blocks.set(place, sum);
             }
         });
+    }
+}
+
+impl LinearOperator for &BlockMatrix {
+    fn name(&self) -> &'static str {
+        "the assembled tangent"
+    }
+
+    fn rows(&self) -> usize {
+        BlockMatrix::rows(self)
+    }
+
+    fn apply(&self, x: &[Vec3], y: &mut [Vec3]) {
+        self.multiply(x, y);
+    }
+
+    fn diagonal(&self) -> Vec<Vec3> {
+        let diagonal = |&place: &usize| {
+            let block = self.values.block(place);
+            [block[0], block[4], block[8]]
+        };
+        self.diagonals.iter().map(diagonal).collect()
     }
 }
 

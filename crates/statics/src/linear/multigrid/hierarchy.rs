@@ -14,6 +14,8 @@ use super::cells::{Cell, Interpolation, coarsen};
 use super::color::{Coloring, color};
 use super::parallel;
 use super::values::Single;
+use crate::linear::backend::Backend;
+use crate::linear::operator::{LinearOperator, Preconditioner};
 
 /// Largest level, in nodes, that is solved directly, by a dense factor.
 const COARSEST: usize = 250;
@@ -22,7 +24,7 @@ const STALLED: f64 = 0.7;
 /// Most nodes of a coarsest level: a dense factor of 0.3 GB.
 const LARGEST_DENSE: usize = 2000;
 
-/// Part of the hierarchy that does not depend on the matrix: interpolations and patterns.
+/// Levels of a body, and their numbers for the matrix that was last projected.
 pub(crate) struct Hierarchy {
     /// Interpolations from level `i` to `i + 1`, and back.
     down: Vec<Interpolation>,
@@ -32,23 +34,27 @@ pub(crate) struct Hierarchy {
     patterns: Vec<BlockMatrix>,
     /// Inverses of the diagonals of all levels.
     inverses: Vec<Vec<Inverse>>,
+    /// Factor of the coarsest matrix, if it has one.
+    coarsest: Option<Llt<f64>>,
 }
 
 /// Inverse of a block on the diagonal, by columns; three places more fill a register.
 type Inverse = [f32; 12];
 
-/// Factor of the coarsest matrix, if it has one.
-pub(crate) struct Coarsest(Option<Llt<f64>>);
-
-/// V-cycle as a preconditioner.
-pub(crate) struct Preconditioner<'a> {
+/// V-cycle of the matrix that was last projected.
+struct Cycle<'a> {
     hierarchy: &'a Hierarchy,
     finest: &'a BlockMatrix,
-    coarsest: &'a Coarsest,
+}
+
+/// V-cycle as a preconditioner, with its vectors.
+pub(crate) struct Multigrid<'a> {
+    cycle: Cycle<'a>,
+    work: Workspace,
 }
 
 /// Vectors of every level.
-pub(crate) struct Workspace {
+struct Workspace {
     sides: Vec<Vec<Single>>,
     answers: Vec<Vec<Single>>,
     residuals: Vec<Vec<Single>>,
@@ -66,6 +72,7 @@ impl Hierarchy {
             colorings: vec![coloring],
             patterns: Vec::new(),
             inverses: Vec::new(),
+            coarsest: None,
         };
         loop {
             let finer = hierarchy.patterns.last().unwrap_or(matrix);
@@ -99,8 +106,9 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// Fills the matrices of all levels, and returns the factor of the coarsest.
-    pub fn project(&mut self, finest: &BlockMatrix) -> Coarsest {
+    /// Fills the matrices of all levels, and factorizes the coarsest.
+    pub fn project(&mut self, finest: &BlockMatrix) {
+        self.coarsest = None;
         for level in 0..self.patterns.len() {
             let (finer, coarser) = self.patterns.split_at_mut(level);
             let fine = finer.last().unwrap_or(finest);
@@ -118,24 +126,21 @@ impl Hierarchy {
         }
         let last = self.patterns.last().unwrap_or(finest);
         let small = last.rows() <= LARGEST_DENSE;
-        Coarsest(small.then(|| dense_factor(last)).flatten())
+        self.coarsest = small.then(|| dense_factor(last)).flatten();
     }
 
     /// Preconditioner of the matrix that was last passed to [`Hierarchy::project`].
-    pub fn preconditioner<'a>(
-        &'a self,
-        finest: &'a BlockMatrix,
-        coarsest: &'a Coarsest,
-    ) -> Preconditioner<'a> {
-        Preconditioner {
-            hierarchy: self,
-            finest,
-            coarsest,
+    pub fn multigrid<'a>(&'a self, finest: &'a BlockMatrix) -> Multigrid<'a> {
+        Multigrid {
+            cycle: Cycle {
+                hierarchy: self,
+                finest,
+            },
+            work: self.workspace(finest),
         }
     }
 
-    /// Vectors for [`Preconditioner::apply`].
-    pub fn workspace(&self, finest: &BlockMatrix) -> Workspace {
+    fn workspace(&self, finest: &BlockMatrix) -> Workspace {
         let vectors = || {
             std::iter::once(finest)
                 .chain(&self.patterns)
@@ -152,21 +157,34 @@ impl Hierarchy {
     }
 }
 
-impl Workspace {
-    /// Result of [`Preconditioner::apply`] for a row.
-    #[inline(always)]
-    pub fn answer(&self, row: usize) -> Vec3 {
-        widened(self.answers[0][row])
+impl Backend for Hierarchy {
+    fn take(&mut self, matrix: &BlockMatrix) {
+        self.project(matrix);
+    }
+
+    fn operator<'a>(&'a self, matrix: &'a BlockMatrix) -> Box<dyn LinearOperator + 'a> {
+        Box::new(matrix)
+    }
+
+    fn preconditioner<'a>(&'a self, matrix: &'a BlockMatrix) -> Box<dyn Preconditioner + 'a> {
+        Box::new(self.multigrid(matrix))
     }
 }
 
-impl Preconditioner<'_> {
-    /// Approximates `A⁻¹ side`.
-    pub fn apply(&self, side: &[Vec3], work: &mut Workspace) {
-        parallel::for_each(&mut work.sides[0], |row, own| *own = rounded(side[row]));
-        self.cycle(0, work);
+impl Preconditioner for Multigrid<'_> {
+    fn name(&self) -> &'static str {
+        "multigrid"
     }
 
+    fn apply(&mut self, residual: &[Vec3], answer: &mut [Vec3]) {
+        let work = &mut self.work;
+        parallel::for_each(&mut work.sides[0], |row, own| *own = rounded(residual[row]));
+        self.cycle.descend(0, work);
+        parallel::for_each(answer, |row, own| *own = widened(work.answers[0][row]));
+    }
+}
+
+impl Cycle<'_> {
     fn level(&self, level: usize) -> Level<'_> {
         Level {
             pattern: if level == 0 {
@@ -179,11 +197,11 @@ impl Preconditioner<'_> {
         }
     }
 
-    fn cycle(&self, level: usize, work: &mut Workspace) {
+    fn descend(&self, level: usize, work: &mut Workspace) {
         let own = self.level(level);
         if level == self.hierarchy.down.len() {
             let (side, x) = (&work.sides[level], &mut work.answers[level]);
-            if let Some(factor) = &self.coarsest.0 {
+            if let Some(factor) = &self.hierarchy.coarsest {
                 for (wide, side) in work.last.iter_mut().zip(side) {
                     *wide = widened(*side);
                 }
@@ -215,7 +233,7 @@ impl Preconditioner<'_> {
                 *side = plus(*side, weight as f32, residual[fine as usize]);
             }
         });
-        self.cycle(level + 1, work);
+        self.descend(level + 1, work);
         let (finer, coarser) = work.answers.split_at_mut(level + 1);
         let x = &mut finer[level];
         let correction = &coarser[0];

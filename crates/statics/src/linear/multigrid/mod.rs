@@ -8,8 +8,8 @@ mod parallel;
 mod values;
 
 pub(crate) use blocks::BlockMatrix;
-pub(crate) use cells::cells_of;
-pub(crate) use color::color;
-pub(crate) use hierarchy::{Coarsest, Hierarchy, Workspace};
+pub(crate) use cells::{Cell, cells_of};
+pub(crate) use color::{Coloring, color};
+pub(crate) use hierarchy::Hierarchy;
 pub(crate) use parallel::{for_each, for_each_large, sum};
 pub(crate) use values::Part;
