@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
     Eigenstrain, EigenstrainFactor, Fiber, History, HyperelasticMaterial, LatticeMaterial,
-    Material, Model, Mullins, ProblemError, Share, Winding,
+    Material, Model, Mullins, ProblemError, Share, Softening, Winding,
 };
 
 use crate::arrays::rows;
@@ -159,7 +159,9 @@ impl PyMaterial {
     ) -> PyResult<Self> {
         let mullins = Mullins::new(r, m, beta, first).map_err(to_python)?;
         Ok(Self(
-            self.rubber(py, "mullins")?.with_mullins(mullins).into(),
+            self.rubber(py, "mullins")?
+                .with_softening(Softening::Mullins(mullins))
+                .into(),
         ))
     }
 

@@ -76,7 +76,7 @@ pub use element::viscosity::Viscosity;
 pub use error::ProblemError;
 pub use floor::Floor;
 pub use fluid::{Fluid, FluidMemory};
-pub use hyperelastic::{Fiber, HyperelasticMaterial, Model, Mullins, Winding};
+pub use hyperelastic::{Fiber, HyperelasticMaterial, Model, Mullins, Softening, Winding};
 pub use lattice::material::{LatticeConstants, LatticeMaterial};
 pub use loads::clamp::{Clamp, Motion};
 pub use loads::eigenstrain::{Eigenstrain, EigenstrainFactor, Share};

@@ -3,7 +3,9 @@
 use proptest::prelude::*;
 use voxsoft_solid::conformance::check_term;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Body, HyperelasticMaterial, Mesh, Model, Mullins, Problem, elastic};
+use voxsoft_solid::{
+    Body, HyperelasticMaterial, Mesh, Model, Mullins, Problem, Softening, elastic,
+};
 use voxsoft_voxel::{Grid, tet_mesh};
 
 /// A bar of 2 × 1 × 1 voxels of edge 1.
@@ -33,7 +35,9 @@ const OGDEN: Model = Model::Ogden {
 };
 
 fn soft(model: Model, first: f64) -> HyperelasticMaterial {
-    rubber(model).with_mullins(Mullins::new(1.6, 0.02, 0.2, first).unwrap())
+    rubber(model).with_softening(Softening::Mullins(
+        Mullins::new(1.6, 0.02, 0.2, first).unwrap(),
+    ))
 }
 
 fn problem(material: HyperelasticMaterial) -> Problem {
@@ -78,7 +82,7 @@ proptest! {
         ogden in any::<bool>(),
     ) {
         let mullins = Mullins::new(1.6, 0.02, 1.0, 0.0).unwrap();
-        let mut problem = problem(rubber(if ogden { OGDEN } else { YEOH }).with_mullins(mullins));
+        let mut problem = problem(rubber(if ogden { OGDEN } else { YEOH }).with_softening(Softening::Mullins(mullins)));
         let there = drawn(&problem, stretch, 0.05);
         accept(&mut problem, &there);
         let rest = problem.body().rest();

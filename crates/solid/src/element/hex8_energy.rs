@@ -94,8 +94,8 @@ impl Rotated {
 
     /// The factor `η` by which softening reduces the isochoric stress.
     pub fn softness(&self, material: &HyperelasticMaterial) -> f64 {
-        material.mullins().map_or(1.0, |mullins| {
-            mullins.soften(self.virgin(material).value, self.peak)[1]
+        material.softening().map_or(1.0, |law| {
+            law.soften(self.virgin(material).value, self.peak)[1]
         })
     }
 
@@ -104,10 +104,10 @@ impl Rotated {
     /// Strain that grows and falls in proportion has the same `W/P` everywhere, and with it the same `η`, up to `m`:
     /// for a voxel that bends, a peak at each of its points would change the result in second order only.
     fn soften(&self, material: &HyperelasticMaterial, second: bool, mean: &mut StrainFunction) {
-        let Some(mullins) = material.mullins() else {
+        let Some(law) = material.softening() else {
             return;
         };
-        let [value, slope, turn] = mullins.soften(mean.value, self.peak);
+        let [value, slope, turn] = law.soften(mean.value, self.peak);
         if second {
             for (row, own) in mean.hessian.iter_mut().zip(&mean.gradient) {
                 for (entry, other) in row.iter_mut().zip(&mean.gradient) {

@@ -1,6 +1,6 @@
 use super::fiber::Fiber;
 use super::model::Model;
-use super::mullins::Mullins;
+use super::softening::Softening;
 use super::winding::Winding;
 use crate::matrix::Mat3;
 use crate::vector::{Vec3, norm};
@@ -16,7 +16,7 @@ pub struct HyperelasticMaterial {
     windings: Vec<Winding>,
     prony: Vec<(f64, f64)>,
     swelling: f64,
-    mullins: Option<Mullins>,
+    softening: Option<Softening>,
     eigenstrain: Eigenstrain,
     fiber_eigenstrain: Eigenstrain,
 }
@@ -53,7 +53,7 @@ impl HyperelasticMaterial {
             windings: Vec::new(),
             prony: Vec::new(),
             swelling: 1.0,
-            mullins: None,
+            softening: None,
             eigenstrain: Eigenstrain::none(),
             fiber_eigenstrain: Eigenstrain::none(),
         })
@@ -163,7 +163,7 @@ impl HyperelasticMaterial {
                 .iter()
                 .any(|eigenstrain| eigenstrain.is_local())
         };
-        let stuff = |of: &Self| (of.model, of.bulk, of.mullins);
+        let stuff = |of: &Self| (of.model, of.bulk, of.softening);
         local(self) && local(other) && stuff(self) == stuff(other) && self.fibers == other.fibers
     }
 
@@ -192,7 +192,7 @@ impl HyperelasticMaterial {
 
     /// The initial peak: the largest isochoric energy (J/m³) of a voxel before it is strained.
     pub(crate) fn first_peak(&self) -> f64 {
-        self.mullins.as_ref().map_or(0.0, Mullins::first)
+        self.softening.as_ref().map_or(0.0, Softening::first)
     }
 
     /// Its fibers with their present free stretch.
@@ -227,16 +227,16 @@ impl HyperelasticMaterial {
 
     /// This material with softening after larger stretch (Mullins effect), except of its fibers.
     #[must_use]
-    pub fn with_mullins(self, mullins: Mullins) -> Self {
+    pub fn with_softening(self, softening: Softening) -> Self {
         Self {
-            mullins: Some(mullins),
+            softening: Some(softening),
             ..self
         }
     }
 
     /// The constants of its softening, if it softens.
-    pub fn mullins(&self) -> Option<&Mullins> {
-        self.mullins.as_ref()
+    pub fn softening(&self) -> Option<&Softening> {
+        self.softening.as_ref()
     }
 
     /// The Prony branches as given: share of the instantaneous modulus and relaxation time in s.

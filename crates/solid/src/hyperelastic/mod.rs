@@ -15,6 +15,7 @@ mod material;
 mod model;
 mod mullins;
 pub mod principal;
+mod softening;
 pub mod symmetric;
 mod winding;
 
@@ -23,5 +24,6 @@ pub(crate) use local::LocalMaterials;
 pub use material::HyperelasticMaterial;
 pub use model::Model;
 pub use mullins::Mullins;
+pub use softening::Softening;
 pub use symmetric::{Response, Sym};
 pub use winding::Winding;

@@ -31,7 +31,7 @@ impl Hex8s {
     pub(crate) fn new(hex8s: Vec<Hex8>, materials: Vec<HyperelasticMaterial>, ties: Ties) -> Self {
         let soften = |hex8: &Hex8| {
             let material: &HyperelasticMaterial = &materials[hex8.material as usize];
-            material.mullins().is_some()
+            material.softening().is_some()
         };
         Self {
             softens: hex8s.iter().any(soften),

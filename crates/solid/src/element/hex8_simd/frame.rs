@@ -68,7 +68,7 @@ pub(super) fn has_lanes(material: &HyperelasticMaterial) -> bool {
         material.model(),
         Model::NeoHookean { .. } | Model::Yeoh { .. } | Model::Gent { .. }
     );
-    simple && material.fibers().is_empty() && material.mullins().is_none() && !material.varies()
+    simple && material.fibers().is_empty() && material.softening().is_none() && !material.varies()
 }
 
 /// Gathers one number of each voxel of a group.
