@@ -152,7 +152,7 @@ class Fields:
 
     @cached_property
     def at_vertices(self) -> VertexFields:
-        """The same averaged on the vertices."""
+        """The fields averaged on the vertices."""
         return VertexFields(**self._core.at_vertices(self._positions))
 
     def max_stretch_slope(self, percent: float = 100.0) -> Floats:

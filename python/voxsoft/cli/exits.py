@@ -41,7 +41,7 @@ MEANINGS: Final = {
     INTERRUPTED: "stopped by Ctrl-C; what was finished is kept",
 }
 
-#: By the kind of error, the first that fits; INVALID for all others.
+#: Exit codes by the kind of error, the first that fits; INVALID for all others.
 _CODES: Final[tuple[tuple[type[BaseException], int], ...]] = (
     (OutputError, FAILED),
     (OutsideCodeError, FAILED),
@@ -103,7 +103,7 @@ def errors_in_words(*, json: bool = False, invalid: dict[str, Any] | None = None
 
 
 def _leave(error: VoxSoftError, json: bool, invalid: dict[str, Any] | None) -> typer.Exit:
-    """Tell of an error, and return what ends the program."""
+    """Report an error, and return the exception that ends the program."""
     say(f"[red]error:[/red] {plain(str(error))}")
     if json:
         print_json({"status": "failed", **(invalid or {}), "problems": problems_of(error)})

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from voxsoft.design import Design
     from voxsoft.study import StudyResult
 
-#: How many of the best designs are listed.
+#: Number of the best designs listed.
 LISTED = 10
 
 Scheduler = Annotated[

@@ -35,8 +35,8 @@ def verify(
 ) -> None:
     """Predict measured robots, and count how many measurements lie in their 90 % intervals.
 
-    The interval of each number is made of what material, geometry, voxels and repeated measurements
-    leave open.
+    The interval of each number combines the uncertainty of material, geometry, voxels and
+    repeated measurements.
     """
     from voxsoft.scoreboard import predictions_in, read_scores
 

@@ -43,10 +43,10 @@ def workspace(
     ] = None,
     json: Json = False,
 ) -> None:
-    """Find where a place of a robot can be, over a grid of what drives it.
+    """Find the positions that a place of a robot reaches, over a grid of its drives.
 
     The folder holds workspace.csv and workspace.png. The table is written after each line of the
-    grid, so that what is found stays when it is interrupted.
+    grid, so that finished lines stay when it is interrupted.
     """
     from voxsoft import files
     from voxsoft.cli.progress import ProgressBar

@@ -1,4 +1,4 @@
-"""What makes a part longer or shorter by itself: swelling, heat, muscles."""
+"""Activations that make a part longer or shorter by itself: swelling, heat, muscles."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class _OfItsValue(Activation):
 
     @abstractmethod
     def base(self, factor: float) -> float:
-        """How many times as long, or as large, the part is at a factor of its history."""
+        """Ratio by which the part is longer, or larger, at a factor of its history."""
 
     @property
     def growth(self) -> Growth:
-        """How many times as long the part is over time when it is free of stress."""
+        """Ratio by which the part is longer over time when it is free of stress."""
         if self.history is None:
             return Growth((0.0,), (self.base(1.0),), self.power, self.profile)
         bases = tuple(self.base(factor) for factor in self.history.factors)
@@ -53,11 +53,11 @@ class _Growing(_OfItsValue):
         return self
 
     def base(self, factor: float) -> float:
-        """How many times as long, or as large, the part is at a factor of its history."""
+        """Ratio by which the part is longer, or larger, at a factor of its history."""
         return 1.0 + factor * self.value
 
     def share(self, part: float) -> Self:
-        """A part of what it comes to in the end, without a history."""
+        """Scale its final strain by a factor, without a history."""
         return self.replace(value=part * self.factor * self.value, history=None)
 
 
@@ -160,7 +160,7 @@ class Thermal(_OfItsValue):
         return self.reference + factor * (self.value - self.reference)
 
     def base(self, factor: float) -> float:
-        """How many times as long the part is at a factor of its history."""
+        """Ratio by which the part is longer at a factor of its history."""
         return 1.0 + self.expansion * (self._temperature(factor) - self.reference)
 
     def share(self, part: float) -> Self:
@@ -171,9 +171,9 @@ class Thermal(_OfItsValue):
 class FiberStrain(_Growing):
     """A part whose fibers are so much longer along themselves when they are free of stress.
 
-    What is around them is not, and holds against it: a negative strain is a muscle, a shape-memory
-    wire or a drawn polymer thread in rubber. Without ``compression`` fibers that are longer by
-    themselves are slack.
+    The material around them is not, and holds against it: a negative strain is a muscle, a
+    shape-memory wire or a drawn polymer thread in rubber. Without ``compression``
+    fibers that are longer by themselves are slack.
 
     Parameters
     ----------

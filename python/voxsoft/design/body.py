@@ -74,7 +74,7 @@ class Body(Record):
     Parameters
     ----------
     name
-        What results and contact call it, and what the names of its chambers and probes begin with:
+        Name in results and contact, and prefix of the names of its chambers and probes:
         ``"left.tip"``.
     design
         Another design, the same for as many bodies as you like: the path of its file from the
@@ -267,5 +267,5 @@ def _value(parameter: Parameter, info: ValidationInfo) -> str | float:
     """A value as the inner design reads it: text, or a number in SI units."""
     if KINDS[parameter.kind].units:
         return write_exactly(parameter.value, parameter.kind)
-    # In a file a number without unit is one; what was typed in Python may be meant in SI units.
+    # In a file a number without unit is one; a number typed in Python may be meant in SI units.
     return f"{parameter.value!r}" if read_from_file(info) else parameter.value

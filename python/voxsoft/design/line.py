@@ -1,4 +1,4 @@
-"""What a fluid flows through on its way: valves, tubes, pumps."""
+"""Valves, tubes and pumps that a fluid flows through."""
 
 from __future__ import annotations
 
@@ -88,12 +88,12 @@ class Tube(Record):
 
     @property
     def volume(self) -> float:
-        """What it holds [m³]."""
+        """Volume it holds [m³]."""
         return 0.7853981633974483 * self.diameter**2 * self.length
 
 
 class Pump(Record):
-    """What a pump delivers against a pressure, from the atmosphere; it lets nothing back.
+    """A pump from the atmosphere: its flow against a pressure; it lets nothing back.
 
     Parameters
     ----------

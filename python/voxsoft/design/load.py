@@ -168,7 +168,7 @@ def scaled(load: AnyLoad, factor: float) -> AnyLoad:
     load
         Any load.
     factor
-        What its value is multiplied by.
+        Factor on its value.
 
     Examples
     --------

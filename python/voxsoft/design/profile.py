@@ -1,4 +1,4 @@
-"""How much of an activation each place of a part has."""
+"""Profiles: the share of an activation at each place of a part."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Planes of symmetry: what saves the solver one half of a body."""
+"""Planes of symmetry, each of which saves the solver one half of a body."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Objectives and constraints: what a study asks of a design."""
+"""Objectives and constraints: goals of a study."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ class Objective(Record):
         The name of a chamber of the design, or the index of a cavity; 0 is the largest. Default:
         ``"all"``.
     percentile
-        Of a metric that takes the largest of all voxels: what so many percent of the volume stay
+        Percentile of a metric that takes the largest of all voxels: that share of the volume stays
         at or below, above 0 and at most 100; default: 100.
     accuracy
         The error to leave of it, as a part of its size, ``"2 %"``: a run takes as small voxels as
         that needs. Default: as the solver says, or none.
     object
-        What touches the body, for a metric of contact: the name of an object, or ``"body"`` for the
-        body with itself. Default: the only object there is.
+        The other side of a contact, for a metric of contact: the name of an object, or
+        ``"body"`` for the body with itself. Default: the only object there is.
     tendon
         The name of a tendon, for a metric of one. Default: the only one there is.
     clamp

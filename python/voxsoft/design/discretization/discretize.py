@@ -140,7 +140,7 @@ def _filled_bodies(design: Design, refine: int) -> Filled:
 
 
 def _numbers(design: Design, body: str) -> NDArray[np.uint8]:
-    """What the parts of a body, counted from 1, are called among all."""
+    """Map the parts of a body, counted from 1, to their numbers among all."""
     own = [index + 1 for index, part in enumerate(design.parts) if part.body == body]
     return np.array([0, *own], dtype=np.uint8)
 

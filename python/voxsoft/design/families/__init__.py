@@ -151,7 +151,7 @@ def finger(**parameters: float | str) -> Design:
 
 
 def paper_beam(**parameters: float | str) -> Design:
-    """Return the paper's cantilever, of its lattice: what the paper's calibration fits.
+    """Return the paper's cantilever, of its lattice: the beam of the paper's calibration.
 
     Parameters
     ----------
