@@ -42,7 +42,7 @@ def free_in_groups(root: Path = Path("/")) -> int | None:
     Parameters
     ----------
     root
-        Where ``proc`` and ``sys`` are mounted.
+        Mount point of ``proc`` and ``sys``.
 
     Returns
     -------

@@ -84,7 +84,7 @@ class Fields:
     parts
         The part of each, an index into ``design.parts``, (v,).
     rigid
-        Whether that part is rigid, (v,): the stress there is that of a stiff stand-in, and
+        True where that part is rigid, (v,): the stress there is that of a stiff stand-in, and
         :meth:`percentile` leaves it out.
 
     Examples
@@ -124,7 +124,7 @@ class Fields:
         positions
             Vertices in m, (n, 3).
         rigid
-            Whether each part of the design is rigid.
+            True for each rigid part of the design.
         """
         order = np.argsort(core.blocks, kind="stable")
         found = {name: values[order] for name, values in core.measure(positions).items()}

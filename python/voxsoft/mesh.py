@@ -32,7 +32,7 @@ class BodyMesh:
     Attributes
     ----------
     name : str
-        Of the body.
+        Name of the body.
     mesh : Mesh
         In the frame of the body, before it is turned and moved.
     rotation : ndarray of float64, shape (3, 3)
@@ -98,7 +98,7 @@ class MeshQuality:
     euler_number : int
         V - E + F - T: 1 for a ball, 0 for a solid ring, 2 for a ball with a cavity.
     conforming : bool
-        Whether the triangles are exactly the faces held by one tet, outward, and every other face
+        True if the triangles are exactly the faces held by one tet, outward, and every other face
         is held by two.
     open_edges : int
         Boundary edges that do not have a triangle on both sides; 0 if the surface is watertight.
@@ -149,9 +149,9 @@ class Mesh:
     fractions : ndarray of float64, shape (v,), or None
         The material of each voxel in volumes of a voxel; None where every voxel is full.
     moments : ndarray of float64, shape (v, 9), or None
-        Where in each voxel the material is, in halves of an edge: its center along x, y, z, counted
-        from that of the voxel, √3 times its standard deviation from there (1 if full), and the
-        means of the products yz, zx, xy over it.
+        Place of the material in each voxel, in halves of an edge: its center along x, y, z,
+        counted from that of the voxel, √3 times its standard deviation from there (1 if
+        full), and the means of the products yz, zx, xy over it.
     bodies : tuple of BodyMesh
         Meshes it is joined from, in the order of vertices and tets; empty for a mesh of one body.
         Joined, `voxel_size` is that of the smallest voxels, and `moments` are along their edges.
@@ -251,7 +251,7 @@ class Mesh:
         fractions : array_like, shape (v,)
             The material of each voxel in volumes of a voxel, positive.
         moments : array_like, shape (v, 9) or (v, 6), optional
-            Where in each voxel the material is, see the attribute; default: all over. Of six, the
+            Place of the material in each voxel, see the attribute; default: all over. Of six, the
             means of the products are the products of the means.
 
         Raises
@@ -332,7 +332,7 @@ class Mesh:
         Parameters
         ----------
         numbers : ndarray of int, shape (k,)
-            Which voxels.
+            Numbers of the voxels.
 
         Returns
         -------

@@ -77,7 +77,7 @@ def errors_in_words(*, json: bool = False, invalid: dict[str, Any] | None = None
     Parameters
     ----------
     json
-        Whether the command was asked for one object on standard output.
+        True if the command was asked for one object on standard output.
     invalid
         Keys that the object holds besides ``problems``.
     """

@@ -36,9 +36,9 @@ class ProgressBar:
     title
         The work in progress.
     total
-        How many steps there are.
+        Number of steps.
     transient
-        Whether the bar goes away when all is done.
+        True if the bar goes away when all is done.
 
     Examples
     --------

@@ -71,9 +71,9 @@ class Strain(_Growing):
     value
         The strain, above −1: ``"2 %"`` is 1.02 times as long, a negative one shrinks.
     history
-        How it changes over time: a factor on the value. Default: it is there from the beginning.
+        A factor on the value over time. Default: the value is there from the beginning.
     profile
-        How it differs from place to place: a factor on the value. Default: it is the same
+        A factor on the value from place to place. Default: it is the same
         everywhere.
 
     Examples
@@ -96,9 +96,9 @@ class Swelling(_Growing):
         The change of its volume, above −1: ``"20 %"`` of a gel that takes up a fifth of its volume
         of water. The mass stays that of the dry part.
     history
-        How it changes over time: a factor on the value. Default: it is there from the beginning.
+        A factor on the value over time. Default: the value is there from the beginning.
     profile
-        How it differs from place to place: a factor on the value. Default: it is the same
+        A factor on the value from place to place. Default: it is the same
         everywhere.
 
     Examples
@@ -125,10 +125,10 @@ class Thermal(_OfItsValue):
     reference
         The temperature at which it has the size of the design; default 293.15 K, which is 20 °C.
     history
-        How the temperature changes over time: 0 is the reference, 1 the value. Default: it is the
+        The temperature over time: 0 is the reference, 1 the value. Default: it is the
         value from the beginning.
     profile
-        How it differs from place to place: 0 is the reference, 1 the value. Default: it is the same
+        The temperature from place to place: 0 is the reference, 1 the value. Default: the same
         everywhere.
 
     Examples
@@ -182,9 +182,9 @@ class FiberStrain(_Growing):
     value
         The strain, above −1: ``"-20 %"`` is a fifth shorter.
     history
-        How it changes over time: a factor on the value. Default: it is there from the beginning.
+        A factor on the value over time. Default: the value is there from the beginning.
     profile
-        How it differs from place to place: a factor on the value. Default: it is the same
+        A factor on the value from place to place. Default: it is the same
         everywhere.
 
     Examples

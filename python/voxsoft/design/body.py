@@ -86,9 +86,10 @@ class Body(Record):
     parts
         Parts of its own in place of a design; their shapes are those of the outer design.
     voxel_size, fill
-        As for :class:`Design`; default: those of `design`, for parts of the outer one.
+        Grid of the body, as for :class:`Design`; default: those of `design`, for parts of the outer
+        one.
     position, rotation
-        Where it is: first turned about its own origin, or the center that the rotation gives in the
+        Pose: first turned about its own origin, or the center that the rotation gives in the
         frame of the body, then moved.
     mirror
         ``"x"``, ``"y"`` or ``"z"``: the mirror image of `design` in the plane through its origin
@@ -206,11 +207,11 @@ class Body(Record):
         Parameters
         ----------
         name
-            Of the image.
+            Name of the image.
         axis
             Across which the plane is.
         at
-            Where the plane is along the axis [m].
+            Position of the plane along the axis [m].
 
         Raises
         ------
@@ -235,7 +236,7 @@ class Body(Record):
         Parameters
         ----------
         names
-            Of the copies.
+            Names of the copies.
         axis
             Direction of the axis.
         center

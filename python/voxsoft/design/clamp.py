@@ -22,7 +22,7 @@ class Rotation(Record):
     axis
         Direction of the axis; its length does not matter.
     angle
-        How far to turn, ``"90 deg"``.
+        Angle of the turn, ``"90 deg"``.
     center
         A point on the axis; default: the origin.
 

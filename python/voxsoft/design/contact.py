@@ -116,7 +116,7 @@ class Contact(Record):
     pairs
         Pairs that differ; of two entries for one pair the later one counts.
     separate
-        Whether objects that are in something in the unloaded design are moved out of it, along the
+        If true, objects that are in something in the unloaded design are moved out of it, along the
         shortest way, with a warning; default False, which refuses them.
     surface
         Contact surface of the body: ``"smooth"`` (default) is the surface of its shapes, carried by

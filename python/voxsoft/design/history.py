@@ -39,11 +39,11 @@ class Sine(Record):
     Parameters
     ----------
     period
-        Of one cycle.
+        Duration of one cycle.
     low, high
         The ends of the swing; default: 0 and 1.
     cycles
-        How many; after them it stays at the lower end.
+        Number of cycles; after them it stays at the lower end.
 
     Examples
     --------
@@ -77,7 +77,7 @@ class History(Record):
     duration
         Duration of the expression; then its last value stays.
     repeat
-        How many times the whole is gone through; its end must be its beginning. Default: once.
+        Number of times the whole is gone through; its end must be its beginning. Default: once.
 
     Examples
     --------

@@ -35,7 +35,7 @@ class Layer(Record):
     Parameters
     ----------
     region
-        Where the layer is.
+        Place of the layer.
     young
         Young's modulus of the layer.
     thickness
@@ -45,7 +45,7 @@ class Layer(Record):
     density
         Default 1070 kg/m³.
     seal
-        Whether the layer, which must then lie in a plane, also spans the openings that it
+        If true, the layer, which must then lie in a plane, also spans the openings that it
         encloses, and so closes the chambers behind them. Default: no.
     name
         Name in results.

@@ -24,14 +24,14 @@ class Valve(Record):
     Parameters
     ----------
     conductance
-        Of gas: the sonic conductance ``C``, as data sheets give it, ``"0.5 L/s/bar"``.
+        Sonic conductance ``C`` for gas, as data sheets give it, ``"0.5 L/s/bar"``.
     critical_ratio
-        Of gas: the ratio ``b`` of the pressures after and before it, 0 to 1, below which the flow
+        Ratio ``b`` for gas of the pressures after and before it, 0 to 1, below which the flow
         is choked; default 0.3.
     area
-        Of liquid: the area of the orifice times its coefficient of discharge, about 0.6.
+        Area of the orifice for liquid, times its coefficient of discharge, about 0.6.
     history
-        How far it is open over time, 0 (closed) to 1: its conductance or area is in proportion.
+        Opening over time, 0 (closed) to 1: its conductance or area is in proportion.
         Default: always open. In equilibrium the last factor counts.
 
     Notes

@@ -212,7 +212,7 @@ class Design(Record):
         overrides
             New values of parameters by name: text with a unit, or numbers in SI units.
         from_file
-            Whether a bare number where a unit belongs is an error (default), or SI.
+            True if a bare number where a unit belongs is an error (default); else it is SI.
 
         Raises
         ------
@@ -485,7 +485,7 @@ class Design(Record):
         Parameters
         ----------
         **values
-            By name: text with a unit, or numbers in SI units.
+            Values by name: text with a unit, or numbers in SI units.
 
         Raises
         ------
@@ -542,7 +542,7 @@ class Design(Record):
             Texts ``key=value`` as :func:`voxsoft.design.set_values` reads them, such as
             ``"voxel_size=2.5 mm"`` or ``"parts[0].material=ecoflex-00-50"``.
         **values
-            The same for single names: a parameter of the design, else a key of it. Text with a
+            Values by single names: a parameter of the design, else a key of it. Text with a
             unit, or numbers in SI units. They are set first.
 
         Raises
@@ -571,7 +571,7 @@ class Design(Record):
         Parameters
         ----------
         resolved
-            Whether to write values in place of formulas.
+            True to write values in place of formulas.
         """
         # `files` lies above `design` in the layers; this method is the one convenience that
         # reaches up, and it does so when called, so that no import runs in a circle.

@@ -29,7 +29,7 @@ class Object(Record):
         Density or mass of a free object. Volume and moments of inertia are those of its shape, of
         one density.
     voxel_size
-        How finely its surface is traced: edges are rounded by a third of it. Default: the voxel
+        Size of the triangles of its surface: edges are rounded by a third of it. Default: the voxel
         size of the design.
 
     Examples

@@ -26,7 +26,7 @@ class Profile(Record):
     Parameters
     ----------
     axis
-        Along which it changes, with `at` and `factor`.
+        Axis along which it changes, with `at` and `factor`.
     at
         Coordinates along the axis, rising; two at least.
     factor

@@ -31,23 +31,23 @@ class ShapeMemory(Activation):
     value
         Its temperature in kelvin.
     strain
-        How much longer it is when all of it is transformed, above −1: ``"-4 %"`` shortens.
+        Strain when all of it is transformed, above −1: ``"-4 %"`` shortens.
     heating
         The temperatures in kelvin between which it transforms when it is heated.
     cooling
         Those between which it goes back when it is cooled: the higher one first, neither above
         those of `heating`.
     fibers
-        Whether it is the fibers of the part that are longer, and not all of it. Default: all of it,
+        True if the fibers of the part are longer, and not all of it. Default: all of it,
         along every axis.
     transformed
-        How much of it is transformed before it takes the temperature `value`, or that of the
+        Part of it that is transformed before it takes the temperature `value`, or that of the
         beginning of its history; default 0, cold.
     reference
         The temperature in kelvin that the factor 0 of a history stands for, as 1 does for `value`;
         default 293.15 K.
     history
-        How the temperature changes over time. Default: it is `value`.
+        The temperature over time. Default: it is `value`.
 
     Examples
     --------

@@ -81,7 +81,7 @@ class Solver(Record):
         Load and arc-length control only: the first step of the path, as a part of the full load;
         default 1, or an arc of 0.2.
     error
-        How a run finds its discretization error: on ``"finer"`` voxels, half as large; on
+        Method for the discretization error of a run: on ``"finer"`` voxels, half as large; on
         ``"coarser"`` ones, twice as large; by ``"auto"`` (default), finer ones for small bodies and
         coarser ones for others, where they are still the same body; or not at all, ``"off"``.
         It changes no result.

@@ -44,13 +44,13 @@ class Supply(Record):
         The chamber that is driven: its name, the index of a cavity, or ``"all"`` for all
         cavities behind one manifold.
     chambers
-        Instead: several chambers that one manifold joins.
+        Several chambers that one manifold joins, in place of `chamber`.
     fluid
         ``"air"`` (default), ``"water"``, or a table of a gas or a liquid.
     temperature
-        Of gas; default 20 °C. Walls and lines keep it.
+        Temperature of gas; default 20 °C. Walls and lines keep it.
     line_volume
-        Of hoses and fittings, beside that of a `tube`; default 0.
+        Volume of hoses and fittings, beside that of a `tube`; default 0.
     leak
         A valve to the atmosphere; default: none.
     history
@@ -167,9 +167,9 @@ class MassSupply(Supply):
     value
         The mass in chamber and lines; default: their content unloaded, under the atmosphere.
     temperature
-        Of the sealed gas in the end; it begins at `fill_temperature`.
+        Temperature of the sealed gas in the end; it begins at `fill_temperature`.
     fill_temperature
-        At which the unloaded body is filled under the atmosphere; default 20 °C.
+        Temperature at which the unloaded body is filled under the atmosphere; default 20 °C.
 
     Examples
     --------
@@ -194,7 +194,7 @@ class FlowSupply(Supply):
     source
         The gauge pressure of the source; negative is a vacuum. Give this or `pump`.
     pump
-        Instead: a pump that feeds the chamber itself.
+        A pump that feeds the chamber itself, in place of `source`.
     valve, tube
         Elements that the flow goes through, in this order; at least one of them with a `source`.
 

@@ -21,7 +21,7 @@ class Symmetry(Record):
     plane
         The axis across the plane: ``"y"`` is the plane of x and z.
     at
-        Where it is along this axis, on faces of voxels; default: 0.
+        Position of the plane along this axis, on faces of voxels; default: 0.
 
     Notes
     -----

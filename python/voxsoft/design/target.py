@@ -34,7 +34,7 @@ class Objective(Record):
     maximize, minimize
         Name of the metric, such as ``"displacement"``; give one of the two.
     probe
-        Where it is measured, for a metric that needs a place.
+        Place of the measurement, for a metric that needs a place.
     base
         Another probe, where the line to the first one begins, for a metric that needs a line.
     axis
@@ -57,9 +57,9 @@ class Objective(Record):
         The name of a clamp, or its place, ``"clamps[0]"``, for a metric of supports. Default: all
         that hold the body.
     region
-        Where supports count, in the unloaded body. Default: everywhere.
+        Place where supports count, in the unloaded body. Default: everywhere.
     along
-        Which number of a path of equilibria counts: ``"last"``, ``"largest"``, ``"smallest"`` or
+        The number of a path of equilibria that counts: ``"last"``, ``"largest"``, ``"smallest"`` or
         ``"mean"``. Default: the last. Without a path there is only one.
 
     Examples

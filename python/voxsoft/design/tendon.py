@@ -20,7 +20,7 @@ class Guide(Record):
     Parameters
     ----------
     point
-        Where the line runs through a body or an object, in the undeformed design.
+        Point of the line in a body or an object, in the undeformed design.
     body
         The body that carries the point, in whose own frame it is then; default: whichever it is in.
     object
@@ -28,8 +28,8 @@ class Guide(Record):
     fixed
         A point in space that does not move: a pulley, an eyelet of the frame, the motor.
     radius
-        Of a ball around a point of a body over which the pull is spread, as by a disc or a knot in
-        the rubber; default: none, as by a channel. An anchor that pulls hard needs one.
+        Radius of a ball around a point of a body over which the pull is spread, as by a disc or a
+        knot in the rubber; default: none, as by a channel. An anchor that pulls hard needs one.
 
     Examples
     --------
@@ -95,7 +95,7 @@ class Tendon(Record):
     length
         The length without tension between the first point and the last.
     shortening
-        By how much it is drawn in from the length that it has in the undeformed design; negative
+        Length drawn in from the length that it has in the undeformed design; negative
         pays it out. Give one of `tension`, `length` and `shortening`.
     history
         The factor on that over time; default: constant.

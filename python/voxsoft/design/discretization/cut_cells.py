@@ -41,7 +41,7 @@ class CutCells:
     low
         The lowest cell of the grid counted from the phase, (3,).
     phase
-        Where the grid lies: a corner of a cell [m].
+        Place of the grid: a corner of a cell [m].
     size
         Edge of a cell [m].
     filled
@@ -152,7 +152,7 @@ def measures_of(design: Design, cells: Ints, size: float, phase: Triple) -> Floa
     size
         Edge of a cell [m].
     phase
-        Where the grid lies: a corner of a cell [m].
+        Place of the grid: a corner of a cell [m].
     """
     found = np.zeros((len(cells), len(WHOLE)))
     for start in range(0, len(cells), _CHUNK):
@@ -174,7 +174,7 @@ def integrals(filled: Floats, normals: Floats) -> Floats:
     Parameters
     ----------
     filled, normals
-        Of each small cube, as :func:`voxsoft.shapes.fractions.fill` gives them.
+        Values of each small cube, from :func:`voxsoft.shapes.fractions.fill`.
     """
     lengths = np.linalg.norm(normals, axis=-1, keepdims=True)
     unit = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)

@@ -137,7 +137,7 @@ class CutVoxels:
         Parameters
         ----------
         design
-            The same design with slightly other parameters; its surface must stay in the cells near
+            A design with slightly other parameters; its surface must stay in the cells near
             the surface of this one.
 
         Raises

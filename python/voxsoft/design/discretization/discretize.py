@@ -65,7 +65,7 @@ class Filled:
         Its cells; of full ones those before they are refined. Of several bodies those of the first.
         None where the body is the mesh of a file.
     count
-        How many voxels the mesh will have; five tetrahedra of a file count as one.
+        Number of voxels that the mesh will have; five tetrahedra of a file count as one.
     lost
         Volume of the material that found no voxel [m³].
     mesh

@@ -34,14 +34,14 @@ def with_narrow_rooms(design: Design, cells: CutCells, active: Marks) -> Marks:
     design
         The design.
     cells
-        How full its cells are.
+        Filled parts of its cells.
     active
-        Which of them are full enough to be voxels.
+        Cells full enough to be voxels.
 
     Returns
     -------
     ndarray of bool
-        The same without those cells.
+        The mask `active` without those cells.
     """
     from scipy.ndimage import find_objects, label
 

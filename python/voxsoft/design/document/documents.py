@@ -30,7 +30,7 @@ def plain_document(
     source
         Source of the design: for a Python call, a mix of models, SI floats and dicts.
     dumped
-        The same as plain data with values in place of formulas.
+        The source as plain data with values in place of formulas.
     typed
         Keys of the source that were typed in Python; the others are as a file holds them.
 

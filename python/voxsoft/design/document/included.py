@@ -37,7 +37,7 @@ def inner_design(
     values
         New values of its parameters.
     from_file
-        Whether numbers in a table need their units.
+        True if numbers in a table need their units.
 
     Raises
     ------

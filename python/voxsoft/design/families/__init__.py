@@ -156,7 +156,7 @@ def paper_beam(**parameters: float | str) -> Design:
     Parameters
     ----------
     **parameters
-        As of :func:`beam`.
+        Parameters of :func:`beam`.
 
     Examples
     --------
