@@ -21,7 +21,7 @@ _ROOT_PI: Final = math.sqrt(math.pi)
 class Mullins(Record):
     """Softening by the largest stretch so far, after Ogden and Roxburgh.
 
-    Where the energy ``W`` of the change of shape is below the largest ``P`` that it has had, the
+    If the energy ``W`` of the change of shape is below the largest ``P`` that it has had, the
     stress that comes from it is ``η`` times that of the first loading,
 
     ``η = 1 - erf((P - W)/(m + β P))/r``.

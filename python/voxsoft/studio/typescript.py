@@ -50,7 +50,7 @@ _SIMPLE: Final[dict[type[types.Type], str]] = {
     types.NoneType: "null",
     types.StrType: "string",
 }
-#: Numbers of the page by name, with what is said of them.
+#: Numbers of the page by name, with their comments.
 _NUMBERS: Final = {
     "PROTOCOL": (PROTOCOL, "Page and server must speak the same."),
     "CREDITS": (CREDITS, "Frames that the server sends before it waits for an `ack`."),

@@ -1,4 +1,4 @@
-"""Whether smaller voxels can be had, and at what cost: what the page says of how fine a mesh is."""
+"""Fineness of a mesh on the page: whether smaller voxels are possible, and their cost."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _DIVIDED: Final = re.compile(r"=\s*\((?P<whole>.*)\)/(?P<by>\d+)")
 
 
 def fineness_of(shown: Shown, document: DesignDocument) -> events.Fineness:
-    """Say what voxels half as large would cost what is shown, and which changes make them.
+    """Estimate the cost of voxels half as large for the shown body, and the changes that make them.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ def stored_job(folder: Path) -> list[events.Event]:
 
 
 def _last_state(folder: Path, done: int | None = None) -> Iterator[events.Job]:
-    """Where the job of a folder stood when it was heard of last; nobody works on it now."""
+    """Last known state of a folder's job; nobody works on it now."""
     states = [event for event in read_journal(folder) if isinstance(event, events.Job)]
     if not states or not holds_job(folder):
         return
