@@ -43,8 +43,8 @@ class Tab:
 
     Frames need credits, of which an `ack` returns one; the newest frame takes the place of one that
     waits. Everything else is sent in order. Waiting events give way to newer ones of their kind, or
-    are joined with them, so that a tab that reads slowly costs little memory; one that reads nothing
-    is cut off.
+    are joined with them, so that a tab that reads slowly costs little memory; one that reads
+    nothing is cut off.
 
     Attributes
     ----------
