@@ -42,7 +42,7 @@ export const CAD_SUFFIXES = [".step", ".stp", ".p21", ".iges", ".igs", ".brep", 
 /** Why they are not read. */
 export const CAD_WHAT = "is a CAD model, whose faces are formulas: only triangles are read";
 
-/** What to do with them. */
+/** Remedy for them. */
 export const CAD_HINT = "export the part as STL or OBJ in the CAD program, or open it in FreeCAD, choose the body and take File, Export";
 
 /** Speeds of time: simulated seconds for each of the clock. */

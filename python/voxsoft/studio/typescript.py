@@ -80,7 +80,7 @@ def typescript() -> str:
         _constant("WRITTEN", _written(), "Formats of files that the server writes, by ending."),
         _constant("CAD_SUFFIXES", CAD_SUFFIXES, "Endings of files of CAD programs."),
         _constant("CAD_WHAT", WHAT, "Why they are not read."),
-        _constant("CAD_HINT", HINT, "What to do with them."),
+        _constant("CAD_HINT", HINT, "Remedy for them."),
         _constant("PACES", PACES, "Speeds of time: simulated seconds for each of the clock."),
         *(_codes(each) for each in (CloseCode, MessageKind, FrameFlag, TopologyFlag)),
         _constant("KINDS", _kinds(), "Kinds: SI unit, unit of bare numbers, exponents."),

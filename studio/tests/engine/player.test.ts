@@ -15,7 +15,7 @@ import type {
 
 const file = (name: string) => new Uint8Array(readFileSync(new URL(name, import.meta.url)));
 
-// What a server would note of the beam of 6 x 2 x 2 voxels in beam.scene.
+// Event that a server would send of the beam of 6 x 2 x 2 voxels in beam.scene.
 const BODY: BodyEvent = {
   ...{ t: "body", topology: 4, rev: 1, voxels: 24, vertices: 63, tets: 120 },
   ...{ surface_vertices: 58, triangles: 112, voxel_size: 0.005, cavities: [], leaks: [] },

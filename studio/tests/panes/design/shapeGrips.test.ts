@@ -122,7 +122,7 @@ describe("other kinds", () => {
       { path: ["shapes", "it", "by", 0], value: "2 mm" },
     ]);
     expect(gripsOf({ kind: "union", of: ["a"] }, { kind: "union" })).toEqual({});
-    // While the kind was just changed, what the design comes to is still of the other.
+    // While the kind was just changed, the values of the design are still of the other.
     expect(gripsOf({ kind: "sphere" }, SOLVED)).toEqual({});
   });
 });

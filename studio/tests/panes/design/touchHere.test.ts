@@ -129,7 +129,7 @@ describe("what the body can touch", () => {
     const { plate, press, floor } = byId(touchOffers(held));
     expect(press?.label).toContain("a clamp holds this face");
     expect([press?.disabled, press?.changes]).toEqual([true, []]);
-    // What rests may lie on what is held.
+    // An object at rest may lie on a held one.
     expect([plate?.disabled, floor?.disabled]).toEqual([undefined, undefined]);
     const other = around(ABOVE, { body: body({ clamps }) });
     expect(byId(touchOffers(other)).press?.disabled).toBeUndefined();
