@@ -161,7 +161,7 @@ class Fields:
         Parameters
         ----------
         percent
-            As for :meth:`percentile`. The slope is that of the one voxel that has the value.
+            See :meth:`percentile`. The slope is that of the one voxel that has the value.
 
         Returns
         -------
@@ -222,7 +222,7 @@ class Fields:
         values
             For each voxel, (k,); those that are not finite do not count, nor do rigid parts.
         percent
-            As for :meth:`percentile`.
+            See :meth:`percentile`.
         """
         if not 0.0 < percent <= 100.0:
             raise DesignError("percentile", f"{percent:g} is not above 0 and at most 100", "try 99")

@@ -49,7 +49,7 @@ def mean_rotation(
     Parameters
     ----------
     rest, positions, vertices
-        As for :func:`mean_rotation_vector`.
+        See :func:`mean_rotation_vector`.
 
     Returns
     -------

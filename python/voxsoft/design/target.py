@@ -108,7 +108,7 @@ class Constraint(Record):
     metric
         Name of the metric.
     probe, base, axis, cavity, percentile, object, tendon, clamp, region, along, accuracy
-        As for :class:`Objective`.
+        See :class:`Objective`.
     min, max
         The bounds, with units where the metric has one; at least one of them.
     kind

@@ -67,7 +67,7 @@ def with_number(design: Design, name: str, value: float) -> Design:
     design
         The design; it is not changed.
     name
-        As for :func:`number_of`.
+        See :func:`number_of`.
     value
         In SI units, exact to the last bit.
 

@@ -86,7 +86,7 @@ class Stage(Record):
     Parameters
     ----------
     sampler, batch
-        As for :class:`StudySpec`.
+        See :class:`StudySpec`.
     budget
         Number of trials that the study held at its end.
     """
@@ -104,7 +104,7 @@ class StudySpec(JobSpec):
     Parameters
     ----------
     sampler, batch, workers, seed
-        As for :meth:`voxsoft.study.Study.optimize`; the number of workers changes no result.
+        See :meth:`voxsoft.study.Study.optimize`; the number of workers changes no result.
     budget
         Number of trials in the end; None for a grid, which ends with its last point.
     space, objectives, constraints
@@ -152,7 +152,7 @@ class CalibrateSpec(JobSpec):
     bounds
         Range of each constant, as the `parameters` of :func:`voxsoft.calibration.calibrate`.
     method, generations, population, free_scale, refine, identify, seed, workers
-        As for :func:`voxsoft.calibration.calibrate`.
+        See :func:`voxsoft.calibration.calibrate`.
     card
         Name of the material card; default: that of the material or file that was measured.
     """
@@ -191,7 +191,7 @@ class CompareSpec(JobSpec):
     data
         Measured tables of the real body.
     solvers, outside, voxel_sizes, splits, time_limit
-        As for :func:`voxsoft.compare`; sizes in m, the time in s.
+        See :func:`voxsoft.compare`; sizes in m, the time in s.
     """
 
     kind: Literal["compare"] = "compare"

@@ -163,7 +163,7 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
     Raises
     ------
     FileError
-        As for :func:`voxsoft.files.export`.
+        See :func:`voxsoft.files.export`.
     """
     target = folder / f"{source.name}.{format}"
     if format == "run":
