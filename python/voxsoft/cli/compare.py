@@ -33,7 +33,7 @@ def compare(
         str, typer.Option("--solvers", help="Solvers of our own; estimates are for the last.")
     ] = "xpbd,statics",
     outside: Annotated[
-        OutsideName, typer.Option("--outside", help="An outside code; auto: what is installed.")
+        OutsideName, typer.Option("--outside", help="An outside code; auto: all installed ones.")
     ] = OutsideName.auto,
     voxel_sizes: Annotated[
         str | None,

@@ -35,10 +35,10 @@ MEANINGS: Final = {
     INVALID: "the design, mesh or data is not valid; nothing was solved",
     NOT_AT_REST: "the run did not come to rest, or diverged",
     FAILED: "the machine failed: a file cannot be written, memory is short, a storage or an "
-    "outside code does not answer; what was finished is kept, and summary.json of a run is written "
+    "outside code does not answer; finished work is kept, and summary.json of a run is written "
     "before all other files",
     DIFFERS: "a job that was repeated has other results than its folder",
-    INTERRUPTED: "stopped by Ctrl-C; what was finished is kept",
+    INTERRUPTED: "stopped by Ctrl-C; finished work is kept",
 }
 
 #: Exit codes by the kind of error, the first that fits; INVALID for all others.

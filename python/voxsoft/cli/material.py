@@ -80,7 +80,7 @@ def fit(
         str | None, typer.Option("--name", help="Name of the card; default: the first file's.")
     ] = None,
     source: Annotated[
-        str, typer.Option("--source", help="Where the data are from: who, when, license.")
+        str, typer.Option("--source", help="Source of the data: who, when, license.")
     ] = "",
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder; default: runs/NAME-material.")

@@ -44,7 +44,7 @@ def run(
         bool,
         typer.Option(
             "--figure",
-            help="Also draw the deformed body, as body.png, what touches it, as contact.png, and "
+            help="Also draw the deformed body, as body.png, its contacts, as contact.png, and "
             "the numbers along a path, as path.png.",
         ),
     ] = False,

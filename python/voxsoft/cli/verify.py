@@ -21,9 +21,9 @@ def verify(
     cases: Annotated[
         list[str] | None, typer.Argument(help="Names of cases; default: all of the folder.")
     ] = None,
-    folder: Annotated[
-        Path, typer.Option("--folder", help="Where the scripts of the cases are.")
-    ] = Path("examples/validation"),
+    folder: Annotated[Path, typer.Option("--folder", help="Folder of the cases' scripts.")] = Path(
+        "examples/validation"
+    ),
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder for scores.csv and scores.png.")
     ] = None,

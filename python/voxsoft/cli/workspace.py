@@ -26,7 +26,7 @@ def workspace(
         typer.Option(
             "--over",
             metavar="KEY=RANGE",
-            help="What drives it, as for run: 'left=0..6 N/7'. Once to three times; the last "
+            help="Drives, as for run: 'left=0..6 N/7'. Once to three times; the last "
             "changes fastest.",
         ),
     ],

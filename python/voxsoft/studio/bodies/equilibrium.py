@@ -93,7 +93,7 @@ def equilibrium_of(
     if bars is not None:
         source = f"{bars.sentence[:1].upper()}{bars.sentence[1:]}."
     else:
-        source = "" if off else "Error bars: being looked for on other voxels."
+        source = "" if off else "Error bars are computed on other voxels."
     # Error bars of the design's own kind would only be looked for again.
     tried = result.design.solver.error == "finer"
     can_solve = result.status == "ok" and result.mesh.voxel_size is not None

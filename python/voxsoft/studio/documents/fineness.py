@@ -46,7 +46,7 @@ def fineness_of(shown: Shown, document: DesignDocument) -> events.Fineness:
     design, source = document.design, document.source
     if design is None or source is None or not document.valid or shown.body.rev != document.rev:
         what = "is not the one that is shown"
-        raise DesignError("design", what, "wait for its body, or fix what the editor underlines")
+        raise DesignError("design", what, "wait for its body, or fix the underlined errors")
     result = shown.measured()
     voxels = Setup(result.design, result.mesh).elements
     half = cost_on_voxels(voxels, result.seconds, 0.5)

@@ -81,7 +81,7 @@ def several_of(document: DesignDocument) -> tuple[DesignDocument, str]:
     """
     source, design = document.source, document.design
     if source is None or design is None or not document.valid:
-        raise DesignError("design", "is not valid", "fix what the editor underlines")
+        raise DesignError("design", "is not valid", "fix the underlined errors")
     if document.path is None or document.dirty:
         what = "is not saved, and its bodies name its file"
         raise DesignError("design", what, "save it first (Ctrl+S), then try again")

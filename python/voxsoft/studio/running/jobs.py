@@ -222,4 +222,4 @@ class Jobs:
             last = " ".join(line.strip() for line in lines[-_LAST_LINES:] if line.strip())
             if last:
                 how += f": {last[-400:]}"
-        return f"The process {how}. What is finished is kept in {job.folder}; resume to go on."
+        return f"The process {how}. Finished work is kept in {job.folder}; resume to go on."

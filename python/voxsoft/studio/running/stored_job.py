@@ -51,7 +51,7 @@ def _last_state(folder: Path, done: int | None = None) -> Iterator[events.Job]:
     last = states[-1]
     if last.state not in FINISHED:
         last = msgspec.structs.replace(
-            last, state="interrupted", left=None, stage="", message="what was finished is kept"
+            last, state="interrupted", left=None, stage="", message="finished work is kept"
         )
     yield last if done is None else msgspec.structs.replace(last, done=done)
 

@@ -61,7 +61,7 @@ def main(folder: Path) -> int:
         outcome = run_job(spec, folder, listener_of(spec, progress), gate=gate)
         progress.end("done", outcome.sentence)
     except KeyboardInterrupt as interrupt:
-        progress.end("stopped", str(interrupt) or "stopped; what is finished is kept")
+        progress.end("stopped", str(interrupt) or "stopped; finished work is kept")
     except VoxSoftError as error:
         progress.end("failed", str(error))
         return 1

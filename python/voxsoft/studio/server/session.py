@@ -213,7 +213,7 @@ class Session:
             self.tabs.send_to(tab, self.document.event())
             raise FileError(
                 "text",
-                "was changed in another tab meanwhile; what was typed here was not taken",
+                "was changed in another tab meanwhile; the text typed here was not taken",
                 "look at the text as it is now, and change it again",
             )
         self._author = tab
@@ -291,7 +291,7 @@ class Session:
 
     def _good(self, document: DesignDocument) -> tuple[PlainDocument, Design]:
         if document.source is None or document.design is None or not document.valid:
-            raise DesignError("design", "is not valid", "fix what the editor underlines")
+            raise DesignError("design", "is not valid", "fix the underlined errors")
         return document.source, document.design
 
     def _change(
@@ -497,7 +497,7 @@ class Session:
     def _on_job_start(self, command: commands.JobStart, tab: Tab) -> None:
         asked, document = command.spec, self.document
         if not document.valid or document.design is None:
-            raise StudyError("job", "the design is not valid", "fix what the editor underlines")
+            raise StudyError("job", "the design is not valid", "fix the underlined errors")
         tables = []
         if isinstance(asked, commands.CalibrateSpec):
             tables = [self._table(each) for each in asked.data]
