@@ -260,7 +260,7 @@ def test_parts_of_identifiers_are_words():
     assert apart("may_fly mayFly") == "may fly may Fly"
 
 
-def test_names_are_read_without_what_surrounds_them():
+def test_names_are_read_without_their_surroundings():
     python = 'toldAt = f"said {x}"  # said\n'
     assert names(Path("a.py"), python).split() == ["told", "At"]
     rust = 'let was_told = "said \\" said"; // said\n'

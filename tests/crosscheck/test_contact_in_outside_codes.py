@@ -56,7 +56,7 @@ def slid(friction):
 
 
 @pytest.mark.slow
-def test_what_slides_has_the_friction_of_coulomb_in_both():
+def test_sliding_has_coulomb_friction_in_both():
     found = compare(slid(0.1), solvers=["statics"], voxel_sizes=[], splits=[1, 2])
     own, outside = found.base, found.yardstick
     assert own.ok

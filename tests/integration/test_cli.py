@@ -64,7 +64,7 @@ def test_new_writes_a_commented_design_that_checks(template):
     assert printed("check", "mine.toml")["valid"]
 
 
-def test_new_keeps_what_is_there():
+def test_new_keeps_existing_files():
     assert call("new", "mine").exit_code == 0
     Path("mine.toml").write_text("kept")
     outcome = call("new", "mine")
@@ -96,7 +96,7 @@ def test_check_prints_figures_and_findings():
     assert "cavity 0: 32.5 mL" in words.stderr
 
 
-def test_check_says_what_is_wrong_and_returns_3():
+def test_check_reports_faults_and_returns_3():
     report = printed(
         "check", CYLINDER, "--set", "wall=25 mm", "--set", "parameters.wall.max=25 mm", code=3
     )
@@ -271,7 +271,7 @@ def test_export_of_a_run():
         ([".", "a.stl"], "no run folder"),
     ],
 )
-def test_export_says_what_is_not_possible(arguments, words):
+def test_export_reports_impossible_requests(arguments, words):
     outcome = call("export", *arguments)
     assert outcome.exit_code == 3
     assert words in outcome.stderr

@@ -132,7 +132,7 @@ def test_contact_goes_its_way_again_to_the_same_table(tmp_path, solved):
     assert (folder / "path.csv").read_bytes() == (whole / "path.csv").read_bytes()
 
 
-def test_where_a_path_is_reached_is_shown(tmp_path):
+def test_the_reached_part_of_a_path_is_shown(tmp_path):
     file = tmp_path / "beam.toml"
     vs.save(BEAM, file)
     done = follow(file, tmp_path / "run", OVER["beam"])

@@ -186,7 +186,7 @@ def run_script(page):
     [pytest.param(page, marks=[pytest.mark.slow] * (page.name in LONG)) for page in PAGES],
     ids=lambda page: str(page.relative_to(DOCS)),
 )
-def test_a_page_does_what_it_says(page, tmp_path, monkeypatch):
+def test_a_page_runs_as_written(page, tmp_path, monkeypatch):
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     monkeypatch.chdir(tmp_path)
     before = dict(registry._ALL)

@@ -75,7 +75,7 @@ def in_a_fresh_folder():
 @settings(deadline=None, max_examples=6, suppress_health_check=[HealthCheck.too_slow])
 @example("../../escaped")
 @example("/elsewhere/evil")
-def test_what_is_written_for_a_design_stays_below_the_folder(name):
+def test_files_of_a_design_stay_below_the_folder(name):
     with in_a_fresh_folder() as home:
         file = design_called(name, home)
         outcome = CliRunner().invoke(app, ["run", str(file)])

@@ -56,7 +56,7 @@ def warned(seed):
 
 
 @pytest.mark.slow
-def test_what_snaps_says_so():
+def test_snapping_is_reported():
     # It buckles on its way.
     result, warnings = warned(7)
     assert result.snaps
@@ -64,7 +64,7 @@ def test_what_snaps_says_so():
     assert any("snapped to another one" in each for each in warnings)
 
 
-def test_what_is_folded_into_itself_says_so():
+def test_folding_into_itself_is_reported():
     # A crease is in itself, as both judges of `judged` find.
     from squeeze_bodies import judged
 

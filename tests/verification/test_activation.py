@@ -71,7 +71,7 @@ def test_a_bilayer_bends_as_a_bimetal(ratio):
     )
 
 
-def test_what_is_free_swells_without_stress():
+def test_free_parts_swell_without_stress():
     block = vs.Design(
         name="gel",
         voxel_size=5 * mm,
@@ -90,7 +90,7 @@ def test_what_is_free_swells_without_stress():
     assert result.mass == pytest.approx(1000.0 * 1e-6)
 
 
-def test_what_is_held_all_round_is_pressed_by_its_bulk_modulus():
+def test_a_part_held_all_round_is_pressed_by_its_bulk_modulus():
     strain, poisson = 0.01, 0.3
     held = vs.Design(
         name="held",
@@ -200,7 +200,7 @@ def test_a_warm_layer_bends_as_timoshenko_says():
     assert (half.value, half.reference) == (313.15, 293.15)
 
 
-def test_what_no_body_can_be_heated_to_is_refused():
+def test_an_impossible_temperature_is_refused():
     with pytest.raises(DesignError, match="value"):
         Thermal(part="upper", value="-5 K", expansion="3e-4 1/K")
     with pytest.raises(DesignError, match="does not count from zero"):
@@ -301,7 +301,7 @@ def test_a_free_block_swells_by_its_history_without_stress(contact):
 
 
 @pytest.mark.parametrize("contact", [None, Contact()], ids=["explicit", "implicit"])
-def test_what_has_grown_comes_to_rest_as_statics_says(contact):
+def test_grown_bodies_come_to_rest_as_statics_says(contact):
     # Held at its foot, so that it has stress, and at rest before anything has happened.
     foot = [vs.Clamp(region=vs.Region(z=(0, 0)))]
     later = vs.History(time=("0.1 s", "0.3 s"), factor=(0, 1))

@@ -138,7 +138,7 @@ def test_pulling_raises_a_frequency_and_pressing_lowers_it(still):
         assert (result.metric("natural_frequency") > 1.02 * slowest) is raised
 
 
-def test_what_has_no_modes_is_refused(still):
+def test_a_body_without_modes_is_refused(still):
     with pytest.raises(SimulationError, match="ask for one mode"):
         vs.modes(still, 0)
     touching = vs.simulate(bar(contact=Contact()))

@@ -271,7 +271,7 @@ def test_a_bad_sheet_is_refused(changes, words):
         Dielectric(**{**good, **changes})
 
 
-def test_what_no_sheet_can_be_is_refused():
+def test_an_impossible_sheet_is_refused():
     other = film(1e6).activations[0].replace(part="fim")
     with pytest.raises(DesignError, match=r'no part "fim".*film'):
         vs.simulate(film(0.0, activations=[other]))

@@ -358,7 +358,7 @@ def test_chambers_that_exchange_gas_keep_it():
     assert off(still, simulate(pair(manifold))) < ALIKE
 
 
-def test_a_leak_takes_what_the_valve_lets_in():
+def test_a_leak_takes_the_flow_of_the_valve():
     """Like valves in series: the pressure between them, by the flow that both carry."""
     valve = {"conductance": "0.01 L/s/bar", "critical_ratio": 0.3}
     (chamber,) = simulate(
@@ -453,7 +453,7 @@ def test_a_liquid_weighs_on_its_walls():
 
 
 @pytest.mark.parametrize("fluid", ["air", "water"])
-def test_derivatives_go_through_what_is_sealed_in(fluid):
+def test_derivatives_go_through_sealed_gas(fluid):
     """Beside differences over two parts in ten thousand, which are good to the square of that."""
     value, young = 1e-7, 200 * kPa
     tip = {"probes": {"top": vs.Probe(z=(INSIDE + 2 * WALL,) * 2)}}

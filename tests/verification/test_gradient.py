@@ -120,7 +120,7 @@ def test_parameters_pass_through_formulas():
     check(block(), tip, ["E"])
 
 
-def test_a_probe_that_moves_changes_what_it_measures():
+def test_a_moved_probe_measures_another_place():
     """The point moves along the bar, whose body stays: an explicit derivative only."""
     tip = {"tip": Objective(maximize="displacement", probe="point", axis="z")}
     check(block(parameters={"pull": "0.83 mm", "E": "40 kPa"}), tip, ["pull"])

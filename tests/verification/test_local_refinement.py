@@ -82,7 +82,7 @@ def test_most_of_the_gain_for_a_part_of_the_unknowns(both):
     assert len(both.mesh.vertices) - tied < 0.7 * len(small.mesh.vertices)
 
 
-def test_what_carries_it_carries_its_weight(both):
+def test_the_support_carries_the_weight(both):
     assert both.status == "ok"
     weight = 9.81 * both.mass
     assert both.mass == pytest.approx(vs.simulate(block(), refine=2).mass, rel=1e-12)

@@ -164,7 +164,7 @@ def test_a_rigid_cap_moves_as_one():
     assert distortion(simulate(capped(rubber(0.49)))) > 1e-3
 
 
-def test_a_rigid_part_weighs_what_it_says():
+def test_a_rigid_part_has_its_stated_weight():
     light, heavy = (Setup.of(capped(vs.Rigid(density=d))).problem.mass for d in (1000.0, 3000.0))
     assert heavy - light == pytest.approx(2000.0 * (8 * mm) ** 3)
 
@@ -207,7 +207,7 @@ def test_a_braid_changes_sign_at_the_magic_angle():
     assert rise[30] < 0.0 < rise[75]
 
 
-def test_what_cannot_be_a_fiber_or_a_rigid_part():
+def test_invalid_fibers_and_rigid_parts_are_refused():
     with pytest.raises(MaterialError, match="direction: is missing"):
         vs.Fiber(modulus=1 * kPa)
     with pytest.raises(DesignError, match=r"fibers\[0\].direction: has no direction"):

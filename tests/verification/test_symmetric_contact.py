@@ -336,7 +336,7 @@ def test_a_balloon_grows_against_a_wall(planes: list[Symmetry]) -> None:
         ),
     ],
 )
-def test_what_is_not_symmetric_is_refused(design: vs.Design, where: str, what: str) -> None:
+def test_asymmetric_designs_are_refused(design: vs.Design, where: str, what: str) -> None:
     with pytest.raises(vs.VoxSoftError) as caught:
         Setup.of(design.replace(symmetry=[X]))
     assert what in str(caught.value)

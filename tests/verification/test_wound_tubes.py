@@ -120,7 +120,7 @@ def test_a_braid_is_solved_by_its_quarter_about_any_axis():
         Setup.of(ring(place).replace(symmetry=planes))
 
 
-def test_how_far_a_tube_turns_has_slopes_by_angle_and_modulus():
+def test_the_turn_of_a_tube_has_slopes_by_angle_and_modulus():
     design = ring(
         parameters={"wind": {"value": "40 deg"}, "stiff": {"value": "1 MPa"}},
         clamps=[vs.Clamp(region=vs.Region(z=(0, 0)))],
@@ -153,7 +153,7 @@ def test_how_far_a_tube_turns_has_slopes_by_angle_and_modulus():
             assert slopes[key][name] == pytest.approx(expected[key], rel=1e-5), (key, name)
 
 
-def test_what_cannot_be_wound():
+def test_invalid_windings_are_refused():
     wound = {"axis": "z", "angle": "30 deg", "modulus": "1 MPa"}
     with pytest.raises(MaterialError, match="angle: is missing: the angle of wound fibers"):
         vs.Fiber(axis="z", modulus="1 MPa")

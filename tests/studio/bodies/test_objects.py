@@ -126,7 +126,7 @@ def of_lattice(design):
     return design.replace(parts=parts)
 
 
-def test_time_does_not_run_through_an_object_where_contact_is_not_found_live(pressed):
+def test_time_does_not_run_where_contact_is_not_found_live(pressed):
     playback = playing(of_lattice(load(pressed)))
     grab = commands.Grab(seq=1, id=1, vertex=0, target=(0.0, 0.0, 0.0))
     for command in (commands.Play(seq=1), commands.Step(seq=1), grab):

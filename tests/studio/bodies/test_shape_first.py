@@ -132,7 +132,7 @@ def drawn(packed):
 
 
 @pytest.mark.parametrize("mode", ["surface", "solid", "tets"])
-def test_the_first_frame_equals_what_the_core_packs(body, mode, monkeypatch):
+def test_the_first_frame_equals_that_of_the_core(body, mode, monkeypatch):
     canvas = Canvas(body)
     of_core = canvas.frame(Player(body), DISPLACEMENT, mode)
     monkeypatch.setattr(Canvas, "_surface", None)

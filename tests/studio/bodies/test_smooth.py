@@ -83,7 +83,7 @@ def test_a_ball_has_its_volume_and_the_colors_of_its_parts():
     assert set(owners[middles[:, 0] > 9 * mm]) == {1}
 
 
-def test_what_has_no_voxels_is_not_shown():
+def test_designs_without_voxels_are_not_shown():
     mm = 1e-3
     body = vs.Box((20 * mm, 20 * mm, 20 * mm))
     # A wall far thinner than a voxel, which finds none.

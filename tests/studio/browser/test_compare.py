@@ -95,9 +95,7 @@ def largest_of(tab, name):
 
 
 class TestCompare:
-    def test_two_runs_stand_side_by_side_with_what_their_summaries_say(
-        self, side_by_side, compared_runs
-    ):
+    def test_two_runs_stand_side_by_side_with_their_summaries(self, side_by_side, compared_runs):
         tab = side_by_side
         due = {}
         for name in ("short", "long"):

@@ -200,7 +200,7 @@ def test_the_ball_is_gripped_lifted_and_held(serving, open_tab, tmp_path):
 
 @pytest.mark.slow  # three solutions of minutes
 @pytest.mark.timeout(6 * SOLVED)
-def test_its_study_for_grip_force_and_what_is_taken_away(serving, open_tab, alone, tmp_path):
+def test_its_study_for_grip_force_and_its_export(serving, open_tab, alone, tmp_path):
     server, tab, hand = opened(serving, open_tab, tmp_path, "design")
     page = tab.page
     try:

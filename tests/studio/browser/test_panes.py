@@ -232,7 +232,7 @@ class TestStudy:
         studied.shot("study")
         assert studied.errors == []
 
-    def test_what_is_brushed_on_an_axis_is_kept_in_all_plots(self, studied):
+    def test_brushed_trials_of_an_axis_are_kept_in_all_plots(self, studied):
         grip = studied.page.locator("[data-testid=parallel-chart] rect[data-axis=length]")
         box = grip.bounding_box()
         x = box["x"] + box["width"] / 2
@@ -311,7 +311,7 @@ def finer(own_server):
 
 class TestHoldingAStudy:
     @pytest.mark.slow
-    def test_a_study_is_paused_goes_on_and_is_stopped_with_what_it_has(self, finer, open_tab):
+    def test_a_study_is_paused_goes_on_and_is_stopped_with_its_trials(self, finer, open_tab):
         tab = open_tab(finer.address, mode="optimize")
         tab.find("study-form").wait_for()
         add_objective(tab)

@@ -171,7 +171,7 @@ def test_picture_of_the_gripper(robot):
 
 
 @pytest.mark.parametrize("robot", ["gripper_three.toml"], indirect=True)
-def test_picture_of_what_touches(robot):
+def test_picture_of_contacts(robot):
     bar = robot.find("scrubber").bounding_box()
     robot.page.mouse.click(bar["x"] + 0.8 * bar["width"], bar["y"] + bar["height"] / 2)
     robot.find("contacts").get_by_text("third on can").wait_for()

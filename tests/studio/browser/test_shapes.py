@@ -99,7 +99,7 @@ def test_a_new_shape_is_found_by_keys_and_seen_at_once(plate):
     assert tab.page.evaluate("document.activeElement.dataset.testid") == "add-shape"
 
 
-def test_what_cuts_the_body_is_moved_and_sized_in_the_picture(plate, tmp_path):
+def test_cutting_shapes_are_moved_and_sized_in_the_picture(plate, tmp_path):
     tab, _ = plate
     choose(tab, "hole")
     tab.shot("shapes-4-hole")
@@ -210,7 +210,7 @@ def row(serving, open_tab, tmp_path):
         server.stop()
 
 
-def test_what_turns_mirrors_repeats_and_scales_has_grips(row, tmp_path):
+def test_operators_that_turn_mirror_repeat_or_scale_have_grips(row, tmp_path):
     tab = row
     # The angle is a parameter, which a drag on its ring changes by whole steps.
     choose(tab, "leaning")

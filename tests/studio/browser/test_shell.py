@@ -155,7 +155,7 @@ def test_another_version_of_the_protocol_is_reported_and_not_tried_again(served,
     context.close()
 
 
-def test_a_studio_with_another_token_is_distinguished_from_one_that_is_away(own_server, open_tab):
+def test_a_studio_with_another_token_differs_from_an_absent_one(own_server, open_tab):
     tab = open_tab(own_server.address)
     own_server.stop()
     tab.find("disconnected").get_by_text("retrying").wait_for()

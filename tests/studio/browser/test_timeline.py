@@ -113,7 +113,7 @@ def test_a_double_click_adds_a_point(timeline):
     )
 
 
-def test_what_is_no_table_of_points_is_drawn_with_its_text(timeline):
+def test_histories_without_a_table_are_drawn_with_their_text(timeline):
     breath = timeline.find("history-histories-breath")
     assert "sine of 0 to 1, period 1 s" in breath.inner_text()
     assert "Force (1 is 5 mN)" in breath.inner_text()

@@ -247,7 +247,7 @@ def test_a_copy_of_a_copy_around_an_axis_keeps_its_formula(opened):
     assert same_points(vertices(design, "left-2-2"), image)
 
 
-def test_a_copy_touches_as_the_original_and_what_names_that_is_copied_where_it_can_be(opened):
+def test_a_copy_has_the_contacts_of_the_original_where_possible(opened):
     session = opened()
     design = do(session, commands.Copy(seq=1, name="left", way=WAYS["beside"][0]))
     pairs = [(pair.of, pair.friction) for pair in design.contact.pairs]

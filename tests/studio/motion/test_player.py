@@ -87,7 +87,7 @@ def test_every_command_is_understood_with_all_it_may_say(body, command):
         assert player.plot().names[-1] == "vertex 5"
 
 
-def test_what_cannot_be_done_says_where_and_what(body):
+def test_impossible_requests_name_place_and_reason(body):
     player = Player(body)
     with pytest.raises(SimulationError, match="there are 1 loads") as refused:
         player.do(commands.Load(seq=1, index=7, factor=1.0))
@@ -104,7 +104,7 @@ def test_before_there_is_a_player_the_same_is_reported(body):
     assert without == (playback.stat(), playback.plot(), playback.frame, playback.state)
 
 
-def test_a_page_shows_first_what_it_is_given(body):
+def test_a_page_shows_the_given_state_first(body):
     """Positions beside the unloaded ones are packed; of another body they are refused."""
     rest = body.mesh.vertices
     scene = scene_of(body)

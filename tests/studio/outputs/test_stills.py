@@ -162,7 +162,7 @@ def test_the_view_is_left_alone(studio, study):
     run(scenario())
 
 
-def test_what_cannot_be_shown_is_reported(studio, study):
+def test_designs_that_cannot_be_shown_are_reported(studio, study):
     runs = studio.session.runs
     (runs / "begun").mkdir()
     (runs / "begun" / "design.toml").write_text(BAR)

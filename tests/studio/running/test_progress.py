@@ -97,7 +97,7 @@ def test_pauses_do_not_count_as_work(calibration, monkeypatch):
     assert progress.elapsed == 7
 
 
-def test_what_is_counted_may_change_and_time_is_then_that_of_the_new_count():
+def test_a_new_unit_of_progress_has_a_time_of_its_own():
     run = Report("run")
     run.progress.at(jobs.Progress(0, 11, "equilibria"))
     run.progress.at(jobs.Progress(11, 11, "equilibria"))

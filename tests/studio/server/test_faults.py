@@ -56,7 +56,7 @@ def test_an_invalid_design_is_reported_at_its_line(studio, change, words):
 
 
 @pytest.mark.parametrize(("change", "words"), NOT_SOLVABLE)
-def test_what_cannot_be_solved_is_shown_all_the_same(studio, change, words):
+def test_unsolvable_designs_are_shown_all_the_same(studio, change, words):
     async def scenario():
         async with studio.page() as page:
             before = await page.until("topology")

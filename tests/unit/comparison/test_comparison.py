@@ -220,7 +220,7 @@ def test_the_command_line_answers_with_one_object(tmp_path):
     assert refused.exit_code == 3
 
 
-def test_what_cancels_is_left_out():
+def test_canceling_terms_are_left_out():
     outer = vs.Box(size=(15 * mm, 15 * mm, 15 * mm))
     hole = vs.Box(size=(5 * mm, 5 * mm, 5 * mm), corner=(5 * mm, 5 * mm, 5 * mm))
     design = BAR.replace(

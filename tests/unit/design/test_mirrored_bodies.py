@@ -172,7 +172,7 @@ def test_bodies_are_copied_in_mirrors_and_around_axes():
             order(mesh.vertices @ there.matrix.T + there.shift, other.vertices)
 
 
-def test_what_cannot_be_mirrored_is_refused_by_name(tmp_path):
+def test_entries_that_cannot_be_mirrored_are_refused_by_name(tmp_path):
     with pytest.raises(DesignError, match="mirror: is for the design of a body"):
         Body(name="pad", parts=[Part(shape="a", material="dragon-skin-10")], mirror="x")
     (tmp_path / "hook.toml").write_text(hook().to_toml())

@@ -201,7 +201,7 @@ def test_flat_tets_of_a_file_are_named_with_the_file(tmp_path):
         ("missing/mesh.vtu", {}, "cannot be written: No such file"),
     ],
 )
-def test_what_cannot_be_written_is_named(tmp_path, name, arguments, match):
+def test_values_that_cannot_be_written_are_named(tmp_path, name, arguments, match):
     with pytest.raises(FileError, match=match):
         write_mesh(tmp_path / name, two_chambers(), **arguments)
     assert list(tmp_path.iterdir()) == []

@@ -23,7 +23,7 @@ def test_import_loads_nothing_heavy():
 
 
 @pytest.mark.parametrize("name", ["Design", "__version__"])
-def test_a_name_brings_what_it_needs(name):
+def test_a_name_loads_its_module(name):
     modules = loaded_by(f"import voxsoft; voxsoft.{name}")
     assert ("pydantic" in modules) == (name == "Design")
 

@@ -147,6 +147,6 @@ def test_settings_outside_their_range_are_named(settings, name):
         Genetic(**settings)
 
 
-def test_best_before_any_fitness_says_what_to_do():
+def test_best_before_any_fitness_gives_a_remedy():
     with pytest.raises(StudyError, match=r"tell\(fitness\)"):
         _ = Genetic(genes=1).best

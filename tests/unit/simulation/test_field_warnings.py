@@ -133,7 +133,7 @@ def test_pressing_counts_where_it_was_tested():
     assert "to 0.7" in warning.what
 
 
-def test_the_command_line_says_stress_stretch_and_what_is_wrong(tmp_path):
+def test_the_command_line_prints_stress_stretch_and_faults(tmp_path):
     file = tmp_path / "pneunet.toml"
     file.write_text(pneunet("5 kPa").to_toml(), encoding="utf-8")
     reported = CliRunner().invoke(

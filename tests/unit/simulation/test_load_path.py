@@ -167,7 +167,7 @@ def test_a_symmetric_body_follows_its_path_as_a_part():
     assert len(path.results[0].positions) == len(alone.positions)
 
 
-def test_a_path_that_is_lost_keeps_what_it_has():
+def test_a_lost_path_keeps_its_states():
     pressed = beam(
         loads=[vs.Force(region=vs.Region(x=("40 mm", "40 mm")), value=("-1 mN", 0, 0))],
         solver={"method": "statics"},
@@ -198,7 +198,7 @@ def test_error_bars_go_along():
         ("loads[7].value=0..1 kPa/3", "loads"),
     ],
 )
-def test_what_is_no_path_is_refused(over, words):
+def test_invalid_paths_are_refused(over, words):
     with pytest.raises(vs.VoxSoftError) as caught:
         vs.follow(beam(), over)
     assert words in str(caught.value)

@@ -45,7 +45,7 @@ def pressure_forces(setup, positions):
     return setup.problem.net_forces(positions) - setup.problem.elastic(positions)[1]
 
 
-def test_each_split_encloses_the_same_at_rest_and_the_mean_what_is_below_bilinear_faces():
+def test_splits_enclose_equal_volumes_at_rest_and_their_mean_that_of_bilinear_faces():
     setup = Setup.of(shell(fill="binary"))
     (cavity,) = setup.mesh.cavities
     for triangles, _ in cavity.splits:

@@ -106,7 +106,7 @@ def test_of_a_half_that_is_solved_the_whole_is_reported():
         ({"clamp": "jaw", "region": {"x": [0, 0]}}, "region: stands beside clamp"),
     ],
 )
-def test_what_no_support_has_is_refused(target, words):
+def test_components_without_a_support_are_refused(target, words):
     with pytest.raises(DesignError) as refused:
         Setup.of(bar(objectives={"pull": {"maximize": "reaction", **target}}))
     assert words in str(refused.value)

@@ -111,7 +111,7 @@ def test_derivatives_and_modes_of_a_result_are_found_in_threads_too():
         assert found == slope
 
 
-def test_a_progress_may_solve_what_it_watches():
+def test_a_progress_may_solve_the_watched_design():
     setup = Setup.of(RUBBED)
     alone, within = vs.simulate(setup), []
 

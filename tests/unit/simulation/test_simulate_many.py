@@ -50,7 +50,7 @@ def test_two_lists_are_taken_in_pairs():
         {"solver": families.beam().solver.replace(damping="critical")},
     ],
 )
-def test_what_lanes_do_not_know_is_solved_alone(changes):
+def test_designs_unknown_to_lanes_are_solved_alone(changes):
     design = short_beam(**changes)
     found = simulate_many(design, [SOFT, STIFF])
     assert [candidate.way for candidate in found] == ["alone", "alone"]

@@ -61,7 +61,7 @@ def test_a_tension_along_the_axis_compresses_the_bar():
 
 
 @pytest.mark.parametrize("drive", ["shortening", "length"])
-def test_what_is_drawn_in_stretches_in_series_with_the_bar(drive):
+def test_a_shortened_tendon_stretches_in_series_with_the_bar(drive):
     drawn, stiffness = 1e-3 * mm, 0.5 * OF_BAR * LENGTH
     own = LENGTH + 1 * mm
     value = drawn if drive == "shortening" else own - drawn
@@ -96,7 +96,7 @@ def test_a_line_that_is_too_long_is_slack_until_the_bar_reaches_it():
     [{"method": "statics"}, {"method": "dynamics", "time_step": 0.005, "tolerance": 1e-5}],
 )
 @pytest.mark.parametrize("drive", [{"tension": 0.02}, {"shortening": 1 * mm}])
-def test_the_clamp_holds_what_the_motor_pulls(settings, drive):
+def test_the_clamp_holds_the_force_of_the_motor(settings, drive):
     motor = (-10 * mm, 0, 20 * mm)
     through = [{"fixed": motor}, {"fixed": (30 * mm, 2 * mm, 10 * mm)}, AXIS[1]]
     design = bar([along(through=through, **drive)], poisson=0.3)

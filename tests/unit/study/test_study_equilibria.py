@@ -84,7 +84,7 @@ def test_a_study_keeps_all_that_was_found_of_a_design_with_contact(tmp_path, clo
     np.testing.assert_array_equal(result.contact_field.pressure, closed.contact_field.pressure)
 
 
-def test_what_is_stored_is_a_small_part_of_a_motion(tmp_path):
+def test_stored_states_are_a_small_part_of_a_motion(tmp_path):
     result = simulate(CLOSED, frames=True, record_interval=0.01)
     Equilibria(tmp_path).keep("a", Equilibrium.of(result))
     (file,) = tmp_path.iterdir()
@@ -118,7 +118,7 @@ def test_a_damaged_file_is_as_none(tmp_path, rested, content):
 
 
 @pytest.mark.parametrize("missing", ["state", "arrays", "array0", "positions"])
-def test_a_file_without_a_part_of_what_was_found_gives_no_result(tmp_path, missing):
+def test_an_incomplete_file_gives_no_result(tmp_path, missing):
     result = simulate(pressed())
     known = Equilibria(tmp_path)
     known.keep("a", Equilibrium.of(result))

@@ -138,7 +138,7 @@ def test_a_design_with_contact_is_saved_and_read_back(tmp_path):
         ({"objects": [{"name": "a", "shape": "nothing"}]}, "nothing"),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_place(changes, message):
+def test_invalid_entries_are_refused_with_their_place(changes, message):
     with pytest.raises(DesignError, match=message):
         pressed(**changes)
 
@@ -193,7 +193,7 @@ def test_an_arc_along_which_a_plate_moves_ends_where_load_control_does(friction)
     assert off < (1e-4 * by_load.design.voxel_size if friction == 0.0 else step)
 
 
-def test_what_knows_no_contact_says_so(result):
+def test_solvers_without_contact_say_so(result):
     with pytest.raises(DesignError, match="objects: is not known to states"):
         result_at(Setup.of(pressed()), result.positions)
     lattice = vs.Part(shape=BLOCK, material=vs.Lattice(edge=25 * kPa, bulk=100 * kPa))
@@ -213,7 +213,7 @@ def test_a_side_of_an_object_that_goes_through_samples_is_there():
 
 
 @pytest.mark.slow
-def test_a_path_that_ends_early_proposes_what_knows_contact():
+def test_a_path_that_ends_early_proposes_a_control_with_contact():
     # The plate ends 0.3 mm below the ground that the block stands on.
     result = simulate(pressed(way=-SIDE - 0.8 * mm))
     assert result.status == "not-at-rest"
@@ -223,7 +223,7 @@ def test_a_path_that_ends_early_proposes_what_knows_contact():
 
 
 @pytest.mark.parametrize("what", ["floor", "plate"])
-def test_a_clamped_end_may_lie_on_what_the_body_touches(what):
+def test_a_clamped_end_may_lie_on_a_touched_object(what):
     # Clamped vertices that touch to the last bit are not the clearance apart, and never will be.
     side = 10 * mm
     below = {"floor": {"z": 0.0}}

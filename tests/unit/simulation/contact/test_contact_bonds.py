@@ -47,7 +47,7 @@ BELOW = (6 * mm, 6 * mm, -3 * mm)
 
 
 @pytest.mark.parametrize("gap", [0.0, 0.5 * mm, -0.5 * mm])
-def test_what_is_bonded_hangs(gap):
+def test_a_bonded_object_hangs(gap):
     center = (6 * mm, 6 * mm, -3 * mm - gap)
     hanging = simulate(ceiling(center, {"kind": "bonded"}))
     assert (hanging.status, hanging.stable) == ("ok", True)

@@ -100,7 +100,7 @@ def test_the_command_line_tells_and_draws_it(dragged, tmp_path):
     assert (tmp_path / "run" / "contact.png").stat().st_size > 10_000
 
 
-def test_colors_of_a_picture_go_up_to_the_largest_pressure_of_a_small_place():
+def test_colors_go_up_to_the_largest_pressure_of_a_small_place():
     """Most of a body is pressed by nothing; 99 % of its area end far below that."""
     fine = simulate(pressed(voxel_size=1 * mm, objects=[], loads=[vs.Gravity()]))
     count = len(fine.mesh.vertices)
