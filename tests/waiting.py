@@ -1,4 +1,4 @@
-"""Waiting for what another process or thread does: the one place in the tests that sleeps."""
+"""Waiting for another process or thread: the one place in the tests that sleeps."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""A tube wound with fibers and closed by stiff ends, and what a thin wall would do."""
+"""A tube wound with fibers and closed by stiff ends, and the closed form of a thin wall."""
 
 import numpy as np
 from scipy.optimize import minimize

@@ -1,4 +1,4 @@
-"""``voxsoft again``: every kind of job is repeated to the same bits, and what differs is told."""
+"""``voxsoft again``: every kind of job is repeated to the bit, and differences are reported."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Every verb of the command line: what it writes, prints and returns."""
+"""Every verb of the command line: its files, its output and its exit code."""
 
 import json
 import subprocess

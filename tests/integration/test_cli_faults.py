@@ -1,4 +1,4 @@
-"""The same fault gives the same exit code in every verb, and a message in words."""
+"""One fault gives one exit code in every verb, and a message in words."""
 
 import contextlib
 import json
@@ -27,7 +27,7 @@ TENSILE = "strain,stress_kPa\n" + "".join(f"{s / 50},{s * 1.4}\n" for s in range
 
 QUICK = ["design.toml", "--outside", "none", "--voxel-sizes", "none", "--splits", "1"]
 
-#: How each verb is told where to write, after DESIGN and what else it needs.
+#: Option for the output of each verb, after DESIGN and its other arguments.
 OUT = {
     "mesh": ["design.toml", "--out", "OUT/body.vtu"],
     "run": ["design.toml", "--out", "OUT"],

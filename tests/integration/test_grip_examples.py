@@ -1,4 +1,4 @@
-"""The examples that grip: what they hold, they hold with its weight."""
+"""The examples that grip: the held objects are held with their weight."""
 
 import numpy as np
 import pytest

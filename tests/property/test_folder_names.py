@@ -1,4 +1,4 @@
-"""Whatever a design is called, what it leaves behind stays in its folder, on every system."""
+"""Files of a design stay in its folder, with any name of it, on every system."""
 
 import contextlib
 import json

@@ -1,4 +1,4 @@
-"""A replaced design or record is what it says: for the solver, for studies, on disk."""
+"""A replaced design or record has its stated values: for the solver, for studies, on disk."""
 
 import copy
 import pickle

@@ -1,4 +1,4 @@
-"""What is written is what is run: every form of every field is saved, copied and replaced as it is.
+"""Every form of every field is saved, copied and replaced without change, and so is the run design.
 
 The forms are read off the records (`tests/forms.py`), so a new field is tried without a line here:
 some forms of each record in the quick tests, all of them in the slow ones.

@@ -1,4 +1,4 @@
-"""A beam of Dragon Skin 10: one modulus from self weight, and what it predicts.
+"""A beam of Dragon Skin 10: one modulus from self weight, and its predictions.
 
 Coarse elements of 5 mm keep this quick; `docs/validation.md` has the figures of 2.5 mm.
 """

@@ -1,4 +1,4 @@
-"""Volume and arc-length control of what touches, beside load control at the pressure of either.
+"""Volume and arc-length control with contact, beside load control at the pressure of either.
 
 Contact settles to its clearance, 1e-4 voxels: two states that are found on different ways are as
 near as that.

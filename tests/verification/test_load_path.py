@@ -1,4 +1,4 @@
-"""Load paths: which branch is found, and what is left of a path that is lost."""
+"""Load paths: the branch that is found, and the rest of a path that is lost."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Balls that roll, bounce and meet, as closed forms and what must be kept say.
+"""Balls that roll, bounce and meet, beside closed forms and conservation laws.
 
 The designs are those of `evidence/contact_over_time.py`, which has the figures.
 """

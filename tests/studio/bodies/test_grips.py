@@ -1,4 +1,4 @@
-"""Whether what is free is held at the end of a run, as the page says it."""
+"""Verdict on the grip of free objects at the end of a run, in the words of the page."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Where the page draws what a load does."""
+"""Arrows of loads in the page's picture: their places and directions."""
 
 import numpy as np
 import pytest

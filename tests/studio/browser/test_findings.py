@@ -1,4 +1,4 @@
-"""What a new user once stumbled over: findings without a place, numbers that are none, a lamp that
+"""Stumbling blocks of a new user: findings without a place, numbers that are none, a lamp that
 is lit for nothing, and materials that stop time."""
 
 import pytest

@@ -1,4 +1,4 @@
-"""The browser of materials: find one, read what is known of it, and make a part of it."""
+"""The browser of materials: find one, read its data, and make a part of it."""
 
 import pytest
 

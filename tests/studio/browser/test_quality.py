@@ -1,4 +1,4 @@
-"""What pictures cost: coarse while they move where graphics are slow, and none in a hidden tab."""
+"""Cost of pictures: coarse while they move where graphics are slow, and none in a hidden tab."""
 
 import io
 import struct

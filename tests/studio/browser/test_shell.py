@@ -1,4 +1,4 @@
-"""The page around the panes: modes, keys, connection, and what it asks of the network."""
+"""The page around the panes: modes, keys, connection, and its requests to the network."""
 
 import re
 

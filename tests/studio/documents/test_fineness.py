@@ -1,4 +1,4 @@
-"""What the page is told of how fine a mesh is, and of what finer voxels would cost."""
+"""Events about the fineness of a mesh, and the cost of finer voxels."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def test_the_voxels_with_most_of_the_error_can_be_refined() -> None:
     assert fineness_of(*shown(f'{TWO_PARTS}\n[[refine]]\npart = "low"\n')[:2]).refining == []
 
 
-def test_where_no_part_can_be_refined_it_says_why() -> None:
+def test_a_design_without_refinable_parts_gives_the_reason() -> None:
     both = '[[refine]]\npart = "low"\n[[refine]]\npart = "high"'
     found = fineness_of(*shown(f"{TWO_PARTS}\n{both}\n")[:2])
     assert found.refinable == []

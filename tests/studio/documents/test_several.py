@@ -330,7 +330,7 @@ def test_an_object_that_is_copied_again_and_again_is_moved_once(opened):
     assert shape == {"kind": "translate", "of": "cube", "by": ["40 mm", 0, 0]}
 
 
-def test_what_is_taken_out_takes_its_pairs_along(opened):
+def test_a_removed_object_takes_its_pairs_along(opened):
     session = opened()
     before = session.document.text
     design = do(session, commands.Remove(seq=1, name="cube"))
@@ -380,7 +380,7 @@ def test_bodies_are_added_from_the_folder_from_templates_and_from_uploads(opened
         (commands.AddBody(seq=1, what="upload", name="none.toml"), "was not uploaded"),
     ],
 )
-def test_what_cannot_be_done_is_refused_and_changes_nothing(opened, command, expected):
+def test_impossible_requests_are_refused_and_change_nothing(opened, command, expected):
     assert expected in refused(opened(), command)
 
 

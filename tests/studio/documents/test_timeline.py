@@ -57,7 +57,7 @@ def lines(document: DesignDocument) -> dict[str, events.HistoryLine]:
     return {line.title: line for line in document.event().histories}
 
 
-def test_named_histories_say_what_follows_them(document: DesignDocument) -> None:
+def test_named_histories_list_their_users(document: DesignDocument) -> None:
     found = lines(document)
     ramp = found["ramp"]
     assert ramp.path == ["histories", "ramp"]

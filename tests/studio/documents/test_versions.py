@@ -46,7 +46,7 @@ def boxed(make_studio, tmp_path):
     return make_studio(file), file
 
 
-def test_every_save_is_a_version_and_so_is_what_was_in_the_file_before(boxed):
+def test_every_save_is_a_version_and_so_is_the_earlier_file(boxed):
     studio, file = boxed
 
     async def scenario():

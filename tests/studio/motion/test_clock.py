@@ -1,4 +1,4 @@
-"""What is found without time has none, also after time has run."""
+"""States found without time have none, also after time has run."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Files of what is shown, read back by the programs they are for."""
+"""Files of the shown body, read back by the programs they are for."""
 
 import io
 import tomllib

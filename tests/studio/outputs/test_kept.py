@@ -1,4 +1,4 @@
-"""What is on the screen is what is kept, solved on and carried over, with loads and pulls."""
+"""The state on the screen is kept, solved on and carried over, with loads and pulls."""
 
 import json
 import threading

@@ -1,4 +1,4 @@
-"""What waits for a tab, and in which order it is sent."""
+"""Queue of a tab, and the order in which it is sent."""
 
 import asyncio
 

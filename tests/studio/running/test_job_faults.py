@@ -1,4 +1,4 @@
-"""What goes wrong around jobs is said in plain words, and costs nothing that was finished."""
+"""Faults around jobs are reported in plain words, and cost no finished work."""
 
 import asyncio
 import os

@@ -1,4 +1,4 @@
-"""A pause is said at once, with what is still being finished, and takes no time from the job."""
+"""A pause is reported at once, with the unfinished work, and takes no time from the job."""
 
 import multiprocessing
 import threading

@@ -1,4 +1,4 @@
-"""What "Copy as Python" and "Copy the command" give does the job again, with the same answer."""
+""" "Copy as Python" and "Copy the command" repeat the job, with the same answer."""
 
 import json
 import shlex

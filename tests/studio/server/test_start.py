@@ -1,4 +1,4 @@
-"""What the start screen shows, when it opens by itself, and the files of before."""
+"""Content of the start screen, when it opens by itself, and the files of before."""
 
 import urllib.error
 import urllib.request

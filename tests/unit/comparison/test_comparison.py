@@ -1,4 +1,4 @@
-"""What a comparison says of its runs, and the report made of it."""
+"""Results of a comparison's runs, and the report made of it."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""What is said of a study's ranking after its best designs were solved again."""
+"""Sentence about a study's ranking after its best designs were solved again."""
 
 import lattice_families as families
 import pytest

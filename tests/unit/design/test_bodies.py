@@ -1,4 +1,4 @@
-"""Several bodies in one design: what is read, gathered, refused and reported."""
+"""Several bodies in one design: reading, gathering, refusals and reports."""
 
 import json
 import shutil

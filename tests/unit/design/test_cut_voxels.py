@@ -1,4 +1,4 @@
-"""Voxels that the surface cuts: fractions, moments, voids, and what is made of them."""
+"""Voxels that the surface cuts: fractions, moments, voids, and meshes of them."""
 
 import lattice_families as families
 import numpy as np

@@ -1,4 +1,4 @@
-"""Bodies mirrored, turned and moved: what their designs say goes along."""
+"""Bodies mirrored, turned and moved: the entries of their designs go along."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Fits of coupons: known constants come back, and what cannot be known is said."""
+"""Fits of coupons: known constants come back, and unknown ones are reported."""
 
 from pathlib import Path
 

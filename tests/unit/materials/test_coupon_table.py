@@ -1,4 +1,4 @@
-"""Tables of testing machines: what is understood, what is refused, and how it is said."""
+"""Tables of testing machines: accepted forms, refused ones, and messages."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The cards that come with VoxSoft: each says what it is, where from, and what it is worth."""
+"""The cards that come with VoxSoft: each states its title, its source, and its quality."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Hyperelastic models: constants, what the core takes, what is refused, where they are stable."""
+"""Hyperelastic models: constants, values for the core, refusals, ranges of stability."""
 
 from functools import partial
 

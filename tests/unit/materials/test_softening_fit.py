@@ -1,4 +1,4 @@
-"""Softening fitted to cyclic coupons: known constants come back, and what is not known."""
+"""Softening fitted to cyclic coupons: known constants come back, and unknown ones are reported."""
 
 from itertools import pairwise
 

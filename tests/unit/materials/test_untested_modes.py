@@ -1,4 +1,4 @@
-"""What coupons of some modes leave open in others: true there, gone once these are tested."""
+"""Uncertainty left by coupons in untested modes: true there, gone once these are tested."""
 
 from functools import cache
 

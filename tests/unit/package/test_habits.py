@@ -1,4 +1,4 @@
-"""What people do without thinking: print, ask for help, press Tab, pass arrays and quantities."""
+"""Habits of people: print, ask for help, press Tab, pass arrays and quantities."""
 
 import inspect
 import pydoc

@@ -1,4 +1,4 @@
-"""Figures: they show what they are given, with units, and say what they cannot show."""
+"""Figures: they show the given data, with units, and report impossible ones."""
 
 import io
 

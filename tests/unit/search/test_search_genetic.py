@@ -1,4 +1,4 @@
-"""The paper's genetic algorithm: what it keeps, how it picks, and that it finds an optimum."""
+"""The paper's genetic algorithm: its elite, its selection, and that it finds an optimum."""
 
 import numpy as np
 import pytest

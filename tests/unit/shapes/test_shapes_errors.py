@@ -1,4 +1,4 @@
-"""Wrong input: the error says where, what and what to try."""
+"""Wrong input: the error gives the place, the fault and a remedy."""
 
 import subprocess
 import sys

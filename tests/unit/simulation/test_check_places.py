@@ -1,4 +1,4 @@
-"""What a check finds has a subject, and a place on the body where it is."""
+"""Findings of a check have a subject, and a place on the body."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What results say of voxels inside out and of strains past the tests, and where."""
+"""Warnings of results about voxels inside out and strains past the tests, with places."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Layers: which faces they take, which chambers they close, and what cannot be one."""
+"""Layers: their faces, the chambers they close, and invalid ones."""
 
 import numpy as np
 import pytest

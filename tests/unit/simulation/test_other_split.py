@@ -1,4 +1,4 @@
-"""Both splits of the faces of voxels: what pressure pushes and what cavities enclose."""
+"""Both splits of the faces of voxels: effect of pressure, and volumes of cavities."""
 
 import itertools
 
@@ -45,7 +45,7 @@ def pressure_forces(setup, positions):
     return setup.problem.net_forces(positions) - setup.problem.elastic(positions)[1]
 
 
-def test_splits_enclose_equal_volumes_at_rest_and_their_mean_that_of_bilinear_faces():
+def test_splits_enclose_one_volume_at_rest_and_bilinear_faces_on_the_mean():
     setup = Setup.of(shell(fill="binary"))
     (cavity,) = setup.mesh.cavities
     for triangles, _ in cavity.splits:

@@ -1,4 +1,4 @@
-"""Many candidates at a time: what goes through lanes, what does not, and what is refused."""
+"""Many candidates at a time: designs that go through lanes, others, and refusals."""
 
 import lattice_families as families
 import numpy as np

@@ -1,4 +1,4 @@
-"""What a solver found is stored beside positions, and read back to the last bit."""
+"""The state of a solver is stored beside positions, and read back to the last bit."""
 
 import dataclasses
 import json

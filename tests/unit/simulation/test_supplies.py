@@ -1,4 +1,4 @@
-"""Supplies as a design says them: what is read, what is refused and where."""
+"""Supplies of a design: reading, and refusals with their places."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Tendons: balance, slack, friction with memory, where they may run, and what is refused."""
+"""Tendons: balance, slack, friction with memory, possible paths, and refusals."""
 
 import numpy as np
 import pytest

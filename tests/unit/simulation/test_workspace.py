@@ -1,4 +1,4 @@
-"""Workspaces: where a place can be over a grid of what drives it."""
+"""Workspaces: positions of a place over a grid of its drives."""
 
 import csv
 import json

@@ -1,4 +1,4 @@
-"""Studies on families that cost nothing: what is asked, stored, shared, ranked and refused."""
+"""Studies on families that cost nothing: suggestions, storage, sharing, ranking and refusals."""
 
 import concurrent.futures
 import signal

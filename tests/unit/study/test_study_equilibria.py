@@ -1,4 +1,4 @@
-"""What a study keeps of the states of its designs, beside its trials."""
+"""States that a study keeps of its designs, beside its trials."""
 
 import os
 import tomllib

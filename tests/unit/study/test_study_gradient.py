@@ -1,4 +1,4 @@
-"""Studies along gradients: the optimum on a constraint, resumption, and what is refused."""
+"""Studies along gradients: the optimum on a constraint, resumption, and refusals."""
 
 from concurrent.futures import ThreadPoolExecutor
 

@@ -1,4 +1,4 @@
-"""The journal of a study: what survives a kill, a torn line, a full disk, a second writer."""
+"""The journal of a study after a kill, a torn line, a full disk, a second writer."""
 
 import os
 

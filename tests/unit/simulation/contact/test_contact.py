@@ -1,4 +1,4 @@
-"""Contact in equilibrium: objects that press, slits that close, and what is refused."""
+"""Contact in equilibrium: objects that press, slits that close, and refusals."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Objects that cannot be what they are meant to be: open meshes, and plates thinner than a step."""
+"""Objects unfit for their purpose: open meshes, and plates thinner than a step."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Bonded pairs: what hangs on them, lets go, and is refused; objects that are separated."""
+"""Bonded pairs: hanging bodies, bonds that let go, refusals; objects that are separated."""
 
 import json
 

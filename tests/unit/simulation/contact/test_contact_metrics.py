@@ -1,4 +1,4 @@
-"""Metrics of contact: what touches, with what, in results, studies and files."""
+"""Metrics of contact: pairs and forces, in results, studies and files."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Contact over time: objects that fall, are pinched, slip, and what is refused."""
+"""Contact over time: objects that fall, are pinched, slip, and refusals."""
 
 import numpy as np
 import pytest

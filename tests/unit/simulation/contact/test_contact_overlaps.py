@@ -1,4 +1,4 @@
-"""What is said to overlap where contact keeps surfaces apart."""
+"""Reported overlaps where contact keeps surfaces apart."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What results say of a body that is in itself, in its films or in its floor."""
+"""Reports of results about a body that is in itself, in its films or in its floor."""
 
 import json
 import tomllib
