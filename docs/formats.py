@@ -26,7 +26,7 @@ for.
 WRITTEN: Final = """
 ## Written
 
-By `voxsoft export`, `voxsoft.files.write_mesh` and the studio ([export](../how-to/export.md)). A
+Writers are `voxsoft export`, `voxsoft.files.write_mesh` and the studio ([export](../how-to/export.md)). A
 mesh keeps its geometry in every format; the columns say what else a file keeps.
 
 | suffix | format | parts | regions | cavities | values | unit |

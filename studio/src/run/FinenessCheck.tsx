@@ -81,8 +81,7 @@ function useCost(found: EquilibriumEvent): FinenessEvent | null {
 
 function Missing(props: { of: EquilibriumEvent; cost: FinenessEvent | null }) {
   const { of: found, cost } = props;
-  if (found.looking)
-    return <p role="status">The error bars are being computed on other voxels.</p>;
+  if (found.looking) return <p role="status">The error bars are being computed on other voxels.</p>;
   return (
     <>
       <p role="status">

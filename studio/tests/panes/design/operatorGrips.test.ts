@@ -55,7 +55,7 @@ describe("a shape that is turned", () => {
     expect(image(angle!, 120 * DEGREE, [0.02, 0, 0])).toEqual(near([0.01, 0.01, 0]));
   });
 
-  it("goes with its center by what the rotation leaves of the way", () => {
+  it("goes with its center by the rest of the way after the rotation", () => {
     const quarter = { ...solved, angle: Math.PI / 2 };
     const grips = gripsOf(text, quarter);
     expect(grips["center-x"]?.at).toEqual([0.01, 0, 0]);
@@ -76,7 +76,7 @@ describe("a shape that is turned", () => {
     expect(gripLabel(other, other.value)).toContain("follows the formula “= 2*lean”");
   });
 
-  it("takes what is typed in degrees", () => {
+  it("takes typed numbers in degrees", () => {
     const { angle } = gripsOf(text, solved);
     const document = { source: {}, valid: true, parameters: [] } as unknown as DocumentEvent;
     expect(typedChanges(angle!, "12.5", document)).toEqual({
