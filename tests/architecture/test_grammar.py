@@ -25,7 +25,7 @@ PAGES = sorted(
 COMMENT = re.compile(r"^\s*//[/!]?\s?(.*)$")
 #: Words with which no comment begins: a clause in place of a noun, or an ellipsis.
 OPENINGS = re.compile(r"(?:What|Where|How|Whether|Of|By|As|The same|That of|Those of)\b")
-#: Names of entries that a docstring describes below, such as ``what, hint``.
+#: Names of entries that a docstring describes below, such as ``where, hint``.
 NAMES = re.compile(r"(?:\*{0,2}\w+)(?:, \*{0,2}\w+)*(?: : .*)?$")
 RELATIVE = re.compile(r"\bwhat\b", re.IGNORECASE)
 BLOCK = re.compile(r"\{?/\*\*?\s?(.*?)(\*/.*)?$")

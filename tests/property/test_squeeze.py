@@ -1,6 +1,6 @@
 """Random bodies squeezed to half their height: no crash, no NaN, no hang, and nothing in a plate.
 
-What is squeezed, and the judges, are those of `evidence/squeeze.py`, whose figures are in
+The squeezed bodies, and the judges, are those of `evidence/squeeze.py`, whose figures are in
 `docs/method/contact.md`: walls of a body may still pass through each other, which it counts.
 """
 

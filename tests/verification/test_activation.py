@@ -367,7 +367,7 @@ HEATING, COOLING = (340.0, 350.0), (330.0, 310.0)
 
 
 def wire(value, **changes):
-    """What recovers a strain of -4 % and loses it again, over unlike spans."""
+    """A material that recovers a strain of -4 % and loses it again, over unlike spans."""
     return ShapeMemory(
         **{
             "part": "gel",
@@ -381,7 +381,7 @@ def wire(value, **changes):
 
 
 def shares(*temperatures):
-    """What is transformed at temperatures in their order: branches, and level between them."""
+    """Transformed part at temperatures in their order: branches, and level between them."""
     found, share = [], 0.0
     for temperature in temperatures:
         up = np.clip((temperature - 340.0) / 10.0, 0.0, 1.0)
@@ -410,7 +410,7 @@ def test_a_loop_of_strain_over_temperature():
     moved = [each.probes["corner"][0] / (10 * mm) for each in path.results]
     # Exact by itself; statics finds it to its tolerance.
     assert moved == pytest.approx(-0.04 * np.array(expected), abs=1e-8)
-    # What is shown of each state is all that it depends on.
+    # Each state is shown with all that it depends on.
     again = vs.simulate(path.results[13].design)
     assert again.probes["corner"] == pytest.approx(path.results[13].probes["corner"], abs=1e-10)
 

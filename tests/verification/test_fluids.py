@@ -43,7 +43,7 @@ def pair(*supplies, **changes):
 
 
 def loaded(**pressures):
-    """The same pair under pressure loads."""
+    """The pair under pressure loads."""
     loads = [vs.Pressure(value=value, cavity=name) for name, value in pressures.items()]
     return simulate(pair(loads=loads))
 
@@ -85,7 +85,7 @@ def test_at_rest_a_supply_is_the_pressure_that_it_comes_to(supply):
 
 
 def test_gas_keeps_its_law():
-    """Pressure, volume and mass of what is sealed, drawn in and warmed."""
+    """Pressure, volume and mass of sealed, drawn in and warmed gas."""
     rest = INSIDE**3
     outside, stroke, hot = 0.8e-6, 1e-6, 353.15
     (pushed,) = simulate(
@@ -388,7 +388,7 @@ def test_a_syringe_with_a_leak_is_empty_in_the_end():
 
 @pytest.mark.slow
 def test_water_flows_through_a_tube_into_rubber():
-    """What came in is the integral of what flowed, and the pressure ends at that of the source."""
+    """The inflow is the integral of the flow, and the pressure ends at that of the source."""
     feed = FlowSupply(
         chamber="left",
         source=10 * kPa,

@@ -89,7 +89,7 @@ def test_the_work_of_a_cycle_equals_the_loss_by_softening():
     assert work == pytest.approx(SOFT.lost(peak), rel=5e-3)
     assert work > 0.0
     assert path.results[-1].elastic_energy == pytest.approx(0.0, abs=1e-6 * peak * SIDE**3)
-    # What is stored at the peak is what the way back gives.
+    # The way back returns the energy stored at the peak.
     stored = path.results[24].elastic_energy / SIDE**3
     assert stored == pytest.approx(peak - SOFT.lost(peak), rel=2e-3)
     assert path.results[24].peaks == pytest.approx(np.full(8, peak), rel=2e-3)

@@ -146,7 +146,7 @@ def capped(material):
 
 
 def distortion(result):
-    """How far the cap is from its best rigid motion, over the largest displacement."""
+    """Distance of the cap from its best rigid motion, over the largest displacement."""
     cap = result.mesh.vertices[:, 0] > 24 * mm - 1e-9
     both = (result.mesh.vertices, result.positions)
     rest, now = (points[cap] - points[cap].mean(axis=0) for points in both)

@@ -22,7 +22,7 @@ def found(design):
 
 
 def neutral_angle(degrees, **tube):
-    """Where a braid keeps its length, between two angles to the axis."""
+    """Angle at which a braid keeps its length, between two angles to the axis."""
     along = [
         found(halved(wound_tube((each, -each), pressure=5 * kPa, **tube)))[0] for each in degrees
     ]

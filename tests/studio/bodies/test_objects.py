@@ -120,7 +120,7 @@ def test_an_object_within_the_body_is_drawn_and_keeps_it_from_being_solved():
 
 
 def of_lattice(design):
-    """The same design of the lattice material, whose contact is not found live."""
+    """Replace the material by the lattice, whose contact is not found live."""
     material = vs.Lattice(edge="25 kPa", bulk="100 kPa")
     parts = [part.model_copy(update={"material": material}) for part in design.parts]
     return design.replace(parts=parts)
@@ -327,7 +327,7 @@ def test_only_the_end_of_a_solution_knows_its_fields(solved):
 
 
 def gray_in(png):
-    """How many pixels of a picture are of the gray of objects."""
+    """Number of pixels of a picture in the gray of objects."""
     picture = (255 * imread(png)[..., :3]).astype(int)
     gray = (np.ptp(picture, axis=2) <= 2) & (picture[..., 0] > 120) & (picture[..., 0] < 240)
     return int(gray.sum())

@@ -92,7 +92,7 @@ def test_only_the_newest_of_several_requests_is_answered(requests):
 
 
 class Heard:
-    """A bus that keeps what it is told."""
+    """A bus that keeps its events."""
 
     def __init__(self):
         self.reported = []

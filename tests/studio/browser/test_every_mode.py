@@ -56,7 +56,7 @@ def visit(tab, mode):
 
 
 def whole(tab, mode):
-    """Wait until there is no fault; what does not go away is what the test fails with."""
+    """Wait until there is no fault; a lasting one fails the test."""
 
     def fault():
         return tab.page.evaluate(f"{FAULTS}('{mode}')")
@@ -76,7 +76,7 @@ def state(*names):
 
 
 class Actions:
-    """What a user does, by name; the modes are visited after each."""
+    """Actions of a user, by name; the modes are visited after each."""
 
     def __init__(self, tab, folder):
         self.tab, self.page, self.folder = tab, tab.page, folder

@@ -30,7 +30,7 @@ def design(served, open_tab):
     tab.find("parameter-length").wait_for()
     tab.find("text-editor").locator(".cm-content").wait_for()
     yield tab
-    # A page that goes hands over what was typed last, so that it can be undone too.
+    # A page that goes hands over the text typed last, so that it can be undone too.
     tab.page.reload()
     tab.find("link").get_by_text("connected", exact=True).wait_for()
     tab.find("text-editor").locator(".cm-content").wait_for()
@@ -189,7 +189,7 @@ class TestDesign:
 
 @pytest.fixture(scope="module")
 def study_done(served, chromium):
-    """Whether the study of this file has been run; the tests after it look at its folder."""
+    """Check if the study of this file has been run; the tests after it look at its folder."""
     return {"done": False}
 
 
@@ -363,7 +363,7 @@ class TestRuns:
         row.hover()
         row.get_by_role("button", name="Work on with renamed").click()
         studied.until("location.hash.includes('mode=optimize')")
-        # What the job said last is there under its new name, and its designs with it.
+        # The last event of the job is there under its new name, and its designs with it.
         job = studied.page.locator("[data-testid=job-study][data-state=done]")
         job.get_by_text("4 of 4 designs").wait_for()
         assert job.locator("strong").inner_text() == "renamed"

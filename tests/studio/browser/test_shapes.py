@@ -92,7 +92,7 @@ def test_a_new_shape_is_found_by_keys_and_seen_at_once(plate):
     # It stays to be seen when another one is chosen.
     choose(tab, "hole")
     tab.until("voxsoft.ghosts.length === 2")
-    # Escape gives the focus back to what opened the list.
+    # Escape gives the focus back to the button that opened the list.
     hand.press(name="Add a shape")
     tab.page.keyboard.press("Escape")
     picker.wait_for(state="detached")
@@ -114,7 +114,7 @@ def test_cutting_shapes_are_moved_and_sized_in_the_picture(plate, tmp_path):
     moved = float(base.input_value().split()[0])
     assert moved > 20
     assert moved * 2 == round(moved * 2)
-    # The radius is a parameter, which is what a typed number changes.
+    # The radius is a parameter, which a typed number changes.
     grip = tab.find("shape-radius")
     assert "changes the parameter bore" in grip.get_attribute("aria-label")
     grip.focus()
@@ -128,7 +128,7 @@ def test_cutting_shapes_are_moved_and_sized_in_the_picture(plate, tmp_path):
     renewed(tab, lambda: field.press("Enter"))
     tab.until("voxsoft.ghostBox('hole')[1][1] > 0.0295")
     assert saved_parameter(tab) == "10"
-    # By keys along z.
+    # Moves by keys along z.
     renewed(tab, lambda: tab.find("shape-move-z").press("ArrowDown"))
     tab.until("voxsoft.ghostBox('hole')[0][2] < -0.0055")
     design = kept(tab, tmp_path / "plate.toml")

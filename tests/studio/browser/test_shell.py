@@ -62,7 +62,7 @@ def test_space_plays_after_a_click_and_presses_a_focused_button(tab):
         tab.until("voxsoft.state === 'paused'")
     ghost = tab.find("ghost")
     assert ghost.get_attribute("aria-pressed") == "true"
-    # By keyboard: away from the button and back to it.
+    # Keyboard: away from the button and back to it.
     tab.page.keyboard.press("Tab")
     tab.page.keyboard.press("Shift+Tab")
     assert tab.page.evaluate("document.activeElement.dataset.testid") == "ghost"

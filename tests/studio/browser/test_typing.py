@@ -10,7 +10,7 @@ pytestmark = pytest.mark.browser
 
 @pytest.fixture
 def word(request):
-    """What a test types; tests share a document, so each has a word of its own."""
+    """Text that a test types; tests share a document, so each has a word of its own."""
     return f"# {request.node.name}"
 
 
@@ -28,7 +28,7 @@ def typed(served, open_tab, word):
     tab.until("document.querySelector('.cm-content').innerText.includes('50 mm')")
     content.locator(".cm-line", has_text="[parameters]").click()
     tab.page.keyboard.press("End")
-    # What typing waits for never comes: only another request can send the text.
+    # The end of typing never comes: only another request can send the text.
     tab.page.evaluate(
         "window.setTimeout = ((set) => (f, ms) => ms === 700 ? 0 : set(f, ms))(setTimeout)"
     )

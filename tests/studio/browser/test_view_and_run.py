@@ -23,7 +23,7 @@ def colors(tab):
 
 
 def changed(before, after):
-    """How many pixels differ visibly."""
+    """Number of pixels that differ visibly."""
     return int((np.abs(before - after).max(axis=2) > 12).sum())
 
 

@@ -59,7 +59,7 @@ def test_every_save_is_a_version_and_so_is_the_earlier_file(boxed):
             await saved(page)  # nothing has changed since
             reasons = [each["reason"] for each in await listed(page)]
             assert reasons == ["saved", "saved", "in the file before"]
-            # Another program wrote the file: what it wrote is not lost.
+            # Another program wrote the file: its text is not lost.
             file.write_text(BOX.replace("40 mm", "99 mm"))
             await edited(page, "70 mm")
             await saved(page)

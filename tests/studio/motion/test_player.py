@@ -32,7 +32,7 @@ def names(struct):
 
 
 def sent(value):
-    """The same of what the core sent."""
+    """Event of the core in the form of the player."""
     inner = {
         name: sent(entry[0])
         for name, entry in value.items()
@@ -45,7 +45,7 @@ def test_events_have_the_names_of_the_protocol(body):
     player = scene_of(body).play()
     grab = commands.Grab(seq=1, id=2, vertex=3, target=(0.0, 0.0, 0.1))
     [stat] = json.loads(player.command(msgspec.json.encode(grab)))
-    # What solves, how far it is, and which states have no time, the player does not know.
+    # The player does not know the solver, its progress, and the states without time.
     found, inner = sent(stat)
     assert (found | {"solver", "progress", "untimed"}, inner) == names(events.Stat)
     assert sent(json.loads(player.plot())) == names(events.Plot)

@@ -45,7 +45,7 @@ async def opened(page, file):
 
 
 def swings_both_ways(ways):
-    """Whether what was drawn has been as far on one side as on the other, nearly."""
+    """Check if the drawn swing has been as far on one side as on the other, nearly."""
     if not ways:
         return False
     farthest = max(ways, key=np.linalg.norm).ravel()

@@ -82,7 +82,7 @@ def number_of(result, length):
 
 @pytest.fixture
 def searches(monkeypatch):
-    """How many times the studio has looked for an equilibrium."""
+    """Number of searches for an equilibrium by the studio."""
     begun = []
     solve = rest.simulate
     monkeypatch.setattr(rest, "simulate", lambda *a, **k: begun.append(1) or solve(*a, **k))
@@ -131,7 +131,7 @@ def test_a_picture_is_drawn_once_unloaded_where_no_more_is_known(barred):
     assert at_rest.headers["x-voxsoft-state"] == "rest"
     assert at_rest.content != unloaded.content
     (kept,) = (folder / "thumbnails").glob("*-rest.png")
-    kept.write_bytes(unloaded.content)  # what is kept is what comes, from now on
+    kept.write_bytes(unloaded.content)  # the kept picture is sent from now on
     assert picture(studio, f"trial/bars/{number}").content == unloaded.content
 
 

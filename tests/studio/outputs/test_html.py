@@ -101,7 +101,7 @@ def test_a_body_with_a_layer_has_a_page():
     (fabric,) = body["layers"]
     assert fabric["name"] == "fabric"
     assert fabric["stiffness"] == pytest.approx(9000.0)
-    # Two triangles on each of 20 x 6 faces, all among what is drawn.
+    # Two triangles on each of 20 x 6 faces, all among the drawn ones.
     assert len(fabric["triangles"]) == 3 * 2 * 20 * 6
     assert set(fabric["triangles"]) <= set(range(body["surface_vertices"]))
     assert fabric["center"] == pytest.approx([0.04, 0.012, 0.0])

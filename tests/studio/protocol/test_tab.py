@@ -9,7 +9,7 @@ from voxsoft.studio.protocol.tab import LONGEST_QUEUE, Tab
 
 
 class Wire:
-    """Keeps what is sent."""
+    """Keeps sent messages."""
 
     def __init__(self):
         self.sent = []

@@ -12,7 +12,7 @@ from voxsoft.studio.running.progress import Progress
 
 
 class Report:
-    """What a job said."""
+    """Events of a job."""
 
     def __init__(self, kind):
         self.sent = []
@@ -84,7 +84,7 @@ def test_pauses_do_not_count_as_work(calibration, monkeypatch):
     reported = Report("calibrate")
     progress = reported.progress
     progress.pause()
-    now[0] += 2  # what was begun is being finished
+    now[0] += 2  # begun work is being finished
     work = threading.Thread(target=progress.at, args=(jobs.Progress(1, 3, "generations"),))
     work.start()
     while reported.sent[-1].state != "paused":

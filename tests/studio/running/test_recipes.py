@@ -42,14 +42,14 @@ def do(folder):
 
 
 def again(recipe, folder):
-    """Do the job again by its command, and give what it answers."""
+    """Do the job again by its command, and give its output."""
     voxsoft = [sys.executable, "-c", CLI, *shlex.split(recipe.command)[1:]]
     command = [*voxsoft, "--out", str(folder), "--json"]
     return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
 
 
 def script(recipe, folder):
-    """What the script prints."""
+    """Output of the script."""
     file = folder / "again.py"
     file.write_text(recipe.python)
     run = subprocess.run(

@@ -172,7 +172,7 @@ def test_scikit_fem_answers_beside_a_solver_that_cannot(monkeypatch):
 
 
 class Links(HTMLParser):
-    """What a page would fetch."""
+    """Links that a page would fetch."""
 
     def __init__(self):
         super().__init__()

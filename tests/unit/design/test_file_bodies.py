@@ -61,7 +61,7 @@ def design(folder):
 
 
 def like(design):
-    """The same in Python, as a design with shapes that nobody asks for and a mesh beside it."""
+    """The design in Python, with shapes that nobody asks for and a mesh beside it."""
     box = vs.Box(size=(1, 1, 1))
     mesh = mesh_of(design)
     return Setup(

@@ -37,7 +37,7 @@ def x(low, high):
 
 
 def large(design):
-    """Where large voxels begin along x, in voxels of 5 mm, each once."""
+    """Places along x at which large voxels begin, in voxels of 5 mm, each once."""
     setup = Setup.of(design)
     corners = setup.mesh.voxel_corners(setup.large_voxels[:, 0])
     places = setup.mesh.vertices[corners[:, 0], 0] / (5 * mm)

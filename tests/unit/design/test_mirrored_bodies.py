@@ -81,7 +81,7 @@ def frame(body):
 
 
 def order(vertices, among):
-    """Where each of some vertices is among others, which are the same but for their order."""
+    """Indices of some vertices among others, which are the same but for their order."""
     keys = {tuple(np.rint(at / 1e-9).astype(int)): i for i, at in enumerate(among)}
     return np.array([keys[tuple(np.rint(at / 1e-9).astype(int))] for at in vertices])
 

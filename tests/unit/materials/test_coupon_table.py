@@ -47,7 +47,7 @@ def scaled(values, factor):
 )
 def test_names_and_units_are_understood(heads, strains, stresses):
     curve = read_curve(table(heads, [strains, stresses]), area=18e-6, length=33e-3)
-    # What float division leaves.
+    # Rounding error of float division.
     np.testing.assert_allclose(curve.strain, STRAINS, atol=1e-12)
     np.testing.assert_allclose(curve.stress, STRESSES, rtol=1e-12)
 

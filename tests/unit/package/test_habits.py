@@ -24,7 +24,7 @@ BEAM = families.beam(length="40 mm")
 
 @pytest.fixture(scope="module")
 def shown(tmp_path_factory):
-    """What a user prints."""
+    """Objects that a user prints."""
     study = vs.Study(
         families.cylinder(),
         {"wall": ["10 mm", "15 mm"]},

@@ -6,7 +6,7 @@ from importlib.metadata import version
 
 import pytest
 
-#: What takes long to load, and is loaded by the names that need it.
+#: Modules that take long to load, and are loaded by the names that need them.
 HEAVY = {"numpy", "scipy", "pydantic", "optuna", "matplotlib", "pandas", "voxsoft._core"}
 
 

@@ -1,4 +1,4 @@
-"""The guard before large bodies knows what containers, schedulers and shells allow."""
+"""The guard before large bodies knows the limits of containers, schedulers and shells."""
 
 import subprocess
 import sys

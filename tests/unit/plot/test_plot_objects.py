@@ -35,7 +35,7 @@ def around(result):
 
 
 def gray(image):
-    """How many pixels of a picture are gray: neither of the body's colors nor white."""
+    """Number of gray pixels of a picture: neither of the body's colors nor white."""
     image = image.astype(int)
     colorless = np.ptp(image, axis=-1) <= 2
     return int((colorless & (image[..., 0] > 120) & (image[..., 0] < 240)).sum())
@@ -86,7 +86,7 @@ def test_pressure_pictures_leave_objects_out_by_default(result):
 
     drawn = gray_of()
     assert drawn > 10_000
-    assert gray_of(objects=False) < 0.3 * drawn  # what is left is the undeformed body
+    assert gray_of(objects=False) < 0.3 * drawn  # the undeformed body remains
     assert gray_of("contact_pressure") < 0.3 * drawn
     assert gray_of("contact_pressure", objects=True) > 10_000
 

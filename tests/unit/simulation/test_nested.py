@@ -103,7 +103,7 @@ def test_a_small_voxel_outside_large_ones_has_no_first_pressure():
 
 @pytest.mark.slow
 def test_others_begin_at_rest(coarse):
-    """Cut voxels that do not fill the large ones, and what touches."""
+    """Cut voxels that do not fill the large ones, and their contacts."""
     ball = vs.simulate(BALL)
     assert nested(ball, Setup.of(BALL, refine=2)) is None
     again = vs.simulate(BALL, refine=2, coarser=ball)

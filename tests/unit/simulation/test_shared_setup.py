@@ -12,7 +12,7 @@ from voxsoft.design.contact import Contact
 from voxsoft.simulation import Setup
 
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*.toml"))
-#: What the quick test takes: tendons, and a body of a lattice.
+#: Design of the quick test: tendons, and a body of a lattice.
 QUICK = ("beam", "tendon_finger")
 TOP = vs.Region(z=("10 mm", "10 mm"))
 #: A block that is pressed on a floor and pushed along it.
@@ -46,7 +46,7 @@ def coarsened(path, times):
 
 
 def in_threads(work, count=2):
-    """What each of some threads found that begin at the same time."""
+    """Results of some threads that begin at the same time."""
     found, ready = [None] * count, threading.Barrier(count)
 
     def run(number):

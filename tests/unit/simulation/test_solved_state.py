@@ -26,7 +26,7 @@ BALL = Object(
 
 
 def same(a, b):
-    """Whether two values are alike to the last bit, whatever they are made of."""
+    """Check if two values are alike to the last bit, of any type."""
     if isinstance(a, np.ndarray):
         return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=True)
     if dataclasses.is_dataclass(a):

@@ -68,7 +68,7 @@ def box(material):
 
 
 def used(result, name, value):
-    """Whether a result says that it used a setting."""
+    """Check if a result says that it used a setting."""
     times = result.recording.times
     match name:
         case "frames":

@@ -200,7 +200,7 @@ def test_results_and_metrics_report_supplies():
 
 
 def test_a_gas_spring_is_no_pressure_load():
-    """What is locked in pushes back when a body swings; modes do not know of it yet."""
+    """Sealed gas pushes back when a body swings; modes do not know of it yet."""
     with pytest.raises(SimulationError, match="supplies: are not known to modes"):
         vs.modes(simulate(cube(SYRINGE)))
 

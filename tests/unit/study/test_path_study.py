@@ -41,7 +41,7 @@ def run(study):
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
-    """The folder of a study, and what was found: tests read it."""
+    """The folder of a study, and its result: tests read it."""
     folder = tmp_path_factory.mktemp("study")
     return folder, run(study_in(folder))
 

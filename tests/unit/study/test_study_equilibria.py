@@ -45,7 +45,7 @@ SQUEEZE = 0.4e-3
 
 @pytest.fixture(scope="module")
 def closed():
-    """What a trial finds."""
+    """Results of a trial."""
     return simulate(CLOSED.with_parameters(squeeze=SQUEEZE))
 
 

@@ -64,7 +64,7 @@ def test_a_plate_presses_as_a_clamp_does_that_leaves_the_sides_free(result):
 
 def test_forces_balance_and_the_plate_is_where_it_was_sent(result):
     (contact,) = result.contacts
-    # The foot carries what the plate presses, and nothing else does.
+    # The foot carries the force of the plate, and nothing else does.
     foot = result.reactions[:, 2].sum()
     assert foot == pytest.approx(-contact.force[2], rel=1e-6)
     assert result.residual < 1e-6

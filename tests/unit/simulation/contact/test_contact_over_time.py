@@ -82,7 +82,7 @@ def test_a_pinched_object_slips_at_its_bound():
     # slips has gone millimeters.
     assert np.ptp(heights[-5:]) < 1e-8
     contact = {contact.of: contact for contact in slid.contacts}[("body", "block")]
-    # What slips is held by the coefficient times the pressure; bounds are right to 0.3 %.
+    # A slipping object is held by the coefficient times the pressure; bounds are right to 0.3 %.
     pressure = np.sqrt(contact.pressed**2 - contact.force[2] ** 2)
     assert -contact.force[2] == pytest.approx(0.96 * friction * pressure, rel=5e-3)
     steady = slid.recording.times >= 0.15

@@ -90,7 +90,7 @@ def test_pressures_are_on_the_vertices_of_the_faces(result):
 
 def test_cut_voxels_meet_the_same_surface(reference):
     (contact,) = simulate(pressed_ball("smooth", fill="fraction")).contacts
-    # As full ones, where contact with whole faces is 69 % off.
+    # Tolerance of full ones, where contact with whole faces is 69 % off.
     assert 4 * contact.pressed == pytest.approx(reference["force_N"], rel=0.06)
 
 
