@@ -28,6 +28,9 @@ OPENINGS = re.compile(r"(?:What|Where|How|Whether|Of|By|As|The same|That of|Thos
 #: Names of entries that a docstring describes below, such as ``where, hint``.
 NAMES = re.compile(r"(?:\*{0,2}\w+)(?:, \*{0,2}\w+)*(?: : .*)?$")
 RELATIVE = re.compile(r"\bwhat\b", re.IGNORECASE)
+#: Names of tests that a clause stands in, and the most letters of one.
+CLAUSE = re.compile(r"_(?:what|whether)(?:_|$)")
+LONGEST_NAME = 74
 BLOCK = re.compile(r"\{?/\*\*?\s?(.*?)(\*/.*)?$")
 
 
@@ -157,6 +160,24 @@ def test_plain_comments_of_typescript_pass():
 @pytest.mark.parametrize("head", ["class A:", "def f():"])
 def test_the_private_grammar_is_known_in_docstrings(head, docstring):
     assert len(list(faults_in(blocks_of_python(f'{head}\n    """{docstring}\n    """\n')))) == 1
+
+
+def test_names_of_tests_are_short_and_have_a_subject():
+    names = [
+        name
+        for path in (ROOT / "tests").rglob("*.py")
+        for name in re.findall(
+            r"^ *(?:async )?def (test_\w+)", path.read_text(encoding="utf-8"), re.M
+        )
+    ]
+    assert not [name for name in names if CLAUSE.search(name) or len(name) > LONGEST_NAME]
+
+
+@pytest.mark.parametrize(
+    "name", ["test_what_is_free_falls", "test_says_what", "test_whether_it_is"]
+)
+def test_names_without_a_subject_are_known(name):
+    assert CLAUSE.search(name)
 
 
 def test_the_private_grammar_is_known_in_python():

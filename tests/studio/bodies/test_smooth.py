@@ -25,7 +25,7 @@ def cross(a, b):
 
 
 def crossings(vertices, triangles, axis, at):
-    """Crossings of a line along an axis with a surface, in order; `at` has the other coordinates."""
+    """Crossings of a line along an axis with a surface, in order; `at` has the others."""
     others = [other for other in range(3) if other != axis]
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     flat_a, flat_b, flat_c, point = a[:, others], b[:, others], c[:, others], np.asarray(at)
