@@ -31,7 +31,7 @@ def test_a_block_under_a_plate_has_the_stress_of_the_closed_form():
     answer = run_calculix(BrickModel.of(Setup.of(design)))
     force = -stress * (12 * mm) ** 2
     # The penalty leaves 0.385 E/(1000 E/4 mm) = 0.0015 mm of the way of 1.2 mm, 0.13 %, and the
-    # stress grows by 1.1 times what the way does; the rest is the tolerance of the residual.
+    # stress grows by 1.1 times the growth of the way; the rest is the tolerance of the residual.
     assert answer.contacts["plate"][2] == pytest.approx(-force, rel=2e-3)
     # The forces that hold the plate and the block are one.
     held = answer.reaction

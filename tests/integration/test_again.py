@@ -136,7 +136,7 @@ def test_an_interrupted_study_keeps_its_tables_and_is_repeated_once_done():
     assert Path("s", JOB).is_file()
     kept = len(Path("s", "table.csv").read_text().splitlines()) - 1
     assert 3 <= kept < 105
-    # What is there is less than the whole study: a repetition says so.
+    # The folder holds less than the whole study: a repetition says so.
     assert printed("again", "s", code=DIFFERS)["trials"] == 105
     done("sweep", CYLINDER, "--out", "s", "--workers", "2")
     assert printed("again", "s")["same"]
@@ -181,7 +181,7 @@ def meshed(tmp_path):
 def test_meshes_and_cards_go_with_the_folder(meshed):
     done("run", meshed / "design.toml", "--out", "r")
     done("sweep", meshed / "design.toml", "--out", "s", "--workers", 1)
-    # Where they came from does not count any more, nor does where the folders were made.
+    # Their first place does not count any more, nor does the place where the folders were made.
     meshed.rename(meshed.parent / "gone")
     for name in ("r", "s"):
         shutil.move(name, f"moved-{name}")

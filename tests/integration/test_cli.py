@@ -218,7 +218,7 @@ def test_calibration_by_gradients_finds_the_modulus_of_a_beam():
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     # The two solvers agree within 0.5 % on ten designs, and stay far below that on one element.
-    # The search alone: a simplex follows it, and would fix what wrong slopes leave.
+    # The search alone: a simplex follows it, and would fix errors of wrong slopes.
     assert found["search"]["parameters"]["young"] == pytest.approx(30e3, rel=5e-3)
     assert (found["method"], found["settings"]["solver"]) == ("gradient", "statics")
     # A search that knows no slopes takes 30 for its first generation alone.

@@ -93,7 +93,7 @@ def assert_prints(expected, got, where):
 
 
 def run_python(block, namespace, where):
-    # As many lines before the code as on the page, so that a traceback names the page's line.
+    # Blank lines before the code, as many as on the page: a traceback names the page's line.
     code = compile("\n" * block.line + block.text, where, "exec")
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
@@ -191,7 +191,7 @@ def test_a_page_runs_as_written(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     before = dict(registry._ALL)
     run_page(page)
-    registry._ALL.clear()  # of what the page added
+    registry._ALL.clear()  # metrics that the page added
     registry._ALL.update(before)
 
 

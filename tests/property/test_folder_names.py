@@ -99,7 +99,7 @@ def test_reports_and_sweeps_stay_there_too(name):
 
 def design_called(name, home):
     file = home / "design.toml"
-    # TOML knows no pairs of surrogates, as which JSON escapes what lies beyond 16 bits.
+    # TOML knows no pairs of surrogates, to which JSON escapes characters beyond 16 bits.
     quoted = json.dumps(name, ensure_ascii=False)
     file.write_text(f"name = {quoted}\n{TINY}", encoding="utf-8")
     return file

@@ -139,7 +139,7 @@ def test_both_judges_see_a_body_in_a_plate_and_in_itself():
 
 
 def test_the_two_sides_of_a_thin_wall_do_not_meet():
-    # Thinner than the quarter of a voxel that a sample may be behind what it meets.
+    # Thinner than the quarter of a voxel that a sample may be behind the surface it meets.
     sheet = vs.Box(size=(0.02, 0.01, 0.0002), center=(0.01, 0.005, 0.0005))
     result = vs.simulate(
         vs.Design(

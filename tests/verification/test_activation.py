@@ -231,7 +231,7 @@ def test_fibers_that_are_shorter_by_themselves_draw_the_bar_together():
 
 
 def test_fibers_at_their_own_length_carry_nothing_at_any_strain():
-    # Held at 0.7 of its length the bar carries what rubber alone does: fibers of that length too.
+    # Held at 0.7 of its length the bar carries the force of rubber: fibers of that length too.
     def held(design):
         end = vs.Clamp(
             region=vs.Region(x=(20 * mm, 20 * mm)),
@@ -247,7 +247,7 @@ def test_fibers_at_their_own_length_carry_nothing_at_any_strain():
             held(plain).metric("elastic_energy"), rel=1e-6
         )
     tight = held(muscle(-0.4)).metric("elastic_energy")
-    # Of the fibers alone, E_f/8 ((λ/λ₀)² - 1)² V.
+    # Energy of the fibers alone, E_f/8 ((λ/λ₀)² - 1)² V.
     own = 3 * YOUNG / 8.0 * ((0.7 / 0.6) ** 2 - 1.0) ** 2 * 2e-6
     assert tight - held(plain).metric("elastic_energy") == pytest.approx(own, rel=1e-6)
 
@@ -335,7 +335,7 @@ def test_a_bilayer_that_is_heated_slowly_follows_statics():
     )
     along = vs.follow(bilayer(0.0, activations=[warm]), "time=0..20 s/5")
     still = [each.probes["tip"][2] for each in along.results]
-    # Half of it is there after half the time, and what is recorded of the motion is the same curve.
+    # Half of it is there after half the time, and the recorded motion is the same curve.
     assert still[2] == pytest.approx(still[4] / 2, rel=0.05)
     assert moved.recording.probes["tip"][:, 2] == pytest.approx(still, abs=0.01 * abs(still[4]))
 
@@ -445,7 +445,7 @@ def test_a_warm_wire_moves_by_its_history():
     # Damping leaves it late by 5 ms, a hundredth of the time in which it goes back.
     assert result.probes["corner"][0] == pytest.approx(-0.036 * 10 * mm, rel=0.01)
     assert result.design.activations[0].transformed == pytest.approx(0.9)
-    # By its temperature alone it would be cold.
+    # Its temperature alone would make it cold.
     assert vs.simulate(free_wire(wire("328 K"))).probes["corner"][0] == pytest.approx(0.0, abs=1e-9)
 
 

@@ -107,7 +107,7 @@ def test_slip_or_new_contact_with_friction_is_refused():
 
 
 def test_friction_at_a_loose_tolerance_is_refused():
-    """Anchors then depend on what an iteration has left, and slopes were off by a third."""
+    """Anchors then depend on the rest of an iteration, and slopes were off by a third."""
     result = simulate(pressed(PLATE, 0.9), method="statics")
     with pytest.raises(SimulationError, match="too much for a derivative with friction"):
         gradient(result, {"force": FORCE}, "E")
@@ -120,7 +120,7 @@ def test_self_contact_is_refused():
 
 
 def test_motion_that_moves_nothing_has_no_slope():
-    """A plate without friction slides over the block: what is left of its slope is rounding."""
+    """A plate without friction slides over the block: the rest of its slope is rounding."""
     name = "objects.0.motion.displacement.0"
     found = gradient(solved(pressed(PLATE, 0.0)), {"side": SIDE}, name)
     assert abs(found["side"][name]) < CLOSE
@@ -135,7 +135,7 @@ def test_areas_and_surfaces_that_change_in_jumps_are_refused():
 
 
 def test_a_gap_without_contact():
-    """It closes as the plate comes down, less by what the force moves the corner."""
+    """It closes as the plate comes down, less by the way of the corner under the force."""
     plate = {**PLATE, "center": ["4.3 mm", "3.9 mm", "13 mm"]}
     gap = {"gap": Objective(maximize="contact_gap", object="plate")}
     found = gradient(solved(pressed(plate, 0.0)), gap, "depth")

@@ -50,7 +50,7 @@ def both():
 
 
 def test_uniform_strain_is_the_same_on_two_sizes():
-    """Drawn by its ends with free sides: any mesh has the same answer, to what Newton leaves."""
+    """Drawn by its ends with free sides: any mesh has one answer, to the residual of Newton."""
     cube = vs.Box(size=(32 * mm, 32 * mm, 32 * mm), corner=(0, 0, 0))
     pulled = vs.Motion(displacement=(0, 0, 16 * mm))
     faces = [vs.Region(x=(0, 0)), vs.Region(y=(0, 0)), vs.Region(z=(0, 0))]
@@ -104,7 +104,7 @@ def test_tied_vertices_are_where_they_belong(both):
 
 @pytest.mark.slow
 def test_slopes_are_those_of_differences():
-    """By the pressure and by Young's modulus, through the tied tangent and its transpose."""
+    """Slopes by the pressure and by Young's modulus, through the tied tangent and its transpose."""
     design = block(refine=[AROUND])
     targets = {
         "up": Objective(maximize="displacement", probe="top", axis="z"),

@@ -26,7 +26,7 @@ def designs(monkeypatch):
 
 
 def accelerations(designs, friction, degrees=20.0, step=5e-3):
-    """Of the way of a ball and of its surface as it turns, and how far it slips over its way."""
+    """Errors of the way of a ball and of its surface as it turns, and its slip over its way."""
     design = designs.rolling(degrees, friction)
     result = vs.simulate(design, end_time=0.1, time_step=step, record_interval=step)
     places, turns = result.recording.objects["ball"]

@@ -11,7 +11,7 @@ from voxsoft.units import kPa, mm
 LENGTH, SIDE = 20 * mm, 4 * mm
 AREA = SIDE**2
 YOUNG = 100 * kPa
-# Closed forms are linear: at a strain of 1e-5 what is quadratic counts about 1e-5 of them.
+# Closed forms are linear: at a strain of 1e-5 quadratic terms count about 1e-5 of them.
 STRAIN = 1e-5
 LINEAR = 1e-4
 #: The stiffest against the softest material.
@@ -60,7 +60,7 @@ def box(length=LENGTH, width=SIDE, corner=(0, 0, 0)):
 
 
 def test_layers_on_both_faces_of_a_bar_pull_beside_it():
-    # Of the same Poisson's ratio, so that they contract alike and each carries its own share.
+    # Equal Poisson's ratios, so that they contract alike and each carries its own share.
     layers = [
         vs.Layer(region=vs.Region(z=(z, z)), young=50e6, thickness=0.1 * mm, poisson=0.3)
         for z in (0, SIDE)

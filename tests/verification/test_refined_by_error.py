@@ -51,7 +51,7 @@ def growth(result):
 
 
 def test_a_uniform_strain_has_no_error(run):
-    # Of any size and with any rotation: Green's strain is the same in each voxel.
+    # Deformation of any size and with any rotation: Green's strain is the same in each voxel.
     cosine, sine = np.cos(0.7), np.sin(0.7)
     rotation = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
     stretched = run.mesh.vertices * [1.4, 0.8, 0.9] @ rotation.T

@@ -95,7 +95,7 @@ def require_same(
     return part
 
 
-#: A quarter cuts what half a body cuts, and once more; the half alone is slow.
+#: A quarter cuts the planes of half a body, and once more; the half alone is slow.
 ONE_OR_TWO = pytest.mark.parametrize("planes", [pytest.param([X], marks=pytest.mark.slow), [X, Y]])
 
 PLATE = Object(

@@ -146,7 +146,7 @@ def test_half_a_bar_moves_as_the_bar_does() -> None:
 
 
 def test_a_layer_spans_an_opening_across_the_plane() -> None:
-    """As the mean of both ways to cut the opening, of which each alone is not symmetric."""
+    """Mean of both ways to cut the opening, of which each alone is not symmetric."""
     tray = vs.Box(size=(40 * mm, 20 * mm, 15 * mm)) - vs.Box(
         size=(30 * mm, 10 * mm, 10 * mm), corner=(5 * mm, 5 * mm, 0)
     )

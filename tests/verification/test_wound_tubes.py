@@ -11,7 +11,7 @@ from voxsoft.errors import DesignError, MaterialError
 from voxsoft.simulation import Setup, gradient
 from voxsoft.units import MPa, kPa, mm
 
-#: Of a thin tube with closed ends the stress around is twice that along: tan² θ = 2.
+#: Stress around a thin tube with closed ends is twice that along: tan² θ = 2.
 NEUTRAL = np.degrees(np.arctan(np.sqrt(2.0)))
 
 
@@ -41,7 +41,7 @@ def test_a_braid_keeps_its_length_at_the_neutral_angle():
 @pytest.mark.slow
 @pytest.mark.parametrize(("wall", "voxel"), [(2 * mm, 1 * mm), (1 * mm, 1 * mm)])
 def test_the_neutral_angle_does_not_depend_on_the_voxels(wall, voxel):
-    # As above with a wall of two voxels, and a thinner wall of one.
+    # Tube as above with a wall of two voxels, and a thinner wall of one.
     tube = {"modulus": 100 * MPa, "wall": wall, "voxel": voxel}
     assert neutral_angle((53.7, 55.7), **tube) == pytest.approx(NEUTRAL, abs=0.15)
 

@@ -129,7 +129,7 @@ def test_a_known_surface_is_not_traced_again(design, monkeypatch):
 def test_a_tab_gets_the_shapes_that_it_asks_for(fresh_studio):
     async def scenario():
         async with fresh_studio.page() as page:
-            # Of two requests that come at once the newer one alone needs an answer.
+            # Two requests come at once: the newer one alone needs an answer.
             await page.send("ghosts", names=["body"])
             await page.send("ghosts", names=["cavity", "gone"])
             found = await page.until(

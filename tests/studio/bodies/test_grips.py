@@ -48,7 +48,7 @@ def test_an_unpressed_object_is_lost():
     (grip,) = grips_of(lost)
     assert (grip.verdict, grip.pressed, grip.margin) == ("lost", 0.0, None)
     assert grip.sentence == "plate: not held."
-    # What lies on the floor is not gripped by it: a study would else drop what it should hold.
+    # The floor does not grip an object on it: a study would else drop the object it should hold.
     assert lost.metric("grip_force", object="plate") == 0.0
     assert lost.metric("hold_margin", object="plate") == 0.0
 

@@ -22,7 +22,7 @@ MODES = ("design", "simulate", "calibrate", "optimize", "runs")
 
 MEASURED = "s (mm),dz (mm)\n10,-0.3\n25,-1.7\n40,-4.0\n"
 
-# What is wrong with the page as it stands, or "": a pane that is empty, has no size or failed, a
+# Faults of the page as it stands, or "": a pane that is empty, has no size or failed, a
 # page that is wider than its window, a word of the picture under a card, a bar or a banner.
 FAULTS = """((mode) => {
   if (document.querySelector(`[data-testid=mode-${mode}][aria-current=page]`) === null)

@@ -115,7 +115,7 @@ def build(tab, hand):
     hand.key("5")  # from above
     hand.face(2, 1)
     hand.here("here-clamp")
-    hand.key("3")  # from the left: what will be the inside
+    hand.key("3")  # from the left: the future inside
     hand.face(0, -1)
     hand.here("here-layer")
     hand.key("1")

@@ -129,7 +129,7 @@ def robot(request, tmp_path, serving, open_tab):
     for part in FILES.get(name, ()):
         shutil.copy(EXAMPLES / part, tmp_path)
     server = serving(tmp_path, (EXAMPLES / name).read_text(), name)
-    # Words of clamps, layers and chambers of three fingers would hide what touches.
+    # Words of clamps, layers and chambers of three fingers would hide the contacts.
     tab = open_tab(server.address, symbols=name != "gripper_three.toml")
     tab.suffix = ""
     tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")

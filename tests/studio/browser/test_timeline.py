@@ -97,7 +97,7 @@ def test_numbers_are_typed_and_the_text_keeps_its_units(timeline, server):
     field.fill("0.3 s")
     field.press("Enter")
     is_now(timeline, FIRST, "0.3 s, factor 1", LAST)
-    # What is drawn is ahead of the document: there is something to save once that has it.
+    # The drawn state is ahead of the document: there is something to save once that has it.
     timeline.find("document-name").get_by_text("edited").wait_for()
     timeline.page.keyboard.press("Control+s")
     timeline.find("document-name").get_by_text("edited").wait_for(state="detached")

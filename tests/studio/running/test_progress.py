@@ -105,5 +105,5 @@ def test_a_new_unit_of_progress_has_a_time_of_its_own():
     run.progress.at(jobs.Progress(0, 100, "percent of a further run"))
     assert (run.sent[-1].of, run.sent[-1].left) == ("percent of a further run", None)
     run.progress.at(jobs.Progress(50, 100, "percent of a further run"))
-    # As long as the first half, and the equilibria before do not count.
+    # Equal to the time of the first half; the equilibria before do not count.
     assert 0.0 <= run.sent[-1].left < run.sent[-1].elapsed

@@ -435,7 +435,7 @@ def test_the_studio_draws_all_bodies(folder):
     assert [part.name for part in event.parts] == ["left.body", "right.body"]
     assert [cavity.name for cavity in event.cavities] == [c.name for c in body.mesh.cavities]
     assert event.not_live
-    # Of a square face only its sides are drawn, also where it is turned: two triangles have four
+    # Only the sides of a square face are drawn, also where it is turned: two triangles have four
     # sides, each of two faces, and one diagonal.
     faces = len(body.mesh.triangles) / 2
     assert len(body.surface.outline.edges) == pytest.approx(2 * faces, abs=0.5)

@@ -64,7 +64,7 @@ def test_the_warning_vanishes_once_the_other_modes_are_tested():
     assert alone.summary()["untested"][0]["high"] == equibiaxial.high
     both = fitted("treloar", "uniaxial", "equibiaxial")
     assert [each.mode for each in both.untested] == ["planar"]
-    # Planar tension lies between the two: what is left open there is less than a tenth.
+    # Planar tension lies between the two: the range left open there is less than a tenth.
     assert not any("stress at stretch" in warning for warning in both.warnings)
     assert fitted("treloar", "uniaxial", "equibiaxial", "planar").untested == ()
 

@@ -16,7 +16,7 @@ from voxsoft.simulation.checks.tested_range import beyond_tests
 from voxsoft.simulation.derivatives.loaded_state import LoadedState
 from voxsoft.simulation.results.fields import fields_of
 
-#: What makes the PneuNet the lattice that the studio's template once was.
+#: Changes that make the PneuNet the lattice that the studio's template once was.
 AS_LATTICE = (
     'materials.firm={model="lattice", edge="200 kPa", bulk="1 MPa"}',
     "parts.1.material=ecoflex-00-30-lattice",

@@ -207,7 +207,7 @@ def test_every_way_leads_to_the_rest_of_statics(material, way):
     def sag(result):
         return -(result.positions - result.mesh.vertices)[:, 2].min()
 
-    # What the issue of the solvers allows; the layer makes ten times that, or it would not be seen.
+    # Tolerance of the solvers; the layer makes ten times that, or it would not be seen.
     assert sag(moved) == pytest.approx(sag(still), rel=1e-3)
     assert sag(bare) > 1.01 * sag(still)
 

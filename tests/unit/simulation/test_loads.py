@@ -24,7 +24,7 @@ def setup_of(*loads):
 
 
 class Sum(LoadReceiver):
-    """The resultant of dead loads, as a receiver that knows only what it must."""
+    """The resultant of dead loads, as a receiver that knows only the necessary."""
 
     def __init__(self, mesh):
         super().__init__(mesh)

@@ -56,7 +56,7 @@ def test_splits_enclose_one_volume_at_rest_and_bilinear_faces_on_the_mean():
 
 
 def _air(mesh, positions):
-    """By the divergence theorem over the bilinear faces of the cavity, at 2 x 2 points of each."""
+    """Divergence theorem over the bilinear faces of the cavity, at 2 x 2 points of each."""
     grid = {tuple(key): i for i, key in enumerate(np.rint(mesh.vertices / SIZE).astype(int))}
     total = 0.0
     weights = np.array([[1 - s, 1 + s] for s in (-1 / np.sqrt(3), 1 / np.sqrt(3))]) / 2
@@ -131,7 +131,7 @@ def test_an_open_surface_shares_whole_faces_evenly_and_no_others():
 
 @pytest.mark.parametrize(("inside", "is_split"), [(SPRINGS, False), (RUBBER, True)])
 def test_springs_keep_the_triangles_that_are_their_surface(inside, is_split):
-    """Of a shell of two materials, the one beside the air decides."""
+    """The material beside the air decides in a shell of two materials."""
     outside = SPRINGS if is_split else RUBBER
     design = shell().replace(
         parts=[

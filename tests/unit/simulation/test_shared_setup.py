@@ -129,7 +129,7 @@ def test_a_solution_leaves_its_problem_as_it_was():
     before = setup.problem.net_forces(setup.mesh.vertices)
     answer = _core.equilibrium(setup.problem, tolerance=1e-8)
     assert np.array_equal(setup.problem.net_forces(setup.mesh.vertices), before)
-    # Multipliers that the answer remembers hold what is pressed.
+    # Multipliers that the answer remembers hold the pressed body.
     there = answer.problem.net_forces(answer.positions)
     free = ~np.any(answer.reactions != 0.0, axis=1)
     assert np.abs(there[free]).max() < 1e-6 * np.abs(answer.reactions).max()

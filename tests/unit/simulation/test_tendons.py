@@ -114,7 +114,7 @@ def test_the_clamp_holds_the_force_of_the_motor(settings, drive):
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_a_body_that_moves_live_has_the_same_rest(drive, friction):
     high = [(0, 2 * mm, 3 * mm), (LENGTH + 1 * mm, 2 * mm, 3 * mm)]
-    # Pulled slowly: what swings past its rest slides back there, and comes to another one.
+    # Pulled slowly: a bar that swings past its rest slides back there, and comes to another one.
     slowly = {"time": [0, 0.5], "factor": [0, 1]}
     tendon = along(through=high, friction=friction, history=slowly, **drive)
     design = bar([tendon], poisson=0.3)
@@ -389,7 +389,7 @@ def test_the_gradient_by_routing_is_that_of_differences(changes, name):
     target = {"rise": vs.Objective(maximize="displacement", probe="end", axis="z")}
     found = gradient(simulate(design), target, name)["rise"][name]
     value = number_of(design, name)
-    # Of fourth order; steps so small that no bend becomes straight on the way.
+    # Differences of fourth order; steps so small that no bend becomes straight on the way.
     step = 2e-3 * mm if "through" in name else 1e-3 * value
     low, less, more, high = (
         simulate(with_number(design, name, value + many * step)).probes["end"][2]

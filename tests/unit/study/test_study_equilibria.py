@@ -38,7 +38,7 @@ sag = { minimize = "displacement", probe = "tip", axis = "z" }
 """
 
 
-#: Closed on its ball, and not yet lifted far: what is kept of it does not depend on the way.
+#: Closed on its ball, and not yet lifted far: the kept state does not depend on the way.
 CLOSED = Design.from_document(tomllib.loads(GRIPPER.replace("0.15 s", "0.08 s")))
 SQUEEZE = 0.4e-3
 
@@ -126,7 +126,7 @@ def test_an_incomplete_file_gives_no_result(tmp_path, missing):
         left = {name: content[name] for name in content.files if name != missing}
     np.savez(tmp_path / "a.npz", **left)
     found = known.find("a", result.mesh)
-    # Without what else was found, its positions are no result of a design with contact.
+    # Without the other results, its positions are no result of a design with contact.
     assert found is None or found.result(Setup.of(result.design)) is None
 
 

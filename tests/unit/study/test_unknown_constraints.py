@@ -63,7 +63,7 @@ def test_searches_go_on_with_unknown_values(sampler: str, order: tuple[str, ...]
         assert result.best.metrics["safety"] == -1.0
 
 
-#: Of the same kind as those that are quick, and as those of tests/unit/study/test_study_unknown.py.
+#: Same kind as the quick ones, and as those of tests/unit/study/test_study_unknown.py.
 SLOWER = [pytest.param(name, marks=pytest.mark.slow) for name in ("tpe", "nsga-ii", "nsga-iii")]
 
 

@@ -114,7 +114,7 @@ def test_lips_of_a_slit_meet_and_do_not_pass_through_each_other():
     through, kept = simulate(slit(None)), simulate(slit(Contact()))
     assert through.penetration.depth > 0.1 * mm
     assert kept.status == "ok"
-    # What touches are the bilinear faces of voxels; the test for overlaps takes each as two
+    # The contact surfaces are the bilinear faces of voxels; the test for overlaps takes each as two
     # triangles, which stand out of a face that is warped.
     assert kept.penetration.depth < 0.01 * 2 * mm
     (contact,) = kept.contacts

@@ -49,7 +49,7 @@ def test_a_gripped_object_is_held_by_friction():
     assert contact.summary()["friction_bound"] == contact.bound
 
 
-@pytest.mark.slow  # what slides out of a grip takes long; the core's tests have a quick one
+@pytest.mark.slow  # sliding out of a grip takes long; the core's tests have a quick one
 def test_a_grip_lets_go_at_its_margin():
     near = statics(pinched(0.02, objects=[bar(40 * mm)]))
     least = 0.02 / near.metric("hold_margin", object="block")

@@ -43,7 +43,7 @@ def test_a_result_measures_contacts(result):
     summary = result.summary()["metrics"]
     assert summary["push"] == contact.force[2]
     assert summary["touch"] == contact.area
-    # What must be told its object is in no list that nobody asked for.
+    # Metrics that need an object are in no list that nobody asked for.
     assert not {"contact_force", "contact_area", "contact_gap", "sticking"} & summary.keys()
 
 
