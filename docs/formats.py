@@ -26,8 +26,8 @@ for.
 WRITTEN: Final = """
 ## Written
 
-By `voxsoft export`, `voxsoft.files.write_mesh` and the studio ([export](../how-to/export.md)). A
-mesh keeps its geometry in every format; the columns say what else a file keeps.
+Writers: `voxsoft export`, `voxsoft.files.write_mesh`, the studio ([export](../how-to/export.md)).
+A mesh keeps its geometry in every format; the columns list further data of a file.
 
 | suffix | format | parts | regions | cavities | values | unit |
 |---|---|---|---|---|---|---|

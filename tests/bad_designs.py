@@ -1,6 +1,6 @@
-"""Changes that make the cylinder of the examples a bad design, and what is to be said of each."""
+"""Changes that make the cylinder of the examples a bad design, with the message for each."""
 
-# As `--set` takes them. The first are no designs; the others cannot be solved, or not judged.
+# Changes for `--set`. The first are no designs; the others cannot be solved, or not judged.
 NO_DESIGN = [
     ("color=red", "is not known here"),
     ("voxel_size=5", "has no unit"),

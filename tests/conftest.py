@@ -1,4 +1,4 @@
-"""What all tests need before they start."""
+"""Setup of all tests."""
 
 import signal
 

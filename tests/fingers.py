@@ -7,7 +7,7 @@ from voxsoft.design import Design
 from voxsoft.study import Study
 
 LENGTHS = [0.025, 0.03, 0.035, 0.04, 0.045, 0.05]
-#: How many pictures of designs are seen.
+#: Number of loaded pictures of designs.
 SEEN = "[...document.querySelectorAll('.trial-frame img')].filter(i => i.naturalWidth > 0).length"
 GOAL = '[objectives]\nsag = { minimize = "displacement", probe = "tip", axis = "z" }\n'
 

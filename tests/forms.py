@@ -153,7 +153,7 @@ SPECIAL[Body, "set"] = ({"r": "12 mm"}, {"r": 0.1 / 3}, {"r": "= p_length"}, {"m
 #: a mesh's file: tests/unit/design/test_file_bodies.py saves and loads them.
 ELSEWHERE = {(Region, "body"), (Part, "body"), (Guide, "body"), (Region, "name")}
 
-#: What a record needs beside what its fields require.
+#: Further entries of a record beside its required fields.
 NEEDS: dict[type, dict[str, Any]] = {
     Region: {"x": (0, "10 mm")},
     Spot: {"point": (0, 0, 0)},
@@ -170,10 +170,10 @@ NEEDS: dict[type, dict[str, Any]] = {
     Tendon: {"tension": "6 N"},
 }
 
-#: What stands in a list already, where one entry is not enough.
+#: Entries of a list that come first, where one entry is not enough.
 FIRST: dict[tuple[type, str], list[Any]] = {(Tendon, "through"): [(0, 0, "50 mm")]}
 
-#: What goes with a field, or (None) cannot stand beside it.
+#: Entries that go with a field, or (None) cannot stand beside it.
 BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (Region, "center"): {"radius": "5 mm"},
     (Region, "radius"): {"center": (0, 0, 0)},
@@ -370,7 +370,7 @@ def _with(model: type[Record], name: str, key: str, form: Any) -> dict[str, Any]
 
 
 def is_taken(model: type[Record], table: dict[str, Any]) -> bool:
-    """Whether a table is valid, formulas aside; one that is not says so by an error of ours."""
+    """Check if a table is valid, formulas aside; an invalid one raises an error of ours."""
     try:
         model(**_values(table))
     except VoxSoftError:

@@ -1,4 +1,4 @@
-"""What a person does in the studio, action by action, and how many that are."""
+"""Actions of a person in the studio, one by one, and their number."""
 
 from waiting import until
 
@@ -6,7 +6,7 @@ import voxsoft as vs
 
 
 class Hand:
-    """Counts what a person does: presses, choices and numbers that are typed."""
+    """Counts the actions of a person: presses, choices and typed numbers."""
 
     def __init__(self, tab):
         self.tab, self.actions = tab, 0
@@ -32,7 +32,7 @@ class Hand:
         self.actions += 1
 
     def here(self, verb):
-        """What is offered at the face that was pressed; the body comes anew with it."""
+        """Actions offered at the face that was pressed; the body comes anew with them."""
         renewed(self.tab, lambda: self.press(test_id=verb))
 
     def key(self, key):
@@ -55,7 +55,7 @@ class Hand:
         self.actions += 1
 
 
-#: Where the middle of the outermost face along an axis is on the page.
+#: Place on the page of the middle of the outermost face along an axis.
 MIDDLE_OF_FACE = """([axis, side]) => {
     const all = [];
     for (let i = 0, at; (at = window.voxsoft.vertexPosition(i)) !== null; i++) all.push(at[axis]);

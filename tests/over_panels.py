@@ -1,6 +1,6 @@
-"""Words of the picture that lie over what can be pressed or read beside it."""
+"""Words of the picture that lie over buttons or text beside it."""
 
-#: What lies over what, or "".
+#: Names of a word and the panel under it, or "".
 OVER_PANELS = """(() => {
   const panels = [...document.querySelectorAll(
     '.view-stage :is(.view-bar, .legend, .cube, .force-legend, .scale-bar, .badges, .picked, ' +

@@ -7,7 +7,7 @@ from typing import Any
 
 
 def run(scenario: Coroutine[Any, Any, Any], seconds: float = 60.0) -> Any:
-    """What a coroutine returns, if it does so in time."""
+    """Return the result of a coroutine, if it comes in time."""
 
     def in_thread() -> Any:
         return asyncio.run(asyncio.wait_for(scenario, seconds))

@@ -9,7 +9,7 @@ RUBBER = vs.NeoHookean(young=100 * kPa, poisson=0.45)
 BLOCK = vs.Box(size=(SIDE, SIDE, SIDE))
 PLATE = Object(
     name="plate",
-    # As wide as the block is after it has bulged, and half a millimeter above it.
+    # Width of the block after it has bulged, and half a millimeter above it.
     shape=vs.Box(size=(20 * mm, 20 * mm, 4 * mm), center=(6 * mm, 6 * mm, 14.5 * mm)),
     motion=vs.Motion(displacement=(0, 0, -PRESS - 0.5 * mm)),
 )

@@ -16,7 +16,7 @@ SPACE = {"x": (0.0, 1.0, 0.1), "y": (1, 10)}
 
 
 def block(x=0.5, y=5):
-    """A box whose size says what its parameters were."""
+    """A box whose size encodes its parameters."""
     if y == 13:
         raise DesignError("y", "13 brings bad luck")
     return Design(

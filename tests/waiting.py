@@ -1,22 +1,22 @@
-"""Waiting for what another process or thread does: the one place in the tests that sleeps."""
+"""Waiting for another process or thread: the one place in the tests that sleeps."""
 
 import time
 
-#: Seconds after which what has not come never will, however busy the machine is.
+#: Seconds after which a missing event never comes, however busy the machine is.
 PATIENCE = 120.0
 #: Seconds between two looks.
 _BETWEEN = 0.01
 
 
 def until(condition, what="what was waited for", patience=PATIENCE):
-    """Wait until a condition holds, and return what it gave.
+    """Wait until a condition holds, and return its value.
 
     Parameters
     ----------
     condition
-        Called again and again; what it gives counts once it is true.
+        Called again and again; its value counts once it is true.
     what
-        What is waited for: text, or a function that says it when nothing came.
+        Name of the awaited event: text, or a function that gives it when nothing came.
     patience
         Seconds after which the test fails.
     """

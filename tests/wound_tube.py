@@ -1,4 +1,4 @@
-"""A tube wound with fibers and closed by stiff ends, and what a thin wall would do."""
+"""A tube wound with fibers and closed by stiff ends, and the closed form of a thin wall."""
 
 import numpy as np
 from scipy.optimize import minimize
@@ -15,7 +15,7 @@ GAUGE = (20 * mm, 44 * mm)
 def wound_tube(degrees, *, modulus, pressure, wall=2 * mm, voxel=2 * mm, poisson=0.499, **fiber):
     """A tube along z about which families of fibers are wound at angles of so many degrees.
 
-    By default nearly incompressible, as the thin wall below is altogether.
+    Nearly incompressible by default, as the thin wall below is altogether.
     """
     outer = vs.Cylinder(radius=RADIUS + wall / 2, height=LENGTH)
     bore = vs.Cylinder(radius=RADIUS - wall / 2, height=LENGTH)
@@ -40,7 +40,7 @@ def wound_tube(degrees, *, modulus, pressure, wall=2 * mm, voxel=2 * mm, poisson
 
 
 def halved(design):
-    """The same design solved as a quarter; for families that the planes mirror onto each other."""
+    """The design solved as a quarter; for families that the planes mirror onto each other."""
     return design.replace(symmetry=[vs.Symmetry(plane="x"), vs.Symmetry(plane="y")])
 
 

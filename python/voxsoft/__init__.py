@@ -1,6 +1,6 @@
 """VoxSoft: describe, mesh, simulate, calibrate and optimize soft robots.
 
-What a user types every day, in one place; the rest is in ``vs.shapes``, ``vs.materials``,
+Names for everyday use, in one place; the rest is in ``vs.shapes``, ``vs.materials``,
 ``vs.metrics`` and so on. Names and modules are loaded when first used, so that ``import voxsoft``
 stays light.
 

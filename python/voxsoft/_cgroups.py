@@ -1,4 +1,4 @@
-"""What a container or a scheduler leaves of the memory: Linux' control groups, both versions.
+"""Memory left by a container or a scheduler: Linux' control groups, both versions.
 
 No library that VoxSoft builds on reads them: psutil tells of the machine and of the process.
 """
@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 
 class _Files(NamedTuple):
-    """Where a version keeps its numbers."""
+    """Files in which a version keeps its numbers."""
 
     mount: str
     limits: tuple[str, ...]
@@ -23,7 +23,7 @@ class _Files(NamedTuple):
 _SECOND: Final = _Files(
     "sys/fs/cgroup", ("memory.max", "memory.high"), "memory.current", "inactive_file"
 )
-#: Where both versions are mounted side by side, as systemd can.
+#: Mount point of version 2 where both stand side by side, as systemd can.
 _UNIFIED: Final = _SECOND._replace(mount="sys/fs/cgroup/unified")
 _FIRST: Final = _Files(
     "sys/fs/cgroup/memory",
@@ -42,7 +42,7 @@ def free_in_groups(root: Path = Path("/")) -> int | None:
     Parameters
     ----------
     root
-        Where ``proc`` and ``sys`` are mounted.
+        Mount point of ``proc`` and ``sys``.
 
     Returns
     -------

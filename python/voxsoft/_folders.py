@@ -9,11 +9,11 @@ from typing import Final
 #: Bytes of a name: file systems take 255, and endings such as ``-comparison.html`` follow.
 LONGEST: Final = 120
 
-#: Everything but letters and digits of any script, and ``. _ -``: also what is not seen, such as
-#: marks that turn the direction of writing.
+#: Everything but letters and digits of any script, and ``. _ -``: also invisible characters,
+#: such as marks that turn the direction of writing.
 _OUTSIDE: Final = re.compile(r"[^\w.-]+")
 
-#: What Windows takes for a device, whatever ending follows.
+#: Names that Windows takes for a device, with any ending.
 _DEVICE: Final = re.compile(r"(con|prn|aux|nul|conin\$|conout\$|com\d|lpt\d)(\.|$)", re.IGNORECASE)
 
 
@@ -27,7 +27,7 @@ def folder_name(name: str, otherwise: str = "design") -> str:
     name
         Any text.
     otherwise
-        What is returned where nothing is left of it.
+        Name returned where nothing is left of it.
 
     Returns
     -------

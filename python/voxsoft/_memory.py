@@ -1,4 +1,4 @@
-"""How much memory a grid or a mesh may take before it is refused."""
+"""Limit of the memory that a grid or a mesh may take before it is refused."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class _Reading:
 def memory_limit() -> int:
     """Return the bytes that can be used without swapping or being stopped.
 
-    The least of what the machine has available, what the control groups of a container or a
-    scheduler leave (:func:`voxsoft._cgroups.free_in_groups`), and what the process may still take
-    (``ulimit -v`` and ``ulimit -d``).
+    The least of the memory available on the machine, of the rest in the control groups of a
+    container or a scheduler (:func:`voxsoft._cgroups.free_in_groups`), and of the rest that the
+    process may take (``ulimit -v`` and ``ulimit -d``).
 
     Examples
     --------
@@ -50,7 +50,7 @@ def _read() -> int:
 
 
 def _free_to_process() -> Iterator[int]:
-    """What the limits of the process leave: of its address space, and of its data."""
+    """Rest under the limits of the process: of its address space, and of its data."""
     try:
         import resource
     except ImportError:  # Windows

@@ -7,7 +7,7 @@ from html import escape
 
 
 class Shown:
-    """Base of what prints as the lines that it tells of itself, the first of them alone in a list.
+    """Base of objects printed as lines of their own, the first of them alone in a list.
 
     Examples
     --------
@@ -22,7 +22,7 @@ class Shown:
     """
 
     def _lines(self) -> Iterator[str]:
-        """What to show, most important first."""
+        """Lines to show, most important first."""
         raise NotImplementedError
 
     def __str__(self) -> str:
@@ -59,7 +59,7 @@ def shortened(lines: list[str], most: int = 12) -> list[str]:
 
 
 def rounded(value: float) -> float:
-    """Round to the four digits that a glance takes in; what is left of zero is zero.
+    """Round to the four digits that a glance takes in; the rounding error of a zero becomes zero.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""One cavity of a mesh: what encloses it, and how large it is."""
+"""One cavity of a mesh: its triangles and its size."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class MeshCavity:
         Area of the triangles [m²].
     void_tets : ndarray of int32, shape (k, 4)
         Tets between corners of cut voxels whose volumes, with the parts below as factors, sum up
-        to what the cavity reaches beyond its triangles; none by default.
+        to the volume of the cavity beyond its triangles; none by default.
     void_parts : ndarray of float64, shape (k,)
         The factor of each, of either sign.
     name : str
-        What the design calls it; empty where it has no name.
+        Name in the design; empty where it has no name.
     body : str
         The name of the body that it is in; empty where there is only one.
     other_triangles : ndarray of int32, shape (t, 3), optional

@@ -1,6 +1,6 @@
 """The exception tree: every error VoxSoft raises on purpose is a :class:`VoxSoftError`.
 
-A message says where (part, shape, parameter), what came, what is allowed and what to try.
+A message gives the place (part, shape, parameter), the value, the allowed ones and a remedy.
 Errors that correspond to a standard exception inherit it too, so ``except ValueError`` works.
 """
 
@@ -16,7 +16,7 @@ _LONGEST: Final = 2_000
 
 
 def brief(text: str) -> str:
-    """Shorten what a message quotes, and a message: a formula may have 40,000 characters.
+    """Shorten a quotation in a message, or a message: a formula may have 40,000 characters.
 
     Examples
     --------
@@ -40,7 +40,7 @@ _QUOTED: Final = re.compile(r'"([^"]*)"')
 
 
 class ErrorDetail(NamedTuple):
-    """One thing that is wrong: the place, what came and is allowed, and what to try.
+    """One problem: the place, the value and the allowed ones, and a remedy.
 
     Examples
     --------
@@ -76,9 +76,9 @@ class VoxSoftError(Exception):
     where
         The place: ``"parts[0].material"``, ``"beam.toml, line 7"``.
     what
-        What came and what is allowed.
+        The value and the allowed ones.
     hint
-        What to try, in plain words; may be empty.
+        A remedy, in plain words; may be empty.
 
     Attributes
     ----------

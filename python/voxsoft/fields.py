@@ -84,7 +84,7 @@ class Fields:
     parts
         The part of each, an index into ``design.parts``, (v,).
     rigid
-        Whether that part is rigid, (v,): the stress there is that of a stiff stand-in, and
+        True where that part is rigid, (v,): the stress there is that of a stiff stand-in, and
         :meth:`percentile` leaves it out.
 
     Examples
@@ -124,7 +124,7 @@ class Fields:
         positions
             Vertices in m, (n, 3).
         rigid
-            Whether each part of the design is rigid.
+            True for each rigid part of the design.
         """
         order = np.argsort(core.blocks, kind="stable")
         found = {name: values[order] for name, values in core.measure(positions).items()}
@@ -152,7 +152,7 @@ class Fields:
 
     @cached_property
     def at_vertices(self) -> VertexFields:
-        """The same averaged on the vertices."""
+        """The fields averaged on the vertices."""
         return VertexFields(**self._core.at_vertices(self._positions))
 
     def max_stretch_slope(self, percent: float = 100.0) -> Floats:
@@ -161,7 +161,7 @@ class Fields:
         Parameters
         ----------
         percent
-            As for :meth:`percentile`. The slope is that of the one voxel that has the value.
+            See :meth:`percentile`. The slope is that of the one voxel that has the value.
 
         Returns
         -------
@@ -222,7 +222,7 @@ class Fields:
         values
             For each voxel, (k,); those that are not finite do not count, nor do rigid parts.
         percent
-            As for :meth:`percentile`.
+            See :meth:`percentile`.
         """
         if not 0.0 < percent <= 100.0:
             raise DesignError("percentile", f"{percent:g} is not above 0 and at most 100", "try 99")

@@ -49,7 +49,7 @@ def mean_rotation(
     Parameters
     ----------
     rest, positions, vertices
-        As for :func:`mean_rotation_vector`.
+        See :func:`mean_rotation_vector`.
 
     Returns
     -------
@@ -157,7 +157,8 @@ def tet_volumes(positions: NDArray[np.float64], tets: NDArray[np.int32]) -> NDAr
 def rotation_matrix(axis: ArrayLike, angle: float) -> NDArray[np.float64]:
     """The matrix of a right-handed turn about an axis through the origin.
 
-    Rodrigues' formula. What is 0 or 1 up to rounding is exact, so that quarter turns are.
+    Rodrigues' formula. Entries that are 0 or 1 up to rounding are made exact, so that quarter turns
+    are.
 
     Parameters
     ----------
@@ -183,7 +184,7 @@ def rotation_matrix(axis: ArrayLike, angle: float) -> NDArray[np.float64]:
     return exact
 
 
-#: What a turn by a right angle leaves of a zero, with room.
+#: Rounding error of a zero after a turn by a right angle, with a margin.
 _ROUNDING = 1e-15
 
 

@@ -1,4 +1,4 @@
-"""Tetrahedral meshes: what the solvers work on.
+"""Tetrahedral meshes, on which the solvers work.
 
 Long because one immutable value has its attributes, the ways to make it and its quality together.
 
@@ -32,7 +32,7 @@ class BodyMesh:
     Attributes
     ----------
     name : str
-        Of the body.
+        Name of the body.
     mesh : Mesh
         In the frame of the body, before it is turned and moved.
     rotation : ndarray of float64, shape (3, 3)
@@ -56,7 +56,7 @@ class BodyMesh:
 
     @property
     def is_along_axes(self) -> bool:
-        """Whether it is moved without a turn."""
+        """True if it is moved without a turn."""
         return bool((self.rotation == np.eye(3)).all())
 
     def placed(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -98,7 +98,7 @@ class MeshQuality:
     euler_number : int
         V - E + F - T: 1 for a ball, 0 for a solid ring, 2 for a ball with a cavity.
     conforming : bool
-        Whether the triangles are exactly the faces held by one tet, outward, and every other face
+        True if the triangles are exactly the faces held by one tet, outward, and every other face
         is held by two.
     open_edges : int
         Boundary edges that do not have a triangle on both sides; 0 if the surface is watertight.
@@ -117,7 +117,7 @@ class MeshQuality:
 
     @property
     def watertight(self) -> bool:
-        """Whether the boundary has no holes."""
+        """True if the boundary has no holes."""
         return self.open_edges == 0
 
 
@@ -126,7 +126,7 @@ class Mesh:
     """A conforming mesh of tetrahedra with its edges, its boundary and its cavities.
 
     All arrays are read-only. Make meshes with :meth:`from_tets` or
-    :meth:`voxsoft.voxels.Voxels.mesh`; the constructor trusts what it is given.
+    :meth:`voxsoft.voxels.Voxels.mesh`; the constructor does not check its arguments.
 
     Attributes
     ----------
@@ -149,11 +149,11 @@ class Mesh:
     fractions : ndarray of float64, shape (v,), or None
         The material of each voxel in volumes of a voxel; None where every voxel is full.
     moments : ndarray of float64, shape (v, 9), or None
-        Where in each voxel the material is, in halves of an edge: its center along x, y, z, counted
-        from that of the voxel, √3 times its standard deviation from there (1 if full), and the
-        means of the products yz, zx, xy over it.
+        Place of the material in each voxel, in halves of an edge: its center along x, y, z,
+        counted from that of the voxel, √3 times its standard deviation from there (1 if
+        full), and the means of the products yz, zx, xy over it.
     bodies : tuple of BodyMesh
-        What it is joined from, in the order of vertices and tets; empty for a mesh of one body.
+        Meshes it is joined from, in the order of vertices and tets; empty for a mesh of one body.
         Joined, `voxel_size` is that of the smallest voxels, and `moments` are along their edges.
     report : ReadReport or None
         The file that it was read from beside all that was taken; None if not read. Meshes with
@@ -251,7 +251,7 @@ class Mesh:
         fractions : array_like, shape (v,)
             The material of each voxel in volumes of a voxel, positive.
         moments : array_like, shape (v, 9) or (v, 6), optional
-            Where in each voxel the material is, see the attribute; default: all over. Of six, the
+            Place of the material in each voxel, see the attribute; default: all over. Of six, the
             means of the products are the products of the means.
 
         Raises
@@ -332,7 +332,7 @@ class Mesh:
         Parameters
         ----------
         numbers : ndarray of int, shape (k,)
-            Which voxels.
+            Numbers of the voxels.
 
         Returns
         -------
@@ -378,7 +378,7 @@ class Mesh:
 
     @property
     def phase(self) -> tuple[float, float, float] | None:
-        """Where the grid of its voxels lies [m], as :attr:`Voxels.phase`; None without voxels."""
+        """Phase of the grid of its voxels [m], as :attr:`Voxels.phase`; None without voxels."""
         if self.voxel_size is None or not len(self.vertices):
             return None
         return grid_phase(self.vertices[0], self.voxel_size)
@@ -436,7 +436,7 @@ class Mesh:
     def surface_volume(self) -> float:
         """Volume that the boundary encloses [m³], cavities left out.
 
-        By the divergence theorem: the sum over the triangles of a · (b × c) / 6. In a sound mesh
+        Divergence theorem: the sum over the triangles of a · (b × c) / 6. In a sound mesh
         it equals the sum of :attr:`tet_volumes`.
         """
         points = self.vertices - self.vertices.mean(axis=0)
@@ -473,7 +473,7 @@ class Mesh:
 #: Measured on a million voxels: 90.
 _QUALITY_BYTES_PER_TET = 120
 
-#: Where the material of a full voxel is.
+#: Moments of the material of a full voxel.
 _ALL_OVER: Final = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
 #: The signs of the corners of a voxel along x, y, z, in the order of :meth:`Mesh.with_voids`.
 _CORNER_SIGNS: Final = np.array([[c >> 2 & 1, c >> 1 & 1, c & 1] for c in range(8)]) * 2.0 - 1.0

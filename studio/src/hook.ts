@@ -1,4 +1,4 @@
-// What tests and measurements read of the page; nothing can be changed through it.
+// State of the page for tests and measurements; nothing can be changed through it.
 import { useStudio } from "./store/studio";
 import { viewport } from "./view/instance";
 
@@ -22,7 +22,7 @@ declare global {
       readonly ghosts: readonly string[];
       ghostBox(name: string): [number[], number[]] | null;
       screenOf(vertex: number): [number, number] | null;
-      /** How many triangles a section through the field has. */
+      /** Number of triangles of a section through the field. */
       cut(): number;
     };
   }

@@ -42,7 +42,7 @@ export const CAD_SUFFIXES = [".step", ".stp", ".p21", ".iges", ".igs", ".brep", 
 /** Why they are not read. */
 export const CAD_WHAT = "is a CAD model, whose faces are formulas: only triangles are read";
 
-/** What to do with them. */
+/** Remedy for them. */
 export const CAD_HINT = "export the part as STL or OBJ in the CAD program, or open it in FreeCAD, choose the body and take File, Export";
 
 /** Speeds of time: simulated seconds for each of the clock. */
@@ -56,21 +56,21 @@ export const CloseCode = {
   "WRONG_MESSAGES": 4002,
 } as const;
 
-/** What a binary message holds. */
+/** Kind of a binary message. */
 export const MessageKind = {
   "TOPOLOGY": 1,
   "FRAME": 2,
   "SMOOTH": 3,
 } as const;
 
-/** What is said of a frame beside its numbers. */
+/** Flags of a frame beside its numbers. */
 export const FrameFlag = {
   "PAUSED": 1,
   "DIVERGED": 2,
   "AT_REST": 4,
 } as const;
 
-/** What a topology describes. */
+/** Kind of a topology. */
 export const TopologyFlag = {
   "SURFACE": 1,
   "SHRUNK_TETS": 2,
@@ -370,7 +370,7 @@ export interface EstimateCommand {
   seq: number;
 }
 
-/** Ask what voxels half as large would cost the equilibrium that is shown. */
+/** Ask for the cost of the shown equilibrium on voxels half as large. */
 export interface FinenessCommand {
   t: "fineness";
   seq: number;
@@ -443,7 +443,7 @@ export interface VibrateCommand {
 }
 
 /**
- * What this tab shows: the field, the surface or the tetrahedra, and whether it is visible.
+ * View of this tab: the field, the surface or the tetrahedra, and whether it is visible.
  *
  * Solid is the surface with the voxels behind it, which a section shows.
  */
@@ -476,7 +476,7 @@ export interface AckCommand {
   frame: number;
 }
 
-/** Keep what is on the screen as a run folder, with its live loads and pulls. */
+/** Keep the state on the screen as a run folder, with its live loads and pulls. */
 export interface KeepCommand {
   t: "keep";
   seq: number;
@@ -505,7 +505,7 @@ export interface SpaceRange {
 }
 
 /**
- * Solve many designs. What is left out is as the design has it.
+ * Solve many designs. Entries left out are those of the design.
  *
  * `space` holds, by parameter, a range or a list of choices. `objectives` and `constraints` are
  * written as in a design file.
@@ -523,7 +523,7 @@ export interface StudySpec {
   constraints?: Record<string, Record<string, unknown>> | null;
 }
 
-/** What a column of a table holds: a quantity ("s", "dz", "x", ...; "" for nothing), a unit. */
+/** Content of a column of a table: a quantity ("s", "dz", "x", ...; "" for nothing), a unit. */
 export interface ColumnMap {
   column: string;
   quantity: string;
@@ -564,7 +564,7 @@ export interface JobStartCommand {
   spec: RunSpec | StudySpec | CalibrateSpec;
 }
 
-/** Hold a job: what has begun is finished, and nothing more begins. */
+/** Hold a job: work that has begun is finished, and nothing more begins. */
 export interface JobPauseCommand {
   t: "job_pause";
   seq: number;
@@ -578,14 +578,14 @@ export interface JobResumeCommand {
   id: string;
 }
 
-/** Stop a job; what is finished is kept. */
+/** Stop a job; finished work is kept. */
 export interface JobStopCommand {
   t: "job_stop";
   seq: number;
   id: string;
 }
 
-/** Tell what the folder of a study or calibration holds, as it was told when it ran. */
+/** Send the events in the folder of a study or calibration, as they were sent when it ran. */
 export interface JobShowCommand {
   t: "job_show";
   seq: number;
@@ -635,7 +635,7 @@ export interface CompareCommand {
   b: string;
 }
 
-/** Read a measured table and say what its columns hold. */
+/** Read a measured table and guess the contents of its columns. */
 export interface MeasurementCommand {
   t: "measurement";
   seq: number;
@@ -684,7 +684,7 @@ export interface FitRange {
   high: number;
 }
 
-/** What an objective or constraint may measure. */
+/** A metric for an objective or constraint. */
 export interface Metric {
   name: string;
   kind: string;
@@ -698,7 +698,7 @@ export interface Metric {
 /**
  * A quantity that colors the body; `signed` ones have zero in the middle of their range.
  *
- * Those of `contact` are known where a solution with contact ends.
+ * Fields of `contact` are known where a solution with contact ends.
  */
 export interface Field {
   id: number;
@@ -710,9 +710,9 @@ export interface Field {
 }
 
 /**
- * First event: what this server can do. `design_schema` is the JSON Schema of a design.
+ * First event: abilities of this server. `design_schema` is the JSON Schema of a design.
  *
- * `fit_ranges` holds by model of a material what a calibration fits.
+ * `fit_ranges` holds for each model of a material the constants that a calibration fits.
  */
 export interface HelloEvent {
   t: "hello";
@@ -740,7 +740,7 @@ export interface Robot {
   moving: string;
 }
 
-/** Where the three answers to New lead: a robot, with values of its own. */
+/** A robot, with values of its own, for the three answers to New. */
 export interface Way {
   name: string;
   drive: string;
@@ -759,7 +759,7 @@ export interface RecentFile {
   picture: string;
 }
 
-/** What the start screen shows; `fresh` while nothing was opened or changed yet. */
+/** Content of the start screen; `fresh` while nothing was opened or changed yet. */
 export interface StartEvent {
   t: "start";
   fresh: boolean;
@@ -800,7 +800,7 @@ export interface Diagnostic {
   hint: string;
 }
 
-/** What follows a history, and what a factor of 1 is of it, such as "30 kPa". */
+/** An entry that uses a history, and the value of a factor of 1, such as "30 kPa". */
 export interface HistoryUse {
   title: string;
   amount: string;
@@ -830,7 +830,7 @@ export interface HistoryLine {
 /**
  * The document as it stands; `design` is that of the last text that was good (or null).
  *
- * `dirty`: it differs from what was opened or saved last. `folder` is where it would be saved.
+ * `dirty`: it differs from the text opened or saved last. `folder` is where it would be saved.
  * `histories` are those of the last text that was good.
  */
 export interface DocumentEvent {
@@ -870,7 +870,7 @@ export interface DesignFilesEvent {
 }
 
 /**
- * What is known of a material, SI; null and "" where nobody stated it.
+ * Data of a material, SI; null and "" where nobody stated it.
  *
  * `same_as` and `choice` are of a plain name: the card that it stands for, and why. `tested_from`
  * and `tested_to` are the stretches between which specimens were tested. `stress_at_double` is the
@@ -903,7 +903,7 @@ export interface MaterialFacts {
 /**
  * All materials that a part can have: those of the design at `rev`, then the cards.
  *
- * `mixed` says what is special where parts are of spring lattices and of rubber; "" elsewhere.
+ * `mixed` describes effects of parts of spring lattices and of rubber together; "" elsewhere.
  */
 export interface MaterialsEvent {
   t: "materials";
@@ -912,7 +912,7 @@ export interface MaterialsEvent {
   mixed: string;
 }
 
-/** Where the frame of a body is: its origin in m, and its rotation, nine numbers by rows. */
+/** Frame of a body: its origin in m, and its rotation, nine numbers by rows. */
 export interface BodyPose {
   position: Triple;
   rotation: number[];
@@ -959,7 +959,7 @@ export interface Leak {
   point: Triple;
 }
 
-/** What a check found; `at` is a point of the unloaded body in m where it is seen. */
+/** A finding of a check; `at` is a point of the unloaded body in m where it is seen. */
 export interface Finding {
   severity: "error" | "note" | "warning";
   where: string;
@@ -979,7 +979,7 @@ export interface BodyClamp {
 /**
  * A load with the range of its slider; value / factor is the number to show with `unit`.
  *
- * `kind` is that of the load in a design, `quantity` what its size is.
+ * `kind` is that of the load in a design, `quantity` that of its size.
  */
 export interface BodyLoad {
   index: number;
@@ -1025,7 +1025,7 @@ export interface BodyPlace {
 }
 
 /**
- * What is attached to the body: the places that it joins, in turn.
+ * An attachment of the body: the places that it joins, in turn.
  *
  * `load` is the index of the load that pulls it; null where nothing does.
  */
@@ -1118,7 +1118,7 @@ export interface BodyEvent {
 /**
  * A spring that pulls: force in N on the body, distance to its target in m.
  *
- * Where it holds an object, that is its place among those of the body, and `vertex` means nothing.
+ * If it holds an object, that is its place among those of the body, and `vertex` means nothing.
  */
 export interface GrabState {
   id: number;
@@ -1131,12 +1131,12 @@ export interface GrabState {
 }
 
 /**
- * Where the simulation stands. Times in s, `step_ms` in ms for one substep, energies in J.
+ * State of the simulation. Times in s, `step_ms` in ms for one substep, energies in J.
  *
- * `real_time_factor` is simulated over wall-clock time, and `pace` what it shall be at most;
- * `pace_chosen` is what the user chose, or null, and `pace_choices` how often there was a choice
- * for this body. Stored frames run from `first_frame` to `last_frame`. `untimed`: what is shown
- * was found without time, and `time` is that of what was played before.
+ * `real_time_factor` is simulated over wall-clock time, and `pace` its upper limit;
+ * `pace_chosen` is the user's choice, or null, and `pace_choices` the number of choices
+ * for this body. Stored frames run from `first_frame` to `last_frame`. `untimed`: the shown state
+ * was found without time, and `time` is that of the motion played before.
  */
 export interface StatEvent {
   t: "stat";
@@ -1211,12 +1211,12 @@ export interface Summarized {
 }
 
 /**
- * Whether a free object is held at the end of a run, also in a sentence.
+ * Grip on a free object at the end of a run, also in a sentence.
  *
- * `held` only by what moves or is soft; `slips` where more slips than sticks; `touched` while it
- * still stands on something fixed; `lost` where nothing presses it. `rise` is how far it went up
- * in m, `pressed` what presses it in N, `weight` its weight in N, null without gravity, and
- * `margin` the friction that there can be over that which there is, null without any.
+ * `held` only by moving or soft things; `slips` where more slips than sticks; `touched` while it
+ * still stands on something fixed; `lost` where nothing presses it. `rise` is the way up
+ * in m, `pressed` the force that presses it in N, `weight` its weight in N, null without gravity,
+ * and `margin` the largest possible friction over the present one, null without any.
  */
 export interface Grip {
   name: string;
@@ -1229,13 +1229,13 @@ export interface Grip {
 }
 
 /**
- * The numbers of the state that `frame` shows, and what is doubtful about it.
+ * The numbers of the state that `frame` shows, and its doubtful points.
  *
  * `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
  * `error_bars` says where error bars come from, or why there are none; told a second time once
  * they are known. `looking` while they are being looked for, and `askable` where none were found
- * and smaller voxels could still give them. `missing` is what of a state that was stored is not
- * there, in a sentence; empty where all is.
+ * and smaller voxels could still give them. `missing` names the parts of a stored state that are
+ * not there, in a sentence; empty where all is.
  */
 export interface EquilibriumEvent {
   t: "equilibrium";
@@ -1267,7 +1267,7 @@ export interface TextChange {
 }
 
 /**
- * What voxels half as large would cost the equilibrium that is shown, and how to have them.
+ * Cost of the shown equilibrium on voxels half as large, and the way to have them.
  *
  * Sizes in m, memory in bytes, `seconds` of the solution, null where no solver found the state.
  * `halving` makes the voxels half as large; where it is empty `not_halved` says why. Parts of
@@ -1299,7 +1299,7 @@ export interface FinenessEvent {
  *
  * `mode` is the one that is drawn, from 0, `amplitude` how far it is drawn in m, and `period` how
  * long a drawn swing takes in s. While they are looked for there are none; `trouble` says why
- * there are none, and `hint` what to do.
+ * there are none, and `hint` is the remedy.
  */
 export interface VibrationEvent {
   t: "vibration";
@@ -1321,7 +1321,7 @@ export interface ChamberCurve {
   flow: number[];
 }
 
-/** What supplies did in the motion that is shown, at instants in s; empty where nothing did. */
+/** State of supplies in the shown motion, at instants in s; empty where nothing happened. */
 export interface ChambersEvent {
   t: "chambers";
   topology: number;
@@ -1329,14 +1329,14 @@ export interface ChambersEvent {
   chambers: ChamberCurve[];
 }
 
-/** Where a body is in itself: how deep in m, and a point of it unloaded and now, m. */
+/** A place where a body is in itself: its depth in m, and a point of it unloaded and now, m. */
 export interface OverlapPlace {
   depth: number;
   rest: Triple;
   now: Triple;
 }
 
-/** Where the body is in itself as it is shown, the deepest place first; none where it is not. */
+/** Places where the shown body is in itself, the deepest one first; none where it is not. */
 export interface OverlapEvent {
   t: "overlap";
   topology: number;
@@ -1345,14 +1345,14 @@ export interface OverlapEvent {
   places: OverlapPlace[];
 }
 
-/** Where an object is: the middle of its box in m, and its rotation, nine numbers by rows. */
+/** Pose of an object: the middle of its box in m, and its rotation, nine numbers by rows. */
 export interface ObjectPose {
   position: Triple;
   rotation: number[];
 }
 
 /**
- * What touches what: the force on the first in N, the area in m² and the smallest gap in m.
+ * A pair in contact: the force on the first in N, the area in m² and the smallest gap in m.
  *
  * `pressed` is the sum of the sizes of all forces, and `slipping` the part of it that slips.
  * `friction` is the size of that part of the force and `bound` the most that it can be, in N;
@@ -1370,7 +1370,7 @@ export interface Touch {
 }
 
 /**
- * A frame of a solution: its time in s, the pose of each object of the body, what touches.
+ * A frame of a solution: its time in s, the pose of each object of the body, its contacts.
  *
  * `fields` tells whether the fields of contact are known of it. `depth` is how deep surfaces are
  * in each other in m, where that is more than live contact should let them.
@@ -1384,14 +1384,14 @@ export interface Moment {
   depth: number | null;
 }
 
-/** What is known of stored frames beside their pictures; replaces what was known before. */
+/** Data of stored frames beside their pictures; replaces those known before. */
 export interface MomentsEvent {
   t: "moments";
   topology: number;
   moments: Moment[];
 }
 
-/** What touches in the newest frame of a body that moves; adds to what was known before. */
+/** Contacts in the newest frame of a body that moves; adds to those known before. */
 export interface MomentNewsEvent {
   t: "moment";
   topology: number;
@@ -1430,7 +1430,7 @@ export interface PickedEvent {
 }
 
 /**
- * Where a job stands: `done` of `total` designs, generations or what else `of` says.
+ * State of a job: `done` of `total` designs, generations or other units, named in `of`.
  *
  * `left` is the time that these will still take in s, `best` a short text.
  */
@@ -1532,7 +1532,7 @@ export interface PathEvent {
   message: string;
 }
 
-/** A constant that was fitted; `sentence` tells what the data say about it. */
+/** A constant that was fitted; `sentence` gives the information of the data about it. */
 export interface FittedParameter {
   name: string;
   value: number;
@@ -1570,7 +1570,7 @@ export interface CalibratedEvent {
 }
 
 /**
- * How a job can be done again: a script, and a command where the options allow it (else "").
+ * Ways to repeat a job: a script, and a command where the options allow it (else "").
  *
  * `version` is that of the VoxSoft which did it; "" while it has not ended.
  */
@@ -1603,7 +1603,7 @@ export interface RunRow {
   again: boolean;
 }
 
-/** The list of runs, newest first; `trash` holds what can be restored. */
+/** The list of runs, newest first; `trash` holds those that can be restored. */
 export interface RunsEvent {
   t: "runs";
   rows: RunRow[];
@@ -1714,14 +1714,14 @@ export interface DifferentLine {
   after: number | null;
 }
 
-/** How the document came from a version to what it is; null where that is too long to tell. */
+/** Changes from a version to the present document; null where they are too long to list. */
 export interface VersionDifferenceEvent {
   t: "version_difference";
   id: string;
   lines: DifferentLine[] | null;
 }
 
-/** What could not be done, and what to try. `seq` is the command's, or 0. */
+/** A failure, and a remedy. `seq` is the command's, or 0. */
 export interface ErrorEvent {
   t: "error";
   seq: number;

@@ -12,7 +12,7 @@ PACKAGE = Path(voxsoft.__file__).parent
 
 
 def test_the_border_is_typed():
-    """What is left is the live player's, which has its own way across."""
+    """Remaining untyped values are the live player's, which has its own way across."""
     text = (PACKAGE / "_core.pyi").read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if "dict[str, Any]" in line]
     assert all("def advance" in line for line in lines)

@@ -1,4 +1,4 @@
-"""What the documents promise exists."""
+"""Files, commands and links named in the documents exist."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""Names that a package loads when first used, and what it shows of itself."""
+"""Names that a package loads when first used, and its list of names."""
 
 import importlib
 import subprocess
@@ -34,7 +34,7 @@ def test_a_package_shows_its_public_names_and_nothing_else(name):
 
 
 def test_the_package_itself_has_at_most_eighty_names():
-    """What is typed every day; the rest is in its modules."""
+    """Names for everyday use; the rest is in its modules."""
     voxsoft = importlib.import_module("voxsoft")
     assert len(voxsoft.__all__) <= 80
     assert len(set(voxsoft.__all__)) == len(voxsoft.__all__)

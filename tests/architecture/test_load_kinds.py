@@ -20,7 +20,7 @@ ALLOWED = {"simulation/derivatives/loaded_state.py": 1}
 
 
 def asks(node):
-    """Whether an expression asks of which kind a load, or an action of one, is."""
+    """Check if an expression asks for the kind of a load, or of an action of one."""
     match node:
         case ast.Call(func=ast.Name(id="isinstance"), args=[_, kinds]):
             return bool(NAMES & {n.id for n in ast.walk(kinds) if isinstance(n, ast.Name)})

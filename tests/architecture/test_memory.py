@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 CRATES = Path(__file__).parents[2] / "crates"
-#: What lets shared data change.
+#: Types that let shared data change.
 INTERIOR = re.compile(
     r"\b(?:Mutex|RwLock|RefCell|OnceCell|OnceLock|LazyCell|LazyLock|UnsafeCell|Atomic\w+|Cell<)"
 )

@@ -7,7 +7,7 @@ from pathlib import Path
 PACKAGE = Path(__file__).parents[2] / "python" / "voxsoft"
 BRIDGE = PACKAGE / "search" / "optuna_bridge.py"
 FILES = sorted(PACKAGE.rglob("*.py"))
-#: What others may import: what suggests and what is suggested, which store nothing.
+#: Modules that others may import: samplers and distributions, which store nothing.
 OPEN = ("optuna.distributions", "optuna.samplers")
 #: Files that also use the module itself, for its samplers and their warnings, or in types alone.
 SAMPLERS = {"search/samplers.py", "search/genetic_sampler.py", "search/gradient_sampler.py"}

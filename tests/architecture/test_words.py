@@ -1,4 +1,4 @@
-"""One word for each thing, in American spelling: what docs/reference/words.md retires stays away.
+"""One word for each thing, in American spelling: words retired in docs/reference/words.md stay out.
 
 python tests/architecture/test_words.py   # rewrites British spelling where it stands
 """
@@ -55,7 +55,7 @@ _WORD = re.compile(rf"(?<![A-Za-z])(?:{'|'.join(WORDS)})(?![a-z])", re.IGNORECAS
 _ISE = re.compile(
     r"(?:(?<![A-Za-z\\])[a-z]|[A-Z])[a-z]*?is(?=(?:e|es|ed|er|ers|ing|ation|ations|able|ability)(?![a-z]))"
 )
-#: What ends in -ise, -ised, … and is spelled so in America too.
+#: Words that end in -ise, -ised, … and are spelled so in America too.
 _ISE_STAYS = re.compile(
     r"(?:ra|r|no|po|prom|comprom|prec|conc|prem|surpr|adv|dev|rev|superv|telev|improv|exerc"
     r"|exc|comp|compr|disgu|gu|w|ar|appra|pra|m|dem|expert|enterpr|franch|parad|treat|merchand"
@@ -64,7 +64,7 @@ _ISE_STAYS = re.compile(
     re.IGNORECASE,
 )
 
-#: What is not ours to spell: names of files, of columns in them, of others' interfaces.
+#: Text that is not ours to spell: names of files, of columns in them, of others' interfaces.
 FOREIGN = re.compile(
     r"Optimising Soft Robot Designs"  # the paper's title
     r"|top_centre_uz_mm"  # a column of tests/data
@@ -97,7 +97,7 @@ def tracked():
 
 
 def american(text):
-    """The text in American spelling; what is foreign stays."""
+    """The text in American spelling; foreign text stays."""
     foreign = [found.span() for found in FOREIGN.finditer(text)]
 
     def stays(found):
@@ -167,9 +167,9 @@ def test_the_rewriting_keeps_capitals_and_names(british, expected):
 
 # --- Retired words --------------------------------------------------------------------------------
 
-#: Where a retired word has its ordinary use: a file, and what stands around the word there.
+#: Ordinary uses of retired words: a file, and the text around the word there.
 ORDINARY = {
-    # ask and tell are what Optuna, and any search like it, calls the two halves of a trial.
+    # ask and tell are the names, in Optuna and any search like it, of the two halves of a trial.
     "tell": r"[\w.]*\btell\(|:meth:`tell`|_tell\b",
     # An element of VTK's XML files.
     "piece": r"findall\(\"Piece\"\)",
@@ -177,7 +177,7 @@ ORDINARY = {
 
 
 def rows():
-    """Each retired word of the table with what it is now, and where it is retired."""
+    """Each retired word of the table with its present name, and the scope of the ban."""
     page = (ROOT / "docs/reference/words.md").read_text(encoding="utf-8")
     table = re.findall(r"^\| (`.*) \| (.*) \| (all|text|names) \|$", page, re.MULTILINE)
     return [
@@ -194,7 +194,7 @@ def apart(text):
 
 @cache
 def messages(path, text):
-    """What of a file a user may read: documents whole, of Python its text between quotes."""
+    """Text of a file that a user may read: documents whole, of Python its text between quotes."""
     if path.suffix == ".md":
         return text
     if path.suffix != ".py" or "python/voxsoft" not in path.as_posix():
@@ -230,7 +230,7 @@ def small(text):
     return re.sub(r"\s+", " ", apart(text)).lower()
 
 
-#: What of a file each scope of the table reads.
+#: Parts of a file that each scope of the table reads.
 SCOPES = {"all": lambda _, text: apart(text), "text": messages, "names": names}
 
 
@@ -260,7 +260,7 @@ def test_parts_of_identifiers_are_words():
     assert apart("may_fly mayFly") == "may fly may Fly"
 
 
-def test_names_are_read_without_what_surrounds_them():
+def test_names_are_read_without_their_surroundings():
     python = 'toldAt = f"said {x}"  # said\n'
     assert names(Path("a.py"), python).split() == ["told", "At"]
     rust = 'let was_told = "said \\" said"; // said\n'

@@ -31,9 +31,9 @@ def test_a_block_under_a_plate_has_the_stress_of_the_closed_form():
     answer = run_calculix(BrickModel.of(Setup.of(design)))
     force = -stress * (12 * mm) ** 2
     # The penalty leaves 0.385 E/(1000 E/4 mm) = 0.0015 mm of the way of 1.2 mm, 0.13 %, and the
-    # stress grows by 1.1 times what the way does; the rest is the tolerance of the residual.
+    # stress grows by 1.1 times the growth of the way; the rest is the tolerance of the residual.
     assert answer.contacts["plate"][2] == pytest.approx(-force, rel=2e-3)
-    # What holds the plate and what holds the block are one force.
+    # The forces that hold the plate and the block are one.
     held = answer.reaction
     assert held[2] == pytest.approx(force, rel=2e-3)
     np.testing.assert_allclose(held, -answer.contacts["plate"], atol=1e-4 * force)
@@ -56,7 +56,7 @@ def slid(friction):
 
 
 @pytest.mark.slow
-def test_what_slides_has_the_friction_of_coulomb_in_both():
+def test_sliding_has_coulomb_friction_in_both():
     found = compare(slid(0.1), solvers=["statics"], voxel_sizes=[], splits=[1, 2])
     own, outside = found.base, found.yardstick
     assert own.ok

@@ -22,7 +22,7 @@ def with_material(design, material):
 
 
 @pytest.mark.parametrize("method", ["xpbd", "statics"])
-def test_lanes_find_what_single_solvers_do(method):
+def test_lanes_agree_with_single_solvers(method):
     """Relaxation leaves 1e-6 of the load, which a slender beam shows as some 1e-5 of its sag."""
     setup = Setup.of(beam())
     materials = [Lattice(edge=edge, bulk=3 * edge, density=1300.0) for edge in EDGES]

@@ -55,7 +55,7 @@ def run_in_node(tmp_path, scene, seconds):
 
 
 def played(scene, seconds, commands, **options):
-    """The same by the native player."""
+    """Events of the native player for the same scene."""
     player = scene.play(**options)
     for command in commands:
         player.command(json.dumps(command).encode())
@@ -64,7 +64,7 @@ def played(scene, seconds, commands, **options):
     return player, {key: stat[key] for key in stat if key not in OF_THE_CLOCK}
 
 
-#: What is measured by the clock, and what the runner leaves out.
+#: Numbers measured by the clock, and numbers that the runner leaves out.
 OF_THE_CLOCK = {"step_ms", "real_time_factor", "topology"}
 
 

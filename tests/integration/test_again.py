@@ -1,4 +1,4 @@
-"""``voxsoft again``: every kind of job is repeated to the same bits, and what differs is told."""
+"""``voxsoft again``: every kind of job is repeated to the bit, and differences are reported."""
 
 import json
 import os
@@ -83,7 +83,7 @@ def tampered(file, before, after):
         ),
     ],
 )
-def test_a_job_is_repeated_to_the_same_bits_also_from_a_folder_that_was_moved(job):
+def test_a_job_is_repeated_to_the_same_bits_from_a_moved_folder(job):
     first = printed(*job, "--out", "first")
     Path("elsewhere").mkdir()
     shutil.move("first", "elsewhere/moved")
@@ -118,7 +118,7 @@ def test_a_study_that_was_resumed_is_repeated_the_way_it_went():
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-def test_a_study_that_was_interrupted_keeps_its_tables_and_is_repeated_once_it_is_done():
+def test_an_interrupted_study_keeps_its_tables_and_is_repeated_once_done():
     command = [sys.executable, "-c", SCRIPT, "sweep", str(CYLINDER)]
     command += ["--out", "s", "--workers", "1"]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
@@ -136,7 +136,7 @@ def test_a_study_that_was_interrupted_keeps_its_tables_and_is_repeated_once_it_i
     assert Path("s", JOB).is_file()
     kept = len(Path("s", "table.csv").read_text().splitlines()) - 1
     assert 3 <= kept < 105
-    # What is there is less than the whole study: a repetition says so.
+    # The folder holds less than the whole study: a repetition says so.
     assert printed("again", "s", code=DIFFERS)["trials"] == 105
     done("sweep", CYLINDER, "--out", "s", "--workers", "2")
     assert printed("again", "s")["same"]
@@ -181,7 +181,7 @@ def meshed(tmp_path):
 def test_meshes_and_cards_go_with_the_folder(meshed):
     done("run", meshed / "design.toml", "--out", "r")
     done("sweep", meshed / "design.toml", "--out", "s", "--workers", 1)
-    # Where they came from does not count any more, nor does where the folders were made.
+    # Their first place does not count any more, nor does the place where the folders were made.
     meshed.rename(meshed.parent / "gone")
     for name in ("r", "s"):
         shutil.move(name, f"moved-{name}")
@@ -278,7 +278,7 @@ def test_a_parameter_that_was_changed_is_reported(fit):
     ("folder", "file"),
     [("beam", "inputs/design.toml"), ("fit", "design.toml"), ("fit", "measured/1.csv")],
 )
-def test_what_went_into_a_job_must_be_as_it_was(folder, file, request):
+def test_inputs_of_a_job_must_be_unchanged(folder, file, request):
     request.getfixturevalue(folder)
     with Path(folder, file).open("a") as text:
         text.write("# a word\n")
@@ -305,7 +305,7 @@ def test_a_run_that_never_came_to_rest_is_the_same_again():
     assert printed("again", "r")["status"] == "not-at-rest"
 
 
-def test_what_cannot_be_repeated_is_reported(beam):
+def test_a_job_that_cannot_be_repeated_is_reported(beam):
     Path("empty").mkdir()
     assert "holds no job.toml" in done("again", "empty", code=INVALID).stderr
     assert "is not empty" in done("again", beam, "--out", beam, code=5).stderr

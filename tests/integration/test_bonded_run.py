@@ -67,7 +67,7 @@ def test_a_body_in_contact_is_soft_at_a_probe_and_has_slopes_of_its_own(tmp_path
     assert result.fields.max_stretch_slope().shape == result.positions.shape
 
 
-def test_what_cannot_be_written_after_the_numbers_costs_no_numbers(tmp_path):
+def test_a_failed_write_after_the_numbers_keeps_the_numbers(tmp_path):
     (tmp_path / "out" / "result.vtu").mkdir(parents=True)
     out, done = run(tmp_path, "--json")
     assert done.exit_code == 5, done.output

@@ -1,4 +1,4 @@
-"""Every verb of the command line: what it writes, prints and returns."""
+"""Every verb of the command line: its files, its output and its exit code."""
 
 import json
 import subprocess
@@ -64,7 +64,7 @@ def test_new_writes_a_commented_design_that_checks(template):
     assert printed("check", "mine.toml")["valid"]
 
 
-def test_new_keeps_what_is_there():
+def test_new_keeps_existing_files():
     assert call("new", "mine").exit_code == 0
     Path("mine.toml").write_text("kept")
     outcome = call("new", "mine")
@@ -96,7 +96,7 @@ def test_check_prints_figures_and_findings():
     assert "cavity 0: 32.5 mL" in words.stderr
 
 
-def test_check_says_what_is_wrong_and_returns_3():
+def test_check_reports_faults_and_returns_3():
     report = printed(
         "check", CYLINDER, "--set", "wall=25 mm", "--set", "parameters.wall.max=25 mm", code=3
     )
@@ -218,7 +218,7 @@ def test_calibration_by_gradients_finds_the_modulus_of_a_beam():
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     # The two solvers agree within 0.5 % on ten designs, and stay far below that on one element.
-    # The search alone: a simplex follows it, and would fix what wrong slopes leave.
+    # The search alone: a simplex follows it, and would fix errors of wrong slopes.
     assert found["search"]["parameters"]["young"] == pytest.approx(30e3, rel=5e-3)
     assert (found["method"], found["settings"]["solver"]) == ("gradient", "statics")
     # A search that knows no slopes takes 30 for its first generation alone.
@@ -271,7 +271,7 @@ def test_export_of_a_run():
         ([".", "a.stl"], "no run folder"),
     ],
 )
-def test_export_says_what_is_not_possible(arguments, words):
+def test_export_reports_impossible_requests(arguments, words):
     outcome = call("export", *arguments)
     assert outcome.exit_code == 3
     assert words in outcome.stderr

@@ -1,4 +1,4 @@
-"""The same fault gives the same exit code in every verb, and a message in words."""
+"""One fault gives one exit code in every verb, and a message in words."""
 
 import contextlib
 import json
@@ -27,7 +27,7 @@ TENSILE = "strain,stress_kPa\n" + "".join(f"{s / 50},{s * 1.4}\n" for s in range
 
 QUICK = ["design.toml", "--outside", "none", "--voxel-sizes", "none", "--splits", "1"]
 
-#: How each verb is told where to write, after DESIGN and what else it needs.
+#: Option for the output of each verb, after DESIGN and its other arguments.
 OUT = {
     "mesh": ["design.toml", "--out", "OUT/body.vtu"],
     "run": ["design.toml", "--out", "OUT"],
@@ -79,7 +79,7 @@ def files_of_at_most(size):
 
 @pytest.mark.skipif(not hasattr(resource, "RLIMIT_FSIZE"), reason="no limit on files here")
 @pytest.mark.parametrize("verb", OUT)
-def test_what_cannot_be_written_for_want_of_room_is_5(verb):
+def test_a_full_disk_exits_with_5(verb):
     Path("out").mkdir()
     arguments = [argument.replace("OUT", "out") for argument in OUT[verb]]
     # 300 bytes hold a semaphore of Python's, but none of the files.
@@ -105,7 +105,7 @@ def test_a_folder_that_cannot_be_made_is_5(verb):
     ],
     ids=["invalid", "no-toml", "card"],
 )
-def test_what_is_not_valid_is_3(verb, content, words):
+def test_invalid_input_exits_with_3(verb, content, words):
     Path("wrong.toml").write_text(content, encoding="utf-8")
     assert_reported(call(verb, ["wrong.toml", *more(verb)]), 3, words)
 

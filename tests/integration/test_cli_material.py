@@ -41,7 +41,7 @@ def test_a_fit_leaves_a_card_that_a_design_can_use():
     card = load_card_file(answer["card"])
     best = next(m for m in answer["models"] if m["name"] == answer["recommended"])
     assert card.material.young() == pytest.approx(best["young"]["value"], rel=1e-5)
-    # The same 30 rows fitted elsewhere give 45 to 57 kPa, by model and treatment of the toe.
+    # These 30 rows fitted elsewhere give 45 to 57 kPa, by model and treatment of the toe.
     assert 45e3 < card.material.young() < 57e3
     assert answer["curves"][0]["strain"][1] <= 1.5
     table = tomllib.loads(Path(answer["card"]).read_text(encoding="utf-8"))["material"]

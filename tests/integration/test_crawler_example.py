@@ -15,7 +15,7 @@ def crawled(friction, **settings):
 
 
 def middle(result):
-    """How far the center of mass has gone forward; all is of one material, in m."""
+    """Way of the center of mass forward; all is of one material, in m."""
     rest = result.mesh.vertices
     tets = result.mesh.tets
     corners = rest[tets]
@@ -31,7 +31,7 @@ def test_the_rear_bends_and_the_front_holds_by_friction(friction):
     rear, front = result.probes["rear"][0], result.probes["front"][0]
     assert rear > 1 * mm
     if friction:
-        # What sticks stays, to a hundredth of the way of what slides: its flat half shears.
+        # A sticking foot stays, to a hundredth of the way of a sliding one: its flat half shears.
         assert abs(front) < 0.01 * rear
         assert middle(result) > 0.05 * rear
     else:

@@ -21,7 +21,7 @@ def gallery():
 
 @pytest.fixture
 def magnetic(gallery, tmp_path, monkeypatch):
-    """What is made for the robot that is solved soonest."""
+    """Files made for the robot that is solved soonest."""
     monkeypatch.setattr(gallery, "MADE", tmp_path)
     entry = next(each for each in gallery.ENTRIES if each.name == "magnetic_gripper")
     return entry, *gallery.made(entry)
@@ -49,7 +49,7 @@ def test_a_robot_is_shown_with_live_page_command_figure_and_text(gallery, magnet
     assert "    voxsoft run examples/magnetic_gripper.toml\n" in text
     assert " ± " in text
     assert "name = &quot;magnetic gripper&quot;" in text
-    # What is there is not made again.
+    # Existing files are not made again.
     before = page.stat().st_mtime_ns
     gallery.made(entry)
     assert page.stat().st_mtime_ns == before

@@ -1,4 +1,4 @@
-"""The examples that grip: what they hold, they hold with its weight."""
+"""The examples that grip: the held objects are held with their weight."""
 
 import numpy as np
 import pytest
@@ -67,7 +67,7 @@ def test_three_fingers_lift_a_can_and_hold_it():
     # In balance to 1e-7 of the forces that act; it swings by less than a hundredth of its weight.
     assert sum(each.force[2] for each in held) == pytest.approx(-0.01 * GRAVITY, rel=0.01)
     positions = result.recording.objects["can"][0]
-    # The flange goes up by 10 mm; the fingers sag by the weight of what they hold.
+    # The flange goes up by 10 mm; the fingers sag by the weight of the object.
     assert positions[-1, 2] - positions[0, 2] == pytest.approx(10 * mm, abs=0.5 * mm)
     assert not result.penetration.overlaps
 
@@ -79,6 +79,6 @@ def test_fingers_lift_a_cube_and_hold_it(time_step):
     assert result.status == "ok"
     assert gripped(result, "cube").force[2] == pytest.approx(-0.05 * GRAVITY, rel=0.01)
     positions = result.recording.objects["cube"][0]
-    # The flange goes up by 50 mm; the fingers sag by the weight of what they hold.
+    # The flange goes up by 50 mm; the fingers sag by the weight of the object.
     assert positions[-1, 2] - positions[0, 2] == pytest.approx(50 * mm, abs=3 * mm)
     assert not result.penetration.overlaps

@@ -47,7 +47,7 @@ def test_a_gripper_in_its_ball_and_in_itself_is_reported():
         assert abs(x) <= 0.0375
         assert abs(y) <= 0.01
         assert -0.06 <= z <= 0.0
-    # Both fingers are one another's image, and so is what is said of them.
+    # Both fingers are one another's image, and so are their reports.
     depths = [
         each["what"].split(" near")[0]
         for each in reported["warnings"]

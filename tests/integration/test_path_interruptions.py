@@ -93,7 +93,7 @@ def solved(monkeypatch):
 def test_a_path_that_is_killed_half_way_goes_on(tmp_path, solved, signal_name):
     folder, whole, over = tmp_path / "killed", tmp_path / "whole", OVER["beam"]
     file = killed(BEAM, folder, signal_name)
-    # Three equilibria and the head: what was found is there, and so is what to do.
+    # Three equilibria and the head: the results are there, and so is the remedy.
     assert len((folder / "path.csv").read_text().splitlines()) == 4
     assert (folder / "job.toml").exists()
     assert len(list((folder / FOLDER).iterdir())) == 3
@@ -132,7 +132,7 @@ def test_contact_goes_its_way_again_to_the_same_table(tmp_path, solved):
     assert (folder / "path.csv").read_bytes() == (whole / "path.csv").read_bytes()
 
 
-def test_where_a_path_is_reached_is_shown(tmp_path):
+def test_the_reached_part_of_a_path_is_shown(tmp_path):
     file = tmp_path / "beam.toml"
     vs.save(BEAM, file)
     done = follow(file, tmp_path / "run", OVER["beam"])

@@ -11,7 +11,7 @@ SMALL = ["chambers=2", "room=6 mm", "width=12 mm"]
 
 
 def run(*words):
-    """What `run --json` says of the example."""
+    """Output of `run --json` for the example."""
     call = ["run", "examples/pneunet_contact.toml", "--json", "--error", "off"]
     for word in words:
         call += ["--set", word]

@@ -79,7 +79,7 @@ def test_a_real_mesh_becomes_a_sound_body(specimen, cells):
     try:
         voxels = voxels_of(specimen, cells)
     except ShapeError as error:
-        # A wall thinner than a voxel may lie between all centers, and that is what is said.
+        # A wall thinner than a voxel may lie between all centers, and the message says so.
         assert "no cell of" in str(error)  # noqa: PT017
         assert "smaller voxel_size" in str(error)  # noqa: PT017
         assert cells < CELLS_ALONG[-1]

@@ -129,7 +129,7 @@ def test_two_runs_of_one_study_at_once_are_refused(start):
 
 
 @pytest.mark.slow
-def test_a_full_disk_names_the_file_and_what_was_finished_stays(start):
+def test_a_full_disk_names_the_file_and_keeps_finished_work(start):
     import resource
 
     def small_disk():

@@ -1,4 +1,4 @@
-"""Studies on worker processes, a broken executor and a Dask cluster: who dies, and what is lost."""
+"""Studies on worker processes, a broken executor and a Dask cluster: lost workers and trials."""
 
 import multiprocessing
 import os
@@ -102,7 +102,7 @@ def test_an_executor_and_a_scheduler_exclude_each_other(make):
 
 
 def test_a_pool_that_breaks_while_it_starts_a_worker_is_replaced(monkeypatch):
-    """As Python's pool does it: its pipes are closed when the new worker would take them."""
+    """Python's pool breaks so: its pipes are closed when the new worker would take them."""
 
     def closed(*_):
         raise OSError("handle is closed")

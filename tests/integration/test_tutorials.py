@@ -1,4 +1,4 @@
-"""The documents' pages, executed: every block runs, in order, and prints what the page says.
+"""The documents' pages, executed: every block runs, in order, and prints the text of the page.
 
 On a page, ``toml`` and ``csv`` blocks with a title are written as files, ``python`` blocks run in
 one namespace, the ``$`` lines of ``console`` blocks run in a shell. A ``text`` block, and the other
@@ -68,7 +68,7 @@ SHOWN = {
 }
 FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 KNOWN = {"python", "console", "text", "toml", "csv", "sh", "yaml"}
-#: What a long command says of its progress when it has no terminal; a page leaves it out.
+#: Progress of a long command when it has no terminal; a page leaves it out.
 PROGRESS = re.compile(r"^[\w ]+: \d+/\d+, .*\n", re.MULTILINE)
 OUTPUT = doctest.OutputChecker()
 LOOSE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
@@ -93,7 +93,7 @@ def assert_prints(expected, got, where):
 
 
 def run_python(block, namespace, where):
-    # As many lines before the code as on the page, so that a traceback names the page's line.
+    # Blank lines before the code, as many as on the page: a traceback names the page's line.
     code = compile("\n" * block.line + block.text, where, "exec")
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
@@ -102,7 +102,7 @@ def run_python(block, namespace, where):
 
 
 def run_console(block, where):
-    """Run each ``$`` line; the lines up to the next one are what it prints."""
+    """Run each ``$`` line; the lines up to the next one are its output."""
     commands = re.split(r"^\$ ", block.text, flags=re.MULTILINE)
     assert not commands[0], f"{where}: a console block starts with '$ '"
     for command in commands[1:]:
@@ -114,7 +114,7 @@ def run_console(block, where):
 
 
 def needs_a_shell(line):
-    """Whether a line does more than call the command with words."""
+    """Check if a line does more than call the command with words."""
     words = shlex.shlex(line, posix=True, punctuation_chars=True)
     words.whitespace_split = True
     first, *others = words
@@ -135,7 +135,7 @@ def in_a_shell(line):
 
 
 def in_process(line):
-    """The same of a call of the command."""
+    """Run a call of the command in this process."""
     console.cache_clear()  # it asks for the width of the terminal once
     done = CliRunner().invoke(app, shlex.split(line)[1:], env=shell_environment())
     console.cache_clear()
@@ -186,12 +186,12 @@ def run_script(page):
     [pytest.param(page, marks=[pytest.mark.slow] * (page.name in LONG)) for page in PAGES],
     ids=lambda page: str(page.relative_to(DOCS)),
 )
-def test_a_page_does_what_it_says(page, tmp_path, monkeypatch):
+def test_a_page_runs_as_written(page, tmp_path, monkeypatch):
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     monkeypatch.chdir(tmp_path)
     before = dict(registry._ALL)
     run_page(page)
-    registry._ALL.clear()  # of what the page added
+    registry._ALL.clear()  # metrics that the page added
     registry._ALL.update(before)
 
 

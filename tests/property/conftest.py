@@ -1,4 +1,4 @@
-"""What the property tests tell of themselves."""
+"""Reports of the property tests."""
 
 
 def pytest_terminal_summary(terminalreporter):

@@ -1,4 +1,4 @@
-"""The table of features and uses: what works runs, and what is refused says why."""
+"""The table of features and uses: supported pairs run, and refused ones give the reason."""
 
 import itertools
 from functools import cache

@@ -1,4 +1,4 @@
-"""Whatever a design is called, what it leaves behind stays in its folder, on every system."""
+"""Files of a design stay in its folder, with any name of it, on every system."""
 
 import contextlib
 import json
@@ -75,7 +75,7 @@ def in_a_fresh_folder():
 @settings(deadline=None, max_examples=6, suppress_health_check=[HealthCheck.too_slow])
 @example("../../escaped")
 @example("/elsewhere/evil")
-def test_what_is_written_for_a_design_stays_below_the_folder(name):
+def test_files_of_a_design_stay_below_the_folder(name):
     with in_a_fresh_folder() as home:
         file = design_called(name, home)
         outcome = CliRunner().invoke(app, ["run", str(file)])
@@ -99,7 +99,7 @@ def test_reports_and_sweeps_stay_there_too(name):
 
 def design_called(name, home):
     file = home / "design.toml"
-    # TOML knows no pairs of surrogates, as which JSON escapes what lies beyond 16 bits.
+    # TOML knows no pairs of surrogates, to which JSON escapes characters beyond 16 bits.
     quoted = json.dumps(name, ensure_ascii=False)
     file.write_text(f"name = {quoted}\n{TINY}", encoding="utf-8")
     return file

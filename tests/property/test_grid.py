@@ -17,7 +17,7 @@ from voxsoft.shapes import Box, Cylinder, Shape, TriangleMesh, voxelize
 
 #: Edges of voxels: a power of two in mm, one that is not, and thirds.
 SIZES = (0.002, 0.0008, 0.004 / 3.0)
-#: Where a face may lie within a voxel: the special places, and the rest at random.
+#: Places of a face within a voxel: the special ones, and the rest at random.
 SPECIAL = (0.0, 0.5, 1.0)
 #: Units of files, in m; files hold float32 numbers.
 UNITS = {"mm": 1e-3, "m": 1.0, "inch": 0.0254}

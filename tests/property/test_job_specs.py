@@ -15,7 +15,7 @@ from voxsoft.jobs.copies import with_copies
 from voxsoft.jobs.folder import JOB, load, write_job
 from voxsoft.jobs.spec import Stage
 
-# What a file of text holds: no half of a pair, and line ends as they were.
+# Text that a file can hold: no half of a pair, and line ends as they were.
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=30)
 NAMES = st.text(st.characters(categories=["L", "N"], include_characters="_- ."), min_size=1)
 FINITE = st.floats(allow_nan=False, allow_infinity=False)

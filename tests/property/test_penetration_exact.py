@@ -34,7 +34,7 @@ def determinant(rows: list[list[Fraction]]) -> Fraction:
 
 
 def common_interior(one: list[list[Fraction]], other: list[list[Fraction]]) -> bool:
-    """Whether two tetrahedra have inner points in common: their intersection spans space."""
+    """Check if two tetrahedra have inner points in common: their intersection spans space."""
     sides = planes(one) + planes(other)
     corners: list[list[Fraction]] = []
     for three in combinations(sides, 3):
@@ -57,7 +57,7 @@ def common_interior(one: list[list[Fraction]], other: list[list[Fraction]]) -> b
 
 
 def overlaps(mesh: Mesh, positions: np.ndarray) -> bool:
-    """The same question for a body: have any two of its tetrahedra inner points in common?"""
+    """Check if any two tetrahedra of a body have inner points in common."""
     corners = positions[mesh.tets]
     low, high = corners.min(axis=1), corners.max(axis=1)
     exact = [[[Fraction(x) for x in corner] for corner in tet] for tet in corners.tolist()]
@@ -80,7 +80,7 @@ def two_voxels() -> Mesh:
 
 @pytest.mark.parametrize("seed", some(60, 20))
 def test_two_cells_on_whole_numbers(seed):
-    """Faces in one plane, edges on edges, vertices on faces: what rounding gets wrong."""
+    """Faces in one plane, edges on edges, vertices on faces: cases that rounding gets wrong."""
     random = np.random.default_rng(seed)
     mesh = two_voxels()
     second = mesh.vertices[:, 0] > 1.5
@@ -125,7 +125,7 @@ def test_both_answers_occur():
 def shuffled(
     mesh: Mesh, positions: np.ndarray, random: np.random.Generator
 ) -> tuple[Mesh, np.ndarray]:
-    """The same body with its vertices, tetrahedra and triangles in another order."""
+    """Put a body's vertices, tetrahedra and triangles in another order."""
     order = random.permutation(len(mesh.vertices))
     place = np.argsort(order).astype(np.int32)
     tets = random.permutation(len(mesh.tets))

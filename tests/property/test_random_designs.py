@@ -75,7 +75,7 @@ def meshed(seed):
         return 0
     assert_sound(voxels, mesh_of(design))
     assert report.voxels == voxels.count
-    # What cannot be solved has no mass.
+    # A design that cannot be solved has no mass.
     assert report.mass > 0 if report.valid else report.mass is None
     assert not any(finding.where == "mesh" for finding in report.findings)
     return voxels.count

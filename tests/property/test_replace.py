@@ -1,4 +1,4 @@
-"""A replaced design or record is what it says: for the solver, for studies, on disk."""
+"""A replaced design or record has its stated values: for the solver, for studies, on disk."""
 
 import copy
 import pickle
@@ -19,7 +19,7 @@ MODELS = [model for model in all_models() if model not in (Design, Function)]
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.__name__)
-def test_replace_gives_what_the_constructor_gives(model, record_property):
+def test_replace_agrees_with_the_constructor(model, record_property):
     tables = [table for table in forms.records(model)[0] if not has_formula(table)]
     first = model(**tables[0])
     for table in tables[1:]:
@@ -185,7 +185,7 @@ def test_replace_is_the_only_way_to_change(design):
         design.parts[0].copy(update={"material": 3})
 
 
-def test_replace_does_not_follow_what_a_caller_does_later():
+def test_replace_ignores_later_changes_by_the_caller():
     parts = [{"shape": {"kind": "sphere", "radius": "= r"}, "material": "ecoflex-00-30"}]
     ball = vs.Design(name="ball", voxel_size=1e-3, parameters={"r": "5 mm"}, parts=parts)
     parts[0]["shape"]["radius"] = "1 mm"

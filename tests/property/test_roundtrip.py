@@ -1,4 +1,4 @@
-"""What is written is what is run: every form of every field is saved, copied and replaced as it is.
+"""Every form of every field is saved, copied and replaced without change, and so is the run design.
 
 The forms are read off the records (`tests/forms.py`), so a new field is tried without a line here:
 some forms of each record in the quick tests, all of them in the slow ones.
@@ -102,7 +102,7 @@ def _entries(name, info, tables):
 
 
 def _of_own_names(objects):
-    """The same objects, but no two of one name."""
+    """Give objects different names."""
     taken = set()
     for index, each in enumerate(objects):
         name = each["name"] if isinstance(each, dict) else each.name
@@ -188,7 +188,7 @@ def assert_same(other, design):
 
 
 def count_of(given):
-    """How many forms a design was typed with, beside those of every world."""
+    """Number of forms that a design was typed with, beside those of every world."""
     many = [value for value in given.values() if is_many(value) and len(value) > 1]
     return (
         sum(len([k for k in v if k not in NAMES]) if isinstance(v, dict) else len(v) for v in many)

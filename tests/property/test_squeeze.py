@@ -1,6 +1,6 @@
 """Random bodies squeezed to half their height: no crash, no NaN, no hang, and nothing in a plate.
 
-What is squeezed, and the judges, are those of `evidence/squeeze.py`, whose figures are in
+The squeezed bodies, and the judges, are those of `evidence/squeeze.py`, whose figures are in
 `docs/method/contact.md`: walls of a body may still pass through each other, which it counts.
 """
 
@@ -56,7 +56,7 @@ def warned(seed):
 
 
 @pytest.mark.slow
-def test_what_snaps_says_so():
+def test_snapping_is_reported():
     # It buckles on its way.
     result, warnings = warned(7)
     assert result.snaps
@@ -64,7 +64,7 @@ def test_what_snaps_says_so():
     assert any("snapped to another one" in each for each in warnings)
 
 
-def test_what_is_folded_into_itself_says_so():
+def test_folding_into_itself_is_reported():
     # A crease is in itself, as both judges of `judged` find.
     from squeeze_bodies import judged
 
@@ -139,7 +139,7 @@ def test_both_judges_see_a_body_in_a_plate_and_in_itself():
 
 
 def test_the_two_sides_of_a_thin_wall_do_not_meet():
-    # Thinner than the quarter of a voxel that a sample may be behind what it meets.
+    # Thinner than the quarter of a voxel that a sample may be behind the surface it meets.
     sheet = vs.Box(size=(0.02, 0.01, 0.0002), center=(0.01, 0.005, 0.0005))
     result = vs.simulate(
         vs.Design(

@@ -18,14 +18,14 @@ from own_loop import run
 from voxsoft.studio.protocol.wire import PROTOCOL
 from voxsoft.studio.server.process import StudioServer
 
-#: Seconds after which what has not come never will, however busy the machine is.
+#: Seconds after which a missing event never comes, however busy the machine is.
 PATIENCE = 120.0
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CYLINDER = EXAMPLES / "cylinder.toml"
 
 
 class Page:
-    """What a tab of the browser does, without a browser."""
+    """A tab of the browser, without a browser."""
 
     def __init__(self, socket):
         self._socket = socket
@@ -102,7 +102,7 @@ class Page:
                     stat = message
 
     async def settled(self):
-        """Read all that was caused by what was sent before.
+        """Read all events caused by earlier commands.
 
         A question is answered by the engine's thread, and reaches it through that of the commands:
         what either was asked before has been told by then. A frame that waits goes out after the
@@ -112,7 +112,7 @@ class Page:
             asked = await self.send("pick", vertex=0)
             while True:
                 message = await self.receive()
-                # Where there is no body yet, that is the answer.
+                # If there is no body yet, that is the answer.
                 if message.t == "picked" or (message.t == "error" and message.seq == asked):
                     break
 
@@ -154,7 +154,7 @@ class Studio:
                 rev = page.rev
                 await page.send("undo")
                 await page.until("document", lambda d, rev=rev: d.rev > rev)
-            if page.document.path is None:  # undo would lead back to what has no file
+            if page.document.path is None:  # undo would lead back to a document without a file
                 await page.send("save", path="left.toml", overwrite=True)
                 await page.until("saved")
             await page.send("pace")
@@ -202,7 +202,7 @@ class OwnProcess:
         return visited(self.port, "token", **options)
 
     def end(self, how, seconds=60):
-        """Send a signal and wait; returns the exit code and what was written to stderr."""
+        """Send a signal and wait; returns the exit code and the text of stderr."""
         self.process.send_signal(how)
         _, reported = self.process.communicate(timeout=seconds)
         return self.process.returncode, reported
@@ -246,7 +246,7 @@ def fresh_studio(make_studio):
 
 @pytest.fixture(scope="module")
 def shared_studio(tmp_path_factory):
-    """A server for all tests of a file, with the cylinder; what one did to it the next one sees."""
+    """A server for all tests of a file, with the cylinder; changes by one are seen by the next."""
     studio = Studio(tmp_path_factory.mktemp("studio") / "runs", CYLINDER).start()
     yield studio
     studio.stop()

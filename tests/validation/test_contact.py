@@ -71,14 +71,14 @@ def test_two_blocks_converge_to_the_reference(contact):
     assert 2 * fine - coarse == pytest.approx(1.0, abs=5e-3)
 
 
-def test_friction_between_two_blocks_adds_what_it_does_in_the_reference(contact):
+def test_friction_between_two_blocks_agrees_with_the_reference(contact):
     """2.5 % more force in the reference (good to 0.14 %); the error of 2 mm voxels is in both."""
     smooth, rough = (blocks_force(contact, 2.0, 1, friction) for friction in (0.0, 0.5))
     # Seen are -0.16 %.
     assert rough / smooth == pytest.approx(1.0, abs=5e-3)
 
 
-def test_a_corner_slides_out_over_what_it_has_dented(contact):
+def test_a_corner_slides_out_over_its_dent(contact):
     """Points of the lower block go around the corner of the upper one, which nothing may hold.
 
     Seen are +3.0 % where a corner that is caught by one of them is 42 % off; the rest is the error
@@ -99,7 +99,7 @@ def test_a_rigid_ball_in_a_block(contact):
 
 
 @pytest.mark.slow
-def test_a_bellows_whose_walls_meet_is_right_to_what_it_is_without_contact(contact):
+def test_a_bellows_with_meeting_walls_is_as_right_as_without_contact(contact):
     """Two voxels a wall, 1 kPa: without contact the tip is off by 8.1 % (x) and 3.1 % (z).
 
     With contact the reference moves by 43 and 15 %. Seen are 0.0 and -0.1 %, so some of the

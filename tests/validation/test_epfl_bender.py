@@ -1,4 +1,4 @@
-"""A bending actuator with a film of silk: what published constants predict, and what not."""
+"""A bending actuator with a film of silk: correct and wrong predictions of published constants."""
 
 import importlib
 import sys

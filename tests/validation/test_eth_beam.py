@@ -1,4 +1,4 @@
-"""A beam of Dragon Skin 10: one modulus from self weight, and what it predicts.
+"""A beam of Dragon Skin 10: one modulus from self weight, and its predictions.
 
 Coarse elements of 5 mm keep this quick; `docs/validation.md` has the figures of 2.5 mm.
 """
@@ -48,7 +48,7 @@ def test_the_frequencies_are_predicted(found):
 
 
 def test_the_lowest_mode_is_that_of_a_beam(eth):
-    """The same inverse iteration on a slender, light beam against Euler and Bernoulli.
+    """Inverse iteration as above on a slender, light beam against Euler and Bernoulli.
 
     The section of 10 mm makes it slender: shear and the clamp change the frequency by 2 %.
     """

@@ -1,4 +1,4 @@
-"""The paper's three beams: what the shipped cards reach, and that the calibration finds them.
+"""The paper's three beams: errors of the shipped cards, and that the calibration finds them.
 
 Mean length of the error vectors over nine stations of the lower edge. The paper's own calibration
 ended at 9.9, 5.7 and 3.7 mm for EcoFlex 00-20, 00-30 and 00-50; a geometrically exact beam of one

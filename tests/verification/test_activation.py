@@ -71,7 +71,7 @@ def test_a_bilayer_bends_as_a_bimetal(ratio):
     )
 
 
-def test_what_is_free_swells_without_stress():
+def test_free_parts_swell_without_stress():
     block = vs.Design(
         name="gel",
         voxel_size=5 * mm,
@@ -90,7 +90,7 @@ def test_what_is_free_swells_without_stress():
     assert result.mass == pytest.approx(1000.0 * 1e-6)
 
 
-def test_what_is_held_all_round_is_pressed_by_its_bulk_modulus():
+def test_a_part_held_all_round_is_pressed_by_its_bulk_modulus():
     strain, poisson = 0.01, 0.3
     held = vs.Design(
         name="held",
@@ -200,7 +200,7 @@ def test_a_warm_layer_bends_as_timoshenko_says():
     assert (half.value, half.reference) == (313.15, 293.15)
 
 
-def test_what_no_body_can_be_heated_to_is_refused():
+def test_an_impossible_temperature_is_refused():
     with pytest.raises(DesignError, match="value"):
         Thermal(part="upper", value="-5 K", expansion="3e-4 1/K")
     with pytest.raises(DesignError, match="does not count from zero"):
@@ -231,7 +231,7 @@ def test_fibers_that_are_shorter_by_themselves_draw_the_bar_together():
 
 
 def test_fibers_at_their_own_length_carry_nothing_at_any_strain():
-    # Held at 0.7 of its length the bar carries what rubber alone does: fibers of that length too.
+    # Held at 0.7 of its length the bar carries the force of rubber: fibers of that length too.
     def held(design):
         end = vs.Clamp(
             region=vs.Region(x=(20 * mm, 20 * mm)),
@@ -247,7 +247,7 @@ def test_fibers_at_their_own_length_carry_nothing_at_any_strain():
             held(plain).metric("elastic_energy"), rel=1e-6
         )
     tight = held(muscle(-0.4)).metric("elastic_energy")
-    # Of the fibers alone, E_f/8 ((λ/λ₀)² - 1)² V.
+    # Energy of the fibers alone, E_f/8 ((λ/λ₀)² - 1)² V.
     own = 3 * YOUNG / 8.0 * ((0.7 / 0.6) ** 2 - 1.0) ** 2 * 2e-6
     assert tight - held(plain).metric("elastic_energy") == pytest.approx(own, rel=1e-6)
 
@@ -301,7 +301,7 @@ def test_a_free_block_swells_by_its_history_without_stress(contact):
 
 
 @pytest.mark.parametrize("contact", [None, Contact()], ids=["explicit", "implicit"])
-def test_what_has_grown_comes_to_rest_as_statics_says(contact):
+def test_grown_bodies_come_to_rest_as_statics_says(contact):
     # Held at its foot, so that it has stress, and at rest before anything has happened.
     foot = [vs.Clamp(region=vs.Region(z=(0, 0)))]
     later = vs.History(time=("0.1 s", "0.3 s"), factor=(0, 1))
@@ -335,7 +335,7 @@ def test_a_bilayer_that_is_heated_slowly_follows_statics():
     )
     along = vs.follow(bilayer(0.0, activations=[warm]), "time=0..20 s/5")
     still = [each.probes["tip"][2] for each in along.results]
-    # Half of it is there after half the time, and what is recorded of the motion is the same curve.
+    # Half of it is there after half the time, and the recorded motion is the same curve.
     assert still[2] == pytest.approx(still[4] / 2, rel=0.05)
     assert moved.recording.probes["tip"][:, 2] == pytest.approx(still, abs=0.01 * abs(still[4]))
 
@@ -367,7 +367,7 @@ HEATING, COOLING = (340.0, 350.0), (330.0, 310.0)
 
 
 def wire(value, **changes):
-    """What recovers a strain of -4 % and loses it again, over unlike spans."""
+    """A material that recovers a strain of -4 % and loses it again, over unlike spans."""
     return ShapeMemory(
         **{
             "part": "gel",
@@ -381,7 +381,7 @@ def wire(value, **changes):
 
 
 def shares(*temperatures):
-    """What is transformed at temperatures in their order: branches, and level between them."""
+    """Transformed part at temperatures in their order: branches, and level between them."""
     found, share = [], 0.0
     for temperature in temperatures:
         up = np.clip((temperature - 340.0) / 10.0, 0.0, 1.0)
@@ -410,7 +410,7 @@ def test_a_loop_of_strain_over_temperature():
     moved = [each.probes["corner"][0] / (10 * mm) for each in path.results]
     # Exact by itself; statics finds it to its tolerance.
     assert moved == pytest.approx(-0.04 * np.array(expected), abs=1e-8)
-    # What is shown of each state is all that it depends on.
+    # Each state is shown with all that it depends on.
     again = vs.simulate(path.results[13].design)
     assert again.probes["corner"] == pytest.approx(path.results[13].probes["corner"], abs=1e-10)
 
@@ -445,7 +445,7 @@ def test_a_warm_wire_moves_by_its_history():
     # Damping leaves it late by 5 ms, a hundredth of the time in which it goes back.
     assert result.probes["corner"][0] == pytest.approx(-0.036 * 10 * mm, rel=0.01)
     assert result.design.activations[0].transformed == pytest.approx(0.9)
-    # By its temperature alone it would be cold.
+    # Its temperature alone would make it cold.
     assert vs.simulate(free_wire(wire("328 K"))).probes["corner"][0] == pytest.approx(0.0, abs=1e-9)
 
 

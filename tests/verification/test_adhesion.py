@@ -71,7 +71,7 @@ def test_the_work_of_separation_is_the_integral_of_the_law():
     assert work == pytest.approx(9 / 16 * STRENGTH * RANGE * SIDE**2, rel=0.01)
 
 
-def test_what_adheres_over_time_ends_where_it_is_in_equilibrium():
+def test_adhesion_over_time_ends_in_equilibrium():
     design = pulled(0.1 * mm)
     still = simulate(design)
     moved = simulate(design, method="dynamics", damping="critical", time_step="2 ms")

@@ -91,7 +91,7 @@ def test_compliance_is_how_far_a_small_force_moves_a_loaded_bar():
     before = vs.simulate(loaded, tolerance=1e-12)
     after = vs.simulate(loaded.replace(loads=(*loaded.loads, pushed)), tolerance=1e-12)
     moved = (after.probes["tip"] - before.probes["tip"])[2] / force
-    # The force is 1e-5 of the weight: what is of second order in it, and rounding, stay below.
+    # The force is 1e-5 of the weight: its second order, and rounding, stay below.
     assert before.metric("compliance", probe="tip", axis="z") == pytest.approx(moved, rel=1e-4)
 
 
@@ -138,7 +138,7 @@ def test_pulling_raises_a_frequency_and_pressing_lowers_it(still):
         assert (result.metric("natural_frequency") > 1.02 * slowest) is raised
 
 
-def test_what_has_no_modes_is_refused(still):
+def test_a_body_without_modes_is_refused(still):
     with pytest.raises(SimulationError, match="ask for one mode"):
         vs.modes(still, 0)
     touching = vs.simulate(bar(contact=Contact()))
@@ -147,7 +147,7 @@ def test_what_has_no_modes_is_refused(still):
     moving = {"method": "dynamics", "end_time": 0.01, "time_step": 5e-3}
     with pytest.raises(SimulationError, match="motion over time"):
         vs.modes(vs.simulate(bar(solver=moving)))
-    # The same design brought to rest by other settings is in equilibrium.
+    # A design brought to rest by other settings is in equilibrium.
     rested = replace(vs.simulate(bar()), design=bar(solver=moving))
     assert vs.modes(rested, 1).frequencies[0] == pytest.approx(
         still.metric("natural_frequency"), rel=1e-3

@@ -229,7 +229,7 @@ def test_two_bodies_that_touch(friction):
 
 
 def test_the_forces_of_two_bodies_balance():
-    """What the slab presses is what the clamps of the block and of the slab carry, each of one."""
+    """The clamps of the block and of the slab each carry the force of the slab."""
     result = vs.simulate(pair())
     (contact,) = result.contacts
     block, slab = (body.vertices for body in result.mesh.bodies)

@@ -97,7 +97,7 @@ def test_a_ball_without_friction():
     check(design, {"force": FORCE, "energy": ENERGY}, ["E", "depth"])
 
 
-def test_what_slips_or_touches_under_way_with_friction_is_refused():
+def test_slip_or_new_contact_with_friction_is_refused():
     slipping = pressed(PLATE, 0.1, sideways="1 mm")
     with pytest.raises(SimulationError, match="surfaces slip on the way under"):
         gradient(simulate(slipping, method="statics"), {"force": FORCE}, "E")
@@ -107,20 +107,20 @@ def test_what_slips_or_touches_under_way_with_friction_is_refused():
 
 
 def test_friction_at_a_loose_tolerance_is_refused():
-    """Anchors then depend on what an iteration has left, and slopes were off by a third."""
+    """Anchors then depend on the rest of an iteration, and slopes were off by a third."""
     result = simulate(pressed(PLATE, 0.9), method="statics")
     with pytest.raises(SimulationError, match="too much for a derivative with friction"):
         gradient(result, {"force": FORCE}, "E")
 
 
-def test_what_presses_itself_is_refused():
+def test_self_contact_is_refused():
     result = simulate(slit(contact=Contact()), method="statics")
     with pytest.raises(SimulationError, match="the body presses itself"):
         gradient(result, {"energy": ENERGY}, "parts.0.material.young")
 
 
 def test_motion_that_moves_nothing_has_no_slope():
-    """A plate without friction slides over the block: what is left of its slope is rounding."""
+    """A plate without friction slides over the block: the rest of its slope is rounding."""
     name = "objects.0.motion.displacement.0"
     found = gradient(solved(pressed(PLATE, 0.0)), {"side": SIDE}, name)
     assert abs(found["side"][name]) < CLOSE
@@ -134,8 +134,8 @@ def test_areas_and_surfaces_that_change_in_jumps_are_refused():
         gradient(result, {"area": area}, "E")
 
 
-def test_a_gap_to_what_it_does_not_touch():
-    """It closes as the plate comes down, less by what the force moves the corner."""
+def test_a_gap_without_contact():
+    """It closes as the plate comes down, less by the way of the corner under the force."""
     plate = {**PLATE, "center": ["4.3 mm", "3.9 mm", "13 mm"]}
     gap = {"gap": Objective(maximize="contact_gap", object="plate")}
     found = gradient(solved(pressed(plate, 0.0)), gap, "depth")

@@ -1,4 +1,4 @@
-"""Volume and arc-length control of what touches, beside load control at the pressure of either.
+"""Volume and arc-length control with contact, beside load control at the pressure of either.
 
 Contact settles to its clearance, 1e-4 voxels: two states that are found on different ways are as
 near as that.
@@ -157,7 +157,7 @@ def test_past_the_limit_against_a_wall_arc_and_volume_find_one_state(past_the_li
     assert by_load.metric("cavity_volume_change") < 0.5 * growth * cavity.volume
 
 
-def test_what_only_the_volume_holds_is_warned_of(past_the_limit):
+def test_parts_held_only_by_their_volume_are_warned_of(past_the_limit):
     wheres = [(each.where, each.what) for each in past_the_limit.warnings]
     assert ("equilibrium", "is not stable under constant loads") in wheres
 
@@ -202,7 +202,7 @@ def lifted(pressure, **settings):
 
 
 @pytest.mark.slow
-def test_a_chamber_that_grows_lifts_what_lies_on_it():
+def test_a_growing_chamber_lifts_its_load():
     found = simulate(lifted(20 * kPa, control="volume", volume_ratio=1.6))
     assert found.status == "ok", found.message
     assert found.limit_factor is None

@@ -100,7 +100,7 @@ def test_there_is_no_equilibrium_beyond_pull_in():
     assert beyond.load_factor < 1 / 1.05 + 1e-3
     far = vs.simulate(film(3.0 * field(limit, shear), poisson))
     assert far.status == "not-at-rest"
-    # Load steps are halved to 1/512, and what is kept is the last equilibrium before the limit.
+    # Load steps are halved to 1/512, and the kept state is the last equilibrium before the limit.
     assert 1 / 3 - 1 / 256 < far.load_factor < 1 / 3 + 1e-3
     # Arc length goes past the limit and says where it was, which μ/K moves by some 1e-4.
     past = vs.simulate(film(1.05 * field(limit, shear), poisson), control="arc-length", steps=10)
@@ -271,7 +271,7 @@ def test_a_bad_sheet_is_refused(changes, words):
         Dielectric(**{**good, **changes})
 
 
-def test_what_no_sheet_can_be_is_refused():
+def test_an_impossible_sheet_is_refused():
     other = film(1e6).activations[0].replace(part="fim")
     with pytest.raises(DesignError, match=r'no part "fim".*film'):
         vs.simulate(film(0.0, activations=[other]))

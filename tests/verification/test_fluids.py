@@ -43,7 +43,7 @@ def pair(*supplies, **changes):
 
 
 def loaded(**pressures):
-    """The same pair under pressure loads."""
+    """The pair under pressure loads."""
     loads = [vs.Pressure(value=value, cavity=name) for name, value in pressures.items()]
     return simulate(pair(loads=loads))
 
@@ -79,13 +79,13 @@ def test_at_rest_a_supply_is_the_pressure_that_it_comes_to(supply):
     (chamber,) = found.supplies
     assert chamber.volume == pytest.approx(found.cavity_volumes[0], rel=1e-12)
     assert off(found, loaded(left=chamber.pressure)) < ALIKE
-    # The work on the walls is what the body stores. It is added up by the trapezoidal rule over
+    # The work on the walls is the stored energy. It is added up by the trapezoidal rule over
     # eight steps, whose error is some of (1/8)² / 12 by how far the curve of the pressure bends.
     assert chamber.work == pytest.approx(found.elastic_energy, rel=5e-3)
 
 
 def test_gas_keeps_its_law():
-    """Pressure, volume and mass of what is sealed, drawn in and warmed."""
+    """Pressure, volume and mass of sealed, drawn in and warmed gas."""
     rest = INSIDE**3
     outside, stroke, hot = 0.8e-6, 1e-6, 353.15
     (pushed,) = simulate(
@@ -147,7 +147,7 @@ def ball(*supplies, **changes):
 
 @pytest.mark.parametrize("fluid", ["air", "water"])
 def test_a_balloon_is_filled_through_its_limit_point(fluid):
-    """Beside volume control, which prescribes what the fluid brings about."""
+    """Comparison with volume control, which prescribes the effect of the fluid."""
     ratio = {"control": "volume", "volume_ratio": 6.0, "steps": 20, "method": "statics"}
     expected = simulate(ball(loads=[vs.Pressure(value=15 * kPa)], solver=ratio))
     pressure = 15 * kPa * expected.load_factor
@@ -172,7 +172,7 @@ def test_a_balloon_is_filled_through_its_limit_point(fluid):
 
 @pytest.mark.parametrize("fluid", [pytest.param("air", marks=pytest.mark.slow), "water"])
 def test_a_balloon_that_is_filled_presses_against_a_wall(fluid):
-    """As under the pressure that it comes to: contact settles in rounds, and pressures with it."""
+    """State under its final pressure: contact settles in rounds, and pressures with it."""
     wall = vs.Box(size=(80 * mm, 80 * mm, 5 * mm), center=(0, 0, 19.5 * mm))
     held = [vs.Clamp(region=vs.Region(**{axis: (0, 0)}), axes=axis) for axis in "xy"]
     touching = {
@@ -306,7 +306,7 @@ def test_valves_fill_hold_and_empty_a_vessel():
     flow = found.recording.chambers["cavity 0"].flow
     filled = times < 0.295
     expected = filling(lambda p: through_orifice(50 * kPa + ATMOSPHERE, p), 50 * kPa, times[filled])
-    # As without histories: steps of 10 ms, and walls that give way by a little.
+    # Tolerance as without histories: steps of 10 ms, and walls that give way by a little.
     assert np.abs(pressure[filled] + ATMOSPHERE - expected).max() < 0.01 * 50 * kPa
     # Walls that settle after the step in which it closed move the pressure, and no mass does.
     held = (times > 0.315) & (times < 0.595)
@@ -351,14 +351,14 @@ def test_chambers_that_exchange_gas_keep_it():
     one, other = still.supplies
     assert one.pressure == pytest.approx(other.pressure, rel=1e-12)
     assert one.mass + other.mass == pytest.approx(total[-1], rel=1e-12)
-    # By then the difference has fallen to a thousandth.
+    # The difference has fallen to a thousandth by then.
     assert left.pressure[-1] == pytest.approx(one.pressure, rel=2e-3)
     mass = 2.5 * rest + ATMOSPHERE / RT * half
     manifold = MassSupply(chambers=("left", "right"), value=mass, line_volume=2 * half)
     assert off(still, simulate(pair(manifold))) < ALIKE
 
 
-def test_a_leak_takes_what_the_valve_lets_in():
+def test_a_leak_takes_the_flow_of_the_valve():
     """Like valves in series: the pressure between them, by the flow that both carry."""
     valve = {"conductance": "0.01 L/s/bar", "critical_ratio": 0.3}
     (chamber,) = simulate(
@@ -388,7 +388,7 @@ def test_a_syringe_with_a_leak_is_empty_in_the_end():
 
 @pytest.mark.slow
 def test_water_flows_through_a_tube_into_rubber():
-    """What came in is the integral of what flowed, and the pressure ends at that of the source."""
+    """The inflow is the integral of the flow, and the pressure ends at that of the source."""
     feed = FlowSupply(
         chamber="left",
         source=10 * kPa,
@@ -400,7 +400,7 @@ def test_water_flows_through_a_tube_into_rubber():
     assert found.status == "ok", found.message
     history, times = found.recording.chambers["left"], found.recording.times
     gained = np.trapezoid(history.flow, times)
-    # Of steps of 5 ms, over some tenths of a second.
+    # Steps of 5 ms, over some tenths of a second.
     assert history.mass[-1] - history.mass[0] == pytest.approx(gained, rel=0.02)
     assert history.pressure[-1] == pytest.approx(10 * kPa, rel=0.02)
     assert off(found, loaded(left=10 * kPa)) < 0.02
@@ -415,7 +415,7 @@ def test_over_time_a_slow_syringe_goes_along_the_states_at_rest():
     assert off(found, still) < 2e-3
     (moved,), (rested,) = found.supplies, still.supplies
     assert moved.pressure == pytest.approx(rested.pressure, rel=2e-3)
-    # By the trapezoidal rule over 100 steps.
+    # Trapezoidal rule over 100 steps.
     assert moved.work == pytest.approx(found.elastic_energy, rel=5e-3)
     assert moved.energy > moved.work
 
@@ -453,7 +453,7 @@ def test_a_liquid_weighs_on_its_walls():
 
 
 @pytest.mark.parametrize("fluid", ["air", "water"])
-def test_derivatives_go_through_what_is_sealed_in(fluid):
+def test_derivatives_go_through_sealed_gas(fluid):
     """Beside differences over two parts in ten thousand, which are good to the square of that."""
     value, young = 1e-7, 200 * kPa
     tip = {"probes": {"top": vs.Probe(z=(INSIDE + 2 * WALL,) * 2)}}
@@ -477,7 +477,7 @@ def test_derivatives_go_through_what_is_sealed_in(fluid):
 
 @pytest.mark.parametrize("fluid", ["air", "water"])
 def test_multigrid_and_a_direct_factor_find_the_same(fluid):
-    """Also past the limit of a balloon, where only what is in it holds the body."""
+    """Also past the limit of a balloon, where only its content holds the body."""
     ratio = 4.0 if fluid == "air" else 2.0
     mass = ratio * 4.2e-6 * (WATER.density if fluid == "water" else 1.1 * ATMOSPHERE / RT)
     setup = Setup.of(ball(MassSupply(chamber=0, value=mass, fluid=fluid)))

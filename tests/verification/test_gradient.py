@@ -21,7 +21,7 @@ TOLERANCE = 1e-11
 # small strains, so that theirs take a longer step; Poisson's ratio one that stays below 0.5.
 STEP = 1e-3
 STEPS = {"alpha": 3e-2, "poisson": 6e-6}
-# What the project asks for; rounding and truncation above leave about 1e-6.
+# Tolerance of the project; rounding and truncation above leave about 1e-6.
 CLOSE = 1e-5
 
 SOFT = '{model="neo-hookean", young="30 kPa", poisson=0.499}'
@@ -120,7 +120,7 @@ def test_parameters_pass_through_formulas():
     check(block(), tip, ["E"])
 
 
-def test_a_probe_that_moves_changes_what_it_measures():
+def test_a_moved_probe_measures_another_place():
     """The point moves along the bar, whose body stays: an explicit derivative only."""
     tip = {"tip": Objective(maximize="displacement", probe="point", axis="z")}
     check(block(parameters={"pull": "0.83 mm", "E": "40 kPa"}), tip, ["pull"])
@@ -250,7 +250,7 @@ def test_mass_and_a_number_that_is_zero():
     check(bar, {"end": targets["end"]}, ["weight"])
 
 
-#: Those of contact are differentiated along the path: tests/verification/test_contact_gradient.py.
+#: Metrics of contact have slopes along the path: tests/verification/test_contact_gradient.py.
 WITHOUT_CONTACT = sorted(
     name for name in BUILT_IN if METRICS[name].slope and "object" not in METRICS[name].needs
 )

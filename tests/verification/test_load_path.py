@@ -1,4 +1,4 @@
-"""Load paths: which branch is found, and what is left of a path that is lost."""
+"""Load paths: the branch that is found, and the rest of a path that is lost."""
 
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def test_a_bifurcation_is_passed_and_reported_to_be_one():
     assert abs(result.probes["top"][0]) < 1e-6 * HEIGHT
 
 
-def test_a_path_that_is_cut_short_keeps_what_was_found():
+def test_a_path_that_is_cut_short_keeps_its_states():
     """A chamber cannot grow sixfold in a block of 4.6 times its volume whose outside is held."""
     size, wall = 25 * mm, 5 * mm
     inside = vs.Box(size=(size - 2 * wall,) * 3, corner=(wall,) * 3)

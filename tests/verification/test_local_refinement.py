@@ -50,7 +50,7 @@ def both():
 
 
 def test_uniform_strain_is_the_same_on_two_sizes():
-    """Drawn by its ends with free sides: any mesh has the same answer, to what Newton leaves."""
+    """Drawn by its ends with free sides: any mesh has one answer, to the residual of Newton."""
     cube = vs.Box(size=(32 * mm, 32 * mm, 32 * mm), corner=(0, 0, 0))
     pulled = vs.Motion(displacement=(0, 0, 16 * mm))
     faces = [vs.Region(x=(0, 0)), vs.Region(y=(0, 0)), vs.Region(z=(0, 0))]
@@ -82,7 +82,7 @@ def test_most_of_the_gain_for_a_part_of_the_unknowns(both):
     assert len(both.mesh.vertices) - tied < 0.7 * len(small.mesh.vertices)
 
 
-def test_what_carries_it_carries_its_weight(both):
+def test_the_support_carries_the_weight(both):
     assert both.status == "ok"
     weight = 9.81 * both.mass
     assert both.mass == pytest.approx(vs.simulate(block(), refine=2).mass, rel=1e-12)
@@ -104,7 +104,7 @@ def test_tied_vertices_are_where_they_belong(both):
 
 @pytest.mark.slow
 def test_slopes_are_those_of_differences():
-    """By the pressure and by Young's modulus, through the tied tangent and its transpose."""
+    """Slopes by the pressure and by Young's modulus, through the tied tangent and its transpose."""
     design = block(refine=[AROUND])
     targets = {
         "up": Objective(maximize="displacement", probe="top", axis="z"),

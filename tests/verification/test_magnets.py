@@ -158,7 +158,7 @@ def test_half_a_body_bends_as_the_whole():
     )
 
 
-def test_what_no_field_can_act_on_is_refused():
+def test_a_part_that_no_field_acts_on_is_refused():
     bare = cantilever(1e-3)
     with pytest.raises(DesignError, match=r"loads\[0\].*no part of the mesh has a remanence"):
         vs.simulate(bare.replace(parts=[bare.parts[0].replace(remanence=None)]))

@@ -1,4 +1,4 @@
-"""Balls that roll, bounce and meet, as closed forms and what must be kept say.
+"""Balls that roll, bounce and meet, beside closed forms and conservation laws.
 
 The designs are those of `evidence/contact_over_time.py`, which has the figures.
 """
@@ -26,7 +26,7 @@ def designs(monkeypatch):
 
 
 def accelerations(designs, friction, degrees=20.0, step=5e-3):
-    """Of the way of a ball and of its surface as it turns, and how far it slips over its way."""
+    """Errors of the way of a ball and of its surface as it turns, and its slip over its way."""
     design = designs.rolling(degrees, friction)
     result = vs.simulate(design, end_time=0.1, time_step=step, record_interval=step)
     places, turns = result.recording.objects["ball"]

@@ -79,7 +79,7 @@ def test_two_cycles_have_the_stress_of_the_closed_form(model):
     assert np.all(stress[7:12] < 0.8 * virgin[7:12])
 
 
-def test_the_work_of_a_cycle_is_what_softening_takes():
+def test_the_work_of_a_cycle_equals_the_loss_by_softening():
     material = RUBBERS["yeoh"]
     strains = way(0.0, 0.6, 0.0, steps=24)
     path, stress = pulled(material, strains)
@@ -89,7 +89,7 @@ def test_the_work_of_a_cycle_is_what_softening_takes():
     assert work == pytest.approx(SOFT.lost(peak), rel=5e-3)
     assert work > 0.0
     assert path.results[-1].elastic_energy == pytest.approx(0.0, abs=1e-6 * peak * SIDE**3)
-    # What is stored at the peak is what the way back gives.
+    # The way back returns the energy stored at the peak.
     stored = path.results[24].elastic_energy / SIDE**3
     assert stored == pytest.approx(peak - SOFT.lost(peak), rel=2e-3)
     assert path.results[24].peaks == pytest.approx(np.full(8, peak), rel=2e-3)
@@ -141,7 +141,7 @@ def test_solvers_without_memory_refuse(change, message):
         vs.simulate(block(RUBBERS["yeoh"]).replace(**change))
 
 
-def test_what_knows_nothing_of_softening_refuses():
+def test_uses_without_softening_refuse_it():
     soft = block(RUBBERS["yeoh"])
     with pytest.raises(VoxSoftError, match="is not known to gradients"):
         vs.gradient(vs.simulate(soft), "elastic_energy", "clamps.3.motion.displacement.0")

@@ -11,7 +11,7 @@ from voxsoft.units import kPa, mm
 LENGTH, SIDE = 20 * mm, 4 * mm
 AREA = SIDE**2
 YOUNG = 100 * kPa
-# Closed forms are linear: at a strain of 1e-5 what is quadratic counts about 1e-5 of them.
+# Closed forms are linear: at a strain of 1e-5 quadratic terms count about 1e-5 of them.
 STRAIN = 1e-5
 LINEAR = 1e-4
 #: The stiffest against the softest material.
@@ -60,7 +60,7 @@ def box(length=LENGTH, width=SIDE, corner=(0, 0, 0)):
 
 
 def test_layers_on_both_faces_of_a_bar_pull_beside_it():
-    # Of the same Poisson's ratio, so that they contract alike and each carries its own share.
+    # Equal Poisson's ratios, so that they contract alike and each carries its own share.
     layers = [
         vs.Layer(region=vs.Region(z=(z, z)), young=50e6, thickness=0.1 * mm, poisson=0.3)
         for z in (0, SIDE)
@@ -146,7 +146,7 @@ def capped(material):
 
 
 def distortion(result):
-    """How far the cap is from its best rigid motion, over the largest displacement."""
+    """Distance of the cap from its best rigid motion, over the largest displacement."""
     cap = result.mesh.vertices[:, 0] > 24 * mm - 1e-9
     both = (result.mesh.vertices, result.positions)
     rest, now = (points[cap] - points[cap].mean(axis=0) for points in both)
@@ -164,7 +164,7 @@ def test_a_rigid_cap_moves_as_one():
     assert distortion(simulate(capped(rubber(0.49)))) > 1e-3
 
 
-def test_a_rigid_part_weighs_what_it_says():
+def test_a_rigid_part_has_its_stated_weight():
     light, heavy = (Setup.of(capped(vs.Rigid(density=d))).problem.mass for d in (1000.0, 3000.0))
     assert heavy - light == pytest.approx(2000.0 * (8 * mm) ** 3)
 
@@ -207,7 +207,7 @@ def test_a_braid_changes_sign_at_the_magic_angle():
     assert rise[30] < 0.0 < rise[75]
 
 
-def test_what_cannot_be_a_fiber_or_a_rigid_part():
+def test_invalid_fibers_and_rigid_parts_are_refused():
     with pytest.raises(MaterialError, match="direction: is missing"):
         vs.Fiber(modulus=1 * kPa)
     with pytest.raises(DesignError, match=r"fibers\[0\].direction: has no direction"):

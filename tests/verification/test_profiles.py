@@ -158,7 +158,7 @@ def test_fibers_contract_where_the_profile_says():
     activation = FiberStrain(part="strip", value=-0.02, profile=THROUGH)
     design = strip(activation)
     part = design.parts[0].replace(fibers=[fiber])
-    # As all of the part would, by the fibers' share of its stiffness: 400 of 500 kPa.
+    # Turn of a uniform part, times the fibers' share of its stiffness: 400 of 500 kPa.
     turn = turned(vs.simulate(design.replace(parts=[part])))
     uniform = turned(vs.simulate(strip(Strain(part="strip", value=-0.02, profile=THROUGH))))
     assert 0.6 * uniform > turn > 0.9 * uniform  # both are negative: bent upward

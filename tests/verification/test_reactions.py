@@ -40,7 +40,7 @@ TURNED = vs.Clamp(
     region=TOP,
     motion=vs.Motion(rotation=vs.Rotation(axis=(0, 0, 1), angle=0.3, center=(0, 0, 0))),
 )
-#: What lies on a floor without friction may slide and turn, and has no one place for statics.
+#: Bodies on a floor without friction may slide and turn, and have no one place for statics.
 SIDEWAYS = [
     vs.Clamp(region=vs.Region(x=(0, 0), y=(0, 0), z=(0, 0)), axes="xy"),
     vs.Clamp(region=vs.Region(x=(SIDE, SIDE), y=(0, 0), z=(0, 0)), axes="y"),

@@ -51,7 +51,7 @@ def growth(result):
 
 
 def test_a_uniform_strain_has_no_error(run):
-    # Of any size and with any rotation: Green's strain is the same in each voxel.
+    # Deformation of any size and with any rotation: Green's strain is the same in each voxel.
     cosine, sine = np.cos(0.7), np.sin(0.7)
     rotation = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
     stretched = run.mesh.vertices * [1.4, 0.8, 0.9] @ rotation.T
@@ -73,7 +73,7 @@ def test_the_error_is_at_the_chamber(run):
     assert errors[near].sum() > 0.8 * errors.sum() > near.mean() * errors.sum()
 
 
-def test_small_voxels_where_the_error_is_bring_most_of_what_small_ones_everywhere_do(run):
+def test_refined_voxels_at_the_error_replace_uniformly_small_ones(run):
     small = growth(vs.simulate(Setup.of(block(), refine=2)))
     design = refined(run)
     found = vs.simulate(design)
@@ -124,7 +124,7 @@ def test_two_sizes_are_not_refined_again():
         refined(vs.simulate(twice))
 
 
-def test_the_command_adds_to_what_is_refined_already(run, tmp_path):
+def test_the_command_adds_to_earlier_refinement(run, tmp_path):
     first = Refinement(region=vs.Region(z=(0, 8 * mm)))
     vs.save(block(refine=[first]), tmp_path / "twice.toml")
     outcome = CliRunner().invoke(app, ["refine", str(tmp_path / "twice.toml")])
@@ -158,7 +158,7 @@ def test_the_command_says_where_small_voxels_everywhere_are_as_quick(tmp_path, s
     assert ("refine = 2 under [solver]" in " ".join(outcome.output.split())) == most
 
 
-def test_the_command_replaces_no_file_unasked_and_knows_how_fine_a_design_is(tmp_path):
+def test_the_command_replaces_no_file_unasked_and_knows_the_fineness(tmp_path):
     fine = families.beam(length="40 mm").replace(solver={"refine": 2})
     vs.save(fine, tmp_path / "my beam.toml")
     call = ["refine", str(tmp_path / "my beam.toml"), "--share", "99.9 %"]
@@ -190,7 +190,7 @@ material = "ecoflex-00-30"
 """
 
 
-def test_the_command_keeps_paths_beside_the_design_and_finds_them_from_elsewhere(tmp_path):
+def test_the_command_keeps_paths_relative_to_the_design(tmp_path):
     beside, elsewhere = tmp_path / "mine", tmp_path / "other"
     beside.mkdir()
     elsewhere.mkdir()

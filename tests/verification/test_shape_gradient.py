@@ -18,7 +18,7 @@ TOLERANCE = 1e-11
 # A thousandth of the number: filled parts are piecewise smooth, with kinks where the surface passes
 # corners of the small cubes that they are sampled with, so that a shorter step gains nothing.
 STEP = 1e-3
-# What the project asks of a shape; 1e-3 was the largest difference seen.
+# Tolerance of the project for a shape; 1e-3 was the largest difference seen.
 CLOSE = 1e-2
 
 

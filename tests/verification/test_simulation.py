@@ -160,7 +160,7 @@ def test_table_1_collapses_the_beam_with_true_masses():
 
     collapsed = drop(raw)
     assert collapsed > 85 * mm  # hanging straight down would be 90 mm and its own stretch
-    # The same Young's modulus typed as moduli sags alike: the conversion means what it says.
+    # Young's modulus typed as moduli sags alike: the conversion is correct.
     converted = raw.to_moduli(voxel_size=5 * mm, bulk=1.0)
     assert converted.young() == pytest.approx(raw.young(5 * mm), rel=1e-9)
     assert drop(converted) == pytest.approx(collapsed, rel=0.05)

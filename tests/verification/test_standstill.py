@@ -16,6 +16,6 @@ def test_a_slender_lattice_beam_keeps_none_of_its_load_out_of_balance():
         loads=[vs.Gravity(value=0.981)],
     )
     result = vs.simulate(beam, method="statics")
-    # What statics is asked for by default.
+    # Default tolerance of statics.
     assert result.status == "ok"
     assert result.residual <= 1e-8

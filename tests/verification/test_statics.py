@@ -220,7 +220,7 @@ def test_a_balloon_has_one_limit_pressure_by_volume_and_by_load():
     assert by_volume.stable is False  # at this pressure: only the volume holds it
     assert by_volume.load_factor < by_volume.limit_factor < 1.0
     assert "it is not stable" in by_volume.message
-    # Volume control reaches what it was asked for.
+    # Volume control reaches the requested volume.
     growth = by_volume.metric("cavity_volume_change")
     cavity = by_volume.mesh.cavities[0]
     assert growth == pytest.approx(5.0 * cavity.volume, rel=1e-6)
@@ -258,7 +258,7 @@ def test_a_ball_that_grows_lands_on_the_floor(control):
     assert found.positions[:, 2].min() == pytest.approx(-16 * mm, abs=1e-12)
     same = design.replace(loads=[vs.Pressure(value=8 * kPa * found.load_factor)])
     expected = simulate(same, method="statics")
-    # What residuals of 1e-8 leave of displacements of millimeters.
+    # Effect of residuals of 1e-8 on displacements of millimeters.
     assert np.abs(found.positions - expected.positions).max() < 1e-9
 
 

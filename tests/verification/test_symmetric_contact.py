@@ -95,7 +95,7 @@ def require_same(
     return part
 
 
-#: A quarter cuts what half a body cuts, and once more; the half alone is slow.
+#: A quarter cuts the planes of half a body, and once more; the half alone is slow.
 ONE_OR_TWO = pytest.mark.parametrize("planes", [pytest.param([X], marks=pytest.mark.slow), [X, Y]])
 
 PLATE = Object(
@@ -336,7 +336,7 @@ def test_a_balloon_grows_against_a_wall(planes: list[Symmetry]) -> None:
         ),
     ],
 )
-def test_what_is_not_symmetric_is_refused(design: vs.Design, where: str, what: str) -> None:
+def test_asymmetric_designs_are_refused(design: vs.Design, where: str, what: str) -> None:
     with pytest.raises(vs.VoxSoftError) as caught:
         Setup.of(design.replace(symmetry=[X]))
     assert what in str(caught.value)

@@ -121,7 +121,7 @@ def test_half_a_bar_lies_on_its_floor() -> None:
     assert vs.simulate(half.replace(floor=None)).probes["end"][2] < 2 * part.probes["end"][2]
 
 
-def test_planes_hold_what_they_cut() -> None:
+def test_planes_hold_the_vertices_they_cut() -> None:
     planes = [Symmetry(plane=plane) for plane in "xyz"]
     free = ball("binary", clamps=[])
     assert free_motion(Setup(free, mesh_of(free)))
@@ -146,7 +146,7 @@ def test_half_a_bar_moves_as_the_bar_does() -> None:
 
 
 def test_a_layer_spans_an_opening_across_the_plane() -> None:
-    """As the mean of both ways to cut the opening, of which each alone is not symmetric."""
+    """Mean of both ways to cut the opening, of which each alone is not symmetric."""
     tray = vs.Box(size=(40 * mm, 20 * mm, 15 * mm)) - vs.Box(
         size=(30 * mm, 10 * mm, 10 * mm), corner=(5 * mm, 5 * mm, 0)
     )
@@ -249,9 +249,7 @@ LEFT = vs.Region(y=("-inf", 6 * mm))
         ),
     ],
 )
-def test_what_is_not_symmetric_is_refused(
-    changes: dict[str, object], where: str, what: str
-) -> None:
+def test_asymmetric_designs_are_refused(changes: dict[str, object], where: str, what: str) -> None:
     with pytest.raises(vs.VoxSoftError) as caught:
         Setup.of(BAR.replace(**({"symmetry": ALONG} | changes)))
     assert what in str(caught.value)

@@ -8,7 +8,7 @@ from voxsoft.simulation import simulate
 from voxsoft.units import kPa, mm
 
 YOUNG, LENGTH = 500 * kPa, 100 * mm
-#: Of the height, how far from the middle the tendon runs.
+#: Distance of the tendon from the middle, as a part of the height.
 OFFSET = 0.4
 
 

@@ -11,7 +11,7 @@ from voxsoft.errors import DesignError, MaterialError
 from voxsoft.simulation import Setup, gradient
 from voxsoft.units import MPa, kPa, mm
 
-#: Of a thin tube with closed ends the stress around is twice that along: tan² θ = 2.
+#: Stress around a thin tube with closed ends is twice that along: tan² θ = 2.
 NEUTRAL = np.degrees(np.arctan(np.sqrt(2.0)))
 
 
@@ -22,7 +22,7 @@ def found(design):
 
 
 def neutral_angle(degrees, **tube):
-    """Where a braid keeps its length, between two angles to the axis."""
+    """Angle at which a braid keeps its length, between two angles to the axis."""
     along = [
         found(halved(wound_tube((each, -each), pressure=5 * kPa, **tube)))[0] for each in degrees
     ]
@@ -41,7 +41,7 @@ def test_a_braid_keeps_its_length_at_the_neutral_angle():
 @pytest.mark.slow
 @pytest.mark.parametrize(("wall", "voxel"), [(2 * mm, 1 * mm), (1 * mm, 1 * mm)])
 def test_the_neutral_angle_does_not_depend_on_the_voxels(wall, voxel):
-    # As above with a wall of two voxels, and a thinner wall of one.
+    # Tube as above with a wall of two voxels, and a thinner wall of one.
     tube = {"modulus": 100 * MPa, "wall": wall, "voxel": voxel}
     assert neutral_angle((53.7, 55.7), **tube) == pytest.approx(NEUTRAL, abs=0.15)
 
@@ -120,7 +120,7 @@ def test_a_braid_is_solved_by_its_quarter_about_any_axis():
         Setup.of(ring(place).replace(symmetry=planes))
 
 
-def test_how_far_a_tube_turns_has_slopes_by_angle_and_modulus():
+def test_the_turn_of_a_tube_has_slopes_by_angle_and_modulus():
     design = ring(
         parameters={"wind": {"value": "40 deg"}, "stiff": {"value": "1 MPa"}},
         clamps=[vs.Clamp(region=vs.Region(z=(0, 0)))],
@@ -153,7 +153,7 @@ def test_how_far_a_tube_turns_has_slopes_by_angle_and_modulus():
             assert slopes[key][name] == pytest.approx(expected[key], rel=1e-5), (key, name)
 
 
-def test_what_cannot_be_wound():
+def test_invalid_windings_are_refused():
     wound = {"axis": "z", "angle": "30 deg", "modulus": "1 MPa"}
     with pytest.raises(MaterialError, match="angle: is missing: the angle of wound fibers"):
         vs.Fiber(axis="z", modulus="1 MPa")

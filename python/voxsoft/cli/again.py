@@ -14,7 +14,7 @@ from voxsoft.cli.output import plain, print_json, say
 if TYPE_CHECKING:
     from voxsoft.jobs import Repetition
 
-#: How many differences are listed.
+#: Number of differences listed.
 LISTED = 10
 
 

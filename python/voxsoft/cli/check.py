@@ -39,7 +39,7 @@ def check(
     ] = None,
     json: Json = False,
 ) -> None:
-    """Check for what would go wrong: units, components, hinges, cavities, leaks, walls, cost."""
+    """Check a design for faults: units, components, hinges, cavities, leaks, walls, cost."""
     from voxsoft import files
 
     is_design = source.suffix.lower() == ".toml"
@@ -108,7 +108,7 @@ def _show_body(report: CheckReport) -> None:
 
 
 def _beside(volume: Volume) -> str:
-    """What the shapes have beside the voxels."""
+    """List the options of the shapes beside the voxels."""
     described = quantity(volume.described, "volume")
     if not math.isfinite(volume.difference):
         return f"{described} in its shapes"

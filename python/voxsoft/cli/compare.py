@@ -33,7 +33,7 @@ def compare(
         str, typer.Option("--solvers", help="Solvers of our own; estimates are for the last.")
     ] = "xpbd,statics",
     outside: Annotated[
-        OutsideName, typer.Option("--outside", help="An outside code; auto: what is installed.")
+        OutsideName, typer.Option("--outside", help="An outside code; auto: all installed ones.")
     ] = OutsideName.auto,
     voxel_sizes: Annotated[
         str | None,
@@ -68,7 +68,7 @@ def compare(
     """Solve a design in several ways and write a report with estimates of their errors.
 
     The report is one HTML file: a table, figures, run times, discretization errors. The folder
-    beside it holds what `voxsoft again` repeats it with.
+    beside it holds the data from which `voxsoft again` repeats it.
     """
     from voxsoft import files
     from voxsoft.cli.progress import JobBar
@@ -145,7 +145,7 @@ def _show(found: Comparison, target: Path) -> None:
         error = found.base_error(name, "split voxels") or found.base_error(name, "voxel sizes")
         kind = found.known(name).kind
         cells = [in_words(each.value, kind) if each else "" for each in known]
-        # What is far below the digits shown is zero to a reader.
+        # A noise far below the digits shown is zero to a reader.
         noise = error is not None and error < 1e-6 * found.known(name).scale
         shown = "" if error is None else f"± {in_words(0.0 if noise else error, kind)}"
         rows.append([name, *cells, shown])

@@ -35,13 +35,13 @@ MEANINGS: Final = {
     INVALID: "the design, mesh or data is not valid; nothing was solved",
     NOT_AT_REST: "the run did not come to rest, or diverged",
     FAILED: "the machine failed: a file cannot be written, memory is short, a storage or an "
-    "outside code does not answer; what was finished is kept, and summary.json of a run is written "
+    "outside code does not answer; finished work is kept, and summary.json of a run is written "
     "before all other files",
     DIFFERS: "a job that was repeated has other results than its folder",
-    INTERRUPTED: "stopped by Ctrl-C; what was finished is kept",
+    INTERRUPTED: "stopped by Ctrl-C; finished work is kept",
 }
 
-#: By the kind of error, the first that fits; INVALID for all others.
+#: Exit codes by the kind of error, the first that fits; INVALID for all others.
 _CODES: Final[tuple[tuple[type[BaseException], int], ...]] = (
     (OutputError, FAILED),
     (OutsideCodeError, FAILED),
@@ -77,7 +77,7 @@ def errors_in_words(*, json: bool = False, invalid: dict[str, Any] | None = None
     Parameters
     ----------
     json
-        Whether the command was asked for one object on standard output.
+        True if the command was asked for one object on standard output.
     invalid
         Keys that the object holds besides ``problems``.
     """
@@ -103,7 +103,7 @@ def errors_in_words(*, json: bool = False, invalid: dict[str, Any] | None = None
 
 
 def _leave(error: VoxSoftError, json: bool, invalid: dict[str, Any] | None) -> typer.Exit:
-    """Tell of an error, and return what ends the program."""
+    """Report an error, and return the exception that ends the program."""
     say(f"[red]error:[/red] {plain(str(error))}")
     if json:
         print_json({"status": "failed", **(invalid or {}), "problems": problems_of(error)})

@@ -33,7 +33,7 @@ _Files = Annotated[
 ]
 
 
-def _curves(option: str, what: str) -> Any:  # noqa: ANN401 - what typer returns
+def _curves(option: str, what: str) -> Any:  # noqa: ANN401 - the type that typer returns
     return typer.Option(option, help=what, exists=True, dir_okay=False, metavar="FILE")
 
 
@@ -80,7 +80,7 @@ def fit(
         str | None, typer.Option("--name", help="Name of the card; default: the first file's.")
     ] = None,
     source: Annotated[
-        str, typer.Option("--source", help="Where the data are from: who, when, license.")
+        str, typer.Option("--source", help="Source of the data: who, when, license.")
     ] = "",
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder; default: runs/NAME-material.")
@@ -157,7 +157,7 @@ def show(
     card: Annotated[str, typer.Argument(help="Name of a card, or a card file (TOML).")],
     json: Json = False,
 ) -> None:
-    """Show a material card: constants, where they come from, what to beware of."""
+    """Show a material card: constants, their source, and cautions."""
     from voxsoft.files.cards import card_text, load_card_file
     from voxsoft.materials import Hyperelastic, card_names, load_card, stable_ranges
 

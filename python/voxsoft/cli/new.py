@@ -19,7 +19,7 @@ def new(
             "--template", "-t", help="Start from: beam, cylinder, finger, pneunet or sphere."
         ),
     ] = "cylinder",
-    folder: Annotated[Path, typer.Option("--folder", help="Where to write it.")] = Path(),
+    folder: Annotated[Path, typer.Option("--folder", help="Folder of the new file.")] = Path(),
     force: Annotated[bool, typer.Option("--force", help="Replace a file that exists.")] = False,
 ) -> None:
     """Write a commented design file to start from."""

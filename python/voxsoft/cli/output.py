@@ -1,4 +1,4 @@
-"""Where words and numbers go: people read standard error, programs read standard output."""
+"""Output of words and numbers: people read standard error, programs read standard output."""
 
 from __future__ import annotations
 

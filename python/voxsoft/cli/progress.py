@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 #: Seconds between two plain lines where there is no terminal.
 PLAIN_PERIOD: Final = 5.0
 
-#: What is counted on a bar that goes away when all is done.
+#: Units counted on a bar that goes away when all is done.
 PASSING: Final = frozenset({"percent", "percent of a further run", "confirmations"})
 
 
@@ -34,11 +34,11 @@ class ProgressBar:
     Parameters
     ----------
     title
-        What is being done.
+        The work in progress.
     total
-        How many steps there are.
+        Number of steps.
     transient
-        Whether the bar goes away when all is done.
+        True if the bar goes away when all is done.
 
     Examples
     --------

@@ -24,7 +24,7 @@ def refine(
     design: DesignFile,
     sets: Sets = None,
     share: Annotated[
-        str, typer.Option("--share", help="Of the estimated error that small voxels are to hold.")
+        str, typer.Option("--share", help="Share of the estimated error within small voxels.")
     ] = "90 %",
     out: Annotated[
         Path | None,

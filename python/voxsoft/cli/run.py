@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _METHODS = "auto, statics, relaxation, dynamics or xpbd; default: as the design says, else auto."
 
-#: What is below this part of the largest number of a column is rounding.
+#: Numbers below this part of the largest of a column are rounding.
 _ROUNDING = 1e-9
 
 _ERRORS = "Voxels for error bars: auto, finer, coarser or off; default: as the design says."
@@ -44,7 +44,7 @@ def run(
         bool,
         typer.Option(
             "--figure",
-            help="Also draw the deformed body, as body.png, what touches it, as contact.png, and "
+            help="Also draw the deformed body, as body.png, its contacts, as contact.png, and "
             "the numbers along a path, as path.png.",
         ),
     ] = False,
@@ -94,7 +94,7 @@ def run(
 
 
 def _show_path(path: LoadPath, bars: Sequence[ErrorBars]) -> None:
-    """The numbers along a path: what the design asks for, or else how its probes move."""
+    """Show the numbers along a path: those the design asks for, or else displacements of probes."""
     from voxsoft.comparison.path_bars import bars_of
 
     design = path.design
@@ -175,7 +175,7 @@ def _show_reactions(result: Result) -> None:
 
 
 def _voxels(result: Result) -> str:
-    """How many voxels there are, and how many of them stayed large beside refined ones."""
+    """Count the voxels, and those that stayed large beside refined ones."""
     if not result.design.refine:
         tets = len(result.mesh.tets)
         return f"{tets:,} tetrahedra" if result.mesh.voxel_size is None else f"{tets // 5:,} voxels"
@@ -186,7 +186,7 @@ def _voxels(result: Result) -> str:
 
 
 def _probe_rows(result: Result, bars: ErrorBars | None) -> Iterator[list[str]]:
-    """Where each probe went on these voxels, and below it where the error bars have it."""
+    """Displacement of each probe on these voxels, and below it the extrapolated one, if known."""
     for name, moved in result.probes.items():
         yield [name, *(f"{round(component * 1e3, 3) + 0.0:.3f} mm" for component in moved)]
         if bars is not None and name in bars.probes:
@@ -198,7 +198,7 @@ def _with(bar: ErrorBar | None) -> str:
 
 
 def _source(bars: ErrorBars, *, asked: bool) -> str:
-    """Where error bars come from; in yellow where they are missing though they were wanted."""
+    """Source of the error bars; in yellow where they are missing though they were wanted."""
     sentence = plain(bars.sentence)
     doubtful = asked and (bars.missing or not bars.regular)
     return f"[yellow]{sentence}[/yellow]" if doubtful else f"{sentence} ({bars.seconds:.1f} s)"
@@ -225,7 +225,7 @@ def _stretch_line(result: Result) -> str:
 
 
 def _place(found: Diagnostic) -> str:
-    """Where it is, unless its text says so."""
+    """Place of a diagnostic, unless its text gives it."""
     from voxsoft.simulation.diagnostic import near
 
     if found.at is None or "near (" in found.what:

@@ -20,7 +20,7 @@ def studio(
         bool, typer.Option("--no-browser", help="Only print the address.")
     ] = False,
     port: Annotated[
-        int, typer.Option("--port", min=0, max=65535, help="Where to listen; 0: any free port.")
+        int, typer.Option("--port", min=0, max=65535, help="Port of the server; 0: any free port.")
     ] = 0,
     runs: Annotated[Path, typer.Option("--runs", help="Folder of runs and studies.")] = Path(
         "runs"

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from voxsoft.design import Design
     from voxsoft.study import StudyResult
 
-#: How many of the best designs are listed.
+#: Number of the best designs listed.
 LISTED = 10
 
 Scheduler = Annotated[
@@ -88,7 +88,7 @@ def optimize(
             help="tpe, cma-es, gp, nsga-ii, nsga-iii, random, grid, genetic or gradient.",
         ),
     ] = "tpe",
-    budget: Annotated[int, typer.Option("--budget", min=1, help="How many trials.")] = 100,
+    budget: Annotated[int, typer.Option("--budget", min=1, help="Number of trials.")] = 100,
     sets: Sets = None,
     out: Out = None,
     workers: Workers = None,

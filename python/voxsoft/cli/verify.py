@@ -21,9 +21,9 @@ def verify(
     cases: Annotated[
         list[str] | None, typer.Argument(help="Names of cases; default: all of the folder.")
     ] = None,
-    folder: Annotated[
-        Path, typer.Option("--folder", help="Where the scripts of the cases are.")
-    ] = Path("examples/validation"),
+    folder: Annotated[Path, typer.Option("--folder", help="Folder of the cases' scripts.")] = Path(
+        "examples/validation"
+    ),
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder for scores.csv and scores.png.")
     ] = None,
@@ -35,8 +35,8 @@ def verify(
 ) -> None:
     """Predict measured robots, and count how many measurements lie in their 90 % intervals.
 
-    The interval of each number is made of what material, geometry, voxels and repeated measurements
-    leave open.
+    The interval of each number combines the uncertainty of material, geometry, voxels and
+    repeated measurements.
     """
     from voxsoft.scoreboard import predictions_in, read_scores
 

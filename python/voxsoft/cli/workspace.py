@@ -26,7 +26,7 @@ def workspace(
         typer.Option(
             "--over",
             metavar="KEY=RANGE",
-            help="What drives it, as for run: 'left=0..6 N/7'. Once to three times; the last "
+            help="Drives, as for run: 'left=0..6 N/7'. Once to three times; the last "
             "changes fastest.",
         ),
     ],
@@ -43,10 +43,10 @@ def workspace(
     ] = None,
     json: Json = False,
 ) -> None:
-    """Find where a place of a robot can be, over a grid of what drives it.
+    """Find the positions that a place of a robot reaches, over a grid of its drives.
 
     The folder holds workspace.csv and workspace.png. The table is written after each line of the
-    grid, so that what is found stays when it is interrupted.
+    grid, so that finished lines stay when it is interrupted.
     """
     from voxsoft import files
     from voxsoft.cli.progress import ProgressBar

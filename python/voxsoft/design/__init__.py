@@ -1,4 +1,4 @@
-"""Designs: typed models of what is built, held, loaded and measured."""
+"""Designs: typed models of parts, clamps, loads and measured quantities."""
 
 from voxsoft.design.activation import FiberStrain, Strain, Swelling, Thermal
 from voxsoft.design.body import Body

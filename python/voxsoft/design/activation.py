@@ -1,4 +1,4 @@
-"""What makes a part longer or shorter by itself: swelling, heat, muscles."""
+"""Activations that make a part longer or shorter by itself: swelling, heat, muscles."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class _OfItsValue(Activation):
 
     @abstractmethod
     def base(self, factor: float) -> float:
-        """How many times as long, or as large, the part is at a factor of its history."""
+        """Ratio by which the part is longer, or larger, at a factor of its history."""
 
     @property
     def growth(self) -> Growth:
-        """How many times as long the part is over time when it is free of stress."""
+        """Ratio by which the part is longer over time when it is free of stress."""
         if self.history is None:
             return Growth((0.0,), (self.base(1.0),), self.power, self.profile)
         bases = tuple(self.base(factor) for factor in self.history.factors)
@@ -53,11 +53,11 @@ class _Growing(_OfItsValue):
         return self
 
     def base(self, factor: float) -> float:
-        """How many times as long, or as large, the part is at a factor of its history."""
+        """Ratio by which the part is longer, or larger, at a factor of its history."""
         return 1.0 + factor * self.value
 
     def share(self, part: float) -> Self:
-        """A part of what it comes to in the end, without a history."""
+        """Scale its final strain by a factor, without a history."""
         return self.replace(value=part * self.factor * self.value, history=None)
 
 
@@ -71,9 +71,9 @@ class Strain(_Growing):
     value
         The strain, above −1: ``"2 %"`` is 1.02 times as long, a negative one shrinks.
     history
-        How it changes over time: a factor on the value. Default: it is there from the beginning.
+        A factor on the value over time. Default: the value is there from the beginning.
     profile
-        How it differs from place to place: a factor on the value. Default: it is the same
+        A factor on the value from place to place. Default: it is the same
         everywhere.
 
     Examples
@@ -96,9 +96,9 @@ class Swelling(_Growing):
         The change of its volume, above −1: ``"20 %"`` of a gel that takes up a fifth of its volume
         of water. The mass stays that of the dry part.
     history
-        How it changes over time: a factor on the value. Default: it is there from the beginning.
+        A factor on the value over time. Default: the value is there from the beginning.
     profile
-        How it differs from place to place: a factor on the value. Default: it is the same
+        A factor on the value from place to place. Default: it is the same
         everywhere.
 
     Examples
@@ -125,10 +125,10 @@ class Thermal(_OfItsValue):
     reference
         The temperature at which it has the size of the design; default 293.15 K, which is 20 °C.
     history
-        How the temperature changes over time: 0 is the reference, 1 the value. Default: it is the
+        The temperature over time: 0 is the reference, 1 the value. Default: it is the
         value from the beginning.
     profile
-        How it differs from place to place: 0 is the reference, 1 the value. Default: it is the same
+        The temperature from place to place: 0 is the reference, 1 the value. Default: the same
         everywhere.
 
     Examples
@@ -160,7 +160,7 @@ class Thermal(_OfItsValue):
         return self.reference + factor * (self.value - self.reference)
 
     def base(self, factor: float) -> float:
-        """How many times as long the part is at a factor of its history."""
+        """Ratio by which the part is longer at a factor of its history."""
         return 1.0 + self.expansion * (self._temperature(factor) - self.reference)
 
     def share(self, part: float) -> Self:
@@ -171,9 +171,9 @@ class Thermal(_OfItsValue):
 class FiberStrain(_Growing):
     """A part whose fibers are so much longer along themselves when they are free of stress.
 
-    What is around them is not, and holds against it: a negative strain is a muscle, a shape-memory
-    wire or a drawn polymer thread in rubber. Without ``compression`` fibers that are longer by
-    themselves are slack.
+    The material around them is not, and holds against it: a negative strain is a muscle, a
+    shape-memory wire or a drawn polymer thread in rubber. Without ``compression``
+    fibers that are longer by themselves are slack.
 
     Parameters
     ----------
@@ -182,9 +182,9 @@ class FiberStrain(_Growing):
     value
         The strain, above −1: ``"-20 %"`` is a fifth shorter.
     history
-        How it changes over time: a factor on the value. Default: it is there from the beginning.
+        A factor on the value over time. Default: the value is there from the beginning.
     profile
-        How it differs from place to place: a factor on the value. Default: it is the same
+        A factor on the value from place to place. Default: it is the same
         everywhere.
 
     Examples

@@ -1,4 +1,4 @@
-"""Designs of several bodies as one: what each body's design says, in one list under its name."""
+"""Assembly of a design of several bodies: the contents of all their designs in one list."""
 
 from __future__ import annotations
 
@@ -36,17 +36,17 @@ _MOST_PARTS: Final = 250
 
 @dataclass
 class Assembly:
-    """What a design and those of its bodies say, in one list.
+    """Contents of a design and of its bodies' designs, in one list.
 
     Attributes
     ----------
     entries
         Entries of the design that replace its own.
     origins
-        Where what came from the design of a body stands there: for ``clamps[2]``
+        Source of each entry that came from the design of a body: for ``clamps[2]``
         ``bodies[0].design: clamps[0]``.
     left_out
-        What of the bodies' designs stays behind although it decides something.
+        Entries of the bodies' designs that stay behind although they decide something.
     """
 
     entries: dict[str, Any]
@@ -61,8 +61,8 @@ class Assembly:
         Raises
         ------
         DesignError
-            What cannot be said in the frame of the design, such as a clamp along an axis that is
-            turned.
+            Entries that cannot be expressed in the frame of the design, such as a clamp along a
+            turned axis.
         """
         lists = (
             *("layers", "springs", "tendons", "activations", "clamps", "loads"),
@@ -88,7 +88,7 @@ class Assembly:
 
 
 def is_assembled(design: Design) -> bool:
-    """Whether all that a design says is in its own lists, parts in the order of their bodies."""
+    """Check if a design holds all entries in its own lists, parts in the order of their bodies."""
     names = [body.name for body in design.bodies]
     if any(body.included is not None or body.parts for body in design.bodies):
         return False
@@ -254,7 +254,7 @@ class _Included:
         return f"{self.body.name}.{name}"
 
     def _of_body(self, name: str | None, where: str) -> str:
-        """What a body of the inner design is called in the outer one."""
+        """Name in the outer design of a body of the inner one."""
         if not self.inner.bodies:
             return self.body.name
         if name is None:
@@ -416,7 +416,7 @@ class _Included:
         return self.inner.clamps[index].axes == "xyz"
 
     def _left_behind(self) -> Iterator[ErrorDetail]:
-        """What decides how the inner design behaves alone, and the outer one does not say."""
+        """Report entries that affect the inner design alone and that the outer one lacks."""
         name = f"{self.where}.design"
         if self.inner.floor is not None and self.outer.floor is None:
             what = f'the floor of "{self.inner.name}" is left out: a floor is that of all'
@@ -441,7 +441,7 @@ class _Included:
 
 
 def _is_of_a_place(load: Record) -> bool:
-    """Whether a load acts at a place of a body and not on everything, as gravity does."""
+    """Check if a load acts at a place of a body and not on everything, as gravity does."""
     fields = type(load).model_fields
     return "region" in fields or "cavity" in fields
 

@@ -1,4 +1,4 @@
-"""What is attached to a body beside its material: elements between places of it."""
+"""Elements attached to a body beside its material, between places of it."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class PlaceOnBody(Protocol):
 
 
 class AttachingBody(Protocol):
-    """What elements are attached to: a :class:`~voxsoft.simulation.Setup`."""
+    """The body that elements are attached to: a :class:`~voxsoft.simulation.Setup`."""
 
     def place(self, probe: Probe, where: str) -> PlaceOnBody:
-        """Return what a point or region of the undeformed body is on the mesh."""
+        """Return the vertices of the mesh at a point or region of the undeformed body."""
 
     def position(self, place: PlaceOnBody) -> NDArray[np.float64]:
         """Return where a place is in the undeformed body, (3,), m."""
@@ -55,12 +55,12 @@ class Attachment(Record):
     @property
     @abstractmethod
     def places(self) -> tuple[Probe | Point, ...]:
-        """What it joins, in turn: places on the body, and points in space that do not move."""
+        """Places it joins, in turn: places on the body, and points in space that do not move."""
 
     @property
     @abstractmethod
     def summary(self) -> str:
-        """What it is, in a few words with its size, for pictures and lists."""
+        """Short description with its size, for pictures and lists."""
 
     def placed(self, region: Callable[[Region], Region], point: Callable[[Point], Point]) -> Self:
         """Return the same for a body in another frame.
@@ -68,7 +68,7 @@ class Attachment(Record):
         Parameters
         ----------
         region, point
-            What becomes of places on the body, and of points in space.
+            Functions that map places on the body, and points in space.
 
         Notes
         -----

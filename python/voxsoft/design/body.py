@@ -74,7 +74,7 @@ class Body(Record):
     Parameters
     ----------
     name
-        What results and contact call it, and what the names of its chambers and probes begin with:
+        Name in results and contact, and prefix of the names of its chambers and probes:
         ``"left.tip"``.
     design
         Another design, the same for as many bodies as you like: the path of its file from the
@@ -86,9 +86,10 @@ class Body(Record):
     parts
         Parts of its own in place of a design; their shapes are those of the outer design.
     voxel_size, fill
-        As for :class:`Design`; default: those of `design`, for parts of the outer one.
+        Grid of the body, as for :class:`Design`; default: those of `design`, for parts of the outer
+        one.
     position, rotation
-        Where it is: first turned about its own origin, or the center that the rotation gives in the
+        Pose: first turned about its own origin, or the center that the rotation gives in the
         frame of the body, then moved.
     mirror
         ``"x"``, ``"y"`` or ``"z"``: the mirror image of `design` in the plane through its origin
@@ -206,11 +207,11 @@ class Body(Record):
         Parameters
         ----------
         name
-            Of the image.
+            Name of the image.
         axis
             Across which the plane is.
         at
-            Where the plane is along the axis [m].
+            Position of the plane along the axis [m].
 
         Raises
         ------
@@ -235,7 +236,7 @@ class Body(Record):
         Parameters
         ----------
         names
-            Of the copies.
+            Names of the copies.
         axis
             Direction of the axis.
         center
@@ -267,5 +268,5 @@ def _value(parameter: Parameter, info: ValidationInfo) -> str | float:
     """A value as the inner design reads it: text, or a number in SI units."""
     if KINDS[parameter.kind].units:
         return write_exactly(parameter.value, parameter.kind)
-    # In a file a number without unit is one; what was typed in Python may be meant in SI units.
+    # In a file a number without unit is one; a number typed in Python may be meant in SI units.
     return f"{parameter.value!r}" if read_from_file(info) else parameter.value

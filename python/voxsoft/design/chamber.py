@@ -36,7 +36,7 @@ def _check_name(name: str) -> str:
     return name
 
 
-#: How loads and metrics may call a chamber.
+#: Name by which loads and metrics refer to a chamber.
 ChamberName = Annotated[Name, AfterValidator(_check_name)]
 
 
@@ -96,7 +96,7 @@ def chosen_cavities(choice: str | int | None, mesh: Mesh, where: str) -> tuple[i
 
 
 def name_of_cavity(mesh: Mesh, index: int) -> str:
-    """Return what to call a cavity: its name, or its index where it has none.
+    """Return the name of a cavity, or its index where it has none.
 
     Examples
     --------

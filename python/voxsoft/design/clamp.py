@@ -1,4 +1,4 @@
-"""Clamps: what is held, or moved in a prescribed way."""
+"""Clamps: regions that are held, or moved in a prescribed way."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Rotation(Record):
     axis
         Direction of the axis; its length does not matter.
     angle
-        How far to turn, ``"90 deg"``.
+        Angle of the turn, ``"90 deg"``.
     center
         A point on the axis; default: the origin.
 
@@ -43,7 +43,7 @@ class Rotation(Record):
 
 
 class Motion(Record):
-    """Where a clamp goes: first turned, then displaced, both scaled by the history.
+    """Prescribed motion of a clamp: first turned, then displaced, both scaled by the history.
 
     Parameters
     ----------
@@ -71,13 +71,13 @@ class Clamp(Record):
     Parameters
     ----------
     region
-        What is held.
+        Region that is held.
     axes
         The held axes, such as ``"xyz"`` (default) or ``"z"`` for a symmetry plane.
     motion
         The way the held vertices go; default: they stay.
     name
-        What results and metrics call it; default: its place, ``"clamps[0]"``.
+        Name in results and metrics; default: its place, ``"clamps[0]"``.
 
     Examples
     --------
@@ -109,7 +109,7 @@ class Clamp(Record):
 
 
 def clamp_names(clamps: Sequence[Clamp]) -> list[str]:
-    """What results call each clamp of a design: its name, else its place.
+    """Return the name of each clamp of a design in results, else its place.
 
     Examples
     --------

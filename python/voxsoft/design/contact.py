@@ -13,9 +13,9 @@ from voxsoft.errors import DesignError, ErrorDetail
 from voxsoft.records import Record, closest
 from voxsoft.units import PositiveLength, PositivePressure
 
-#: What a pair calls the body of the design.
+#: Name of the design's body in a pair.
 BODY: Final = "body"
-#: What it calls the floor.
+#: Name of the floor in a pair.
 FLOOR: Final = "floor"
 
 
@@ -57,9 +57,9 @@ class ContactPair(Record):
     kind
         ``"touching"`` (default), ``"none"`` where they pass through each other, or ``"bonded"``
         where they are within half a voxel of each other in the unloaded design: there they pull
-        and push, and what lies between them at rest stays.
+        and push, and the gap between them at rest stays.
     strength
-        The traction at which a bond lets go, by its pull and by what acts along it,
+        The traction at which a bond lets go, from its pull and the traction along it,
         the root of the sum of their squares; then they touch. Default: it never does.
     adhesion
         Adhesion of the two, of two different things that touch; default: that of :class:`Contact`.
@@ -105,7 +105,7 @@ write kind = "bonded", or leave strength out
 
 
 class Contact(Record):
-    """What touches: by default bodies with themselves, each other and all objects, and those too.
+    """Contact: by default of bodies with themselves, each other and all objects, and of those too.
 
     Parameters
     ----------
@@ -116,10 +116,10 @@ class Contact(Record):
     pairs
         Pairs that differ; of two entries for one pair the later one counts.
     separate
-        Whether objects that are in something in the unloaded design are moved out of it, along the
+        If true, objects that are in something in the unloaded design are moved out of it, along the
         shortest way, with a warning; default False, which refuses them.
     surface
-        What of the body touches: ``"smooth"`` (default) is the surface of its shapes, carried by
+        Contact surface of the body: ``"smooth"`` (default) is the surface of its shapes, carried by
         the voxels, ``"voxels"`` their faces.
 
     Notes
@@ -180,7 +180,7 @@ class Contact(Record):
 
 
 def names_of(objects: Sequence[Object], floor: bool, bodies: Sequence[str] = (BODY,)) -> list[str]:
-    """What touches: the bodies, the objects, and a floor if there is one."""
+    """List the names that contact knows: the bodies, the objects, and a floor if there is one."""
     return [*bodies, *(each.name for each in objects), *([FLOOR] if floor else [])]
 
 

@@ -34,7 +34,7 @@ class Dielectric(Activation):
         The field in V/m that the sheet stands as it is then. A state with more of it is warned of.
         Default: not looked at.
     history
-        How the field changes over time: a factor on the value. Default: constant.
+        A factor on the value of the field over time. Default: constant.
 
     Examples
     --------

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from voxsoft.design.model import Design
     from voxsoft.mesh import Mesh
 
-#: What a part calls all that no part before it names.
+#: Name by which a part takes all elements that no part before it names.
 REST: Final = "all"
-#: Entries of a design that are about voxels, and what to do without them.
+#: Entries of a design that are about voxels, each with a hint for a mesh from a file.
 _OF_VOXELS: Final[Mapping[str, str]] = {
     "voxel_size": "leave it out: the elements are those of the file",
     "fill": "leave it out: tetrahedra are full",
@@ -86,7 +86,7 @@ class FileMesh(Record):
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """Name in messages."""
         return Path(self.path).name
 
     def read(self) -> ReadMesh:
@@ -107,7 +107,7 @@ class FileMesh(Record):
 
 @dataclass(frozen=True, eq=False)
 class ReadMesh:
-    """What a design takes of a mesh file.
+    """Data that a design takes from a mesh file.
 
     Attributes
     ----------
@@ -157,7 +157,7 @@ def _scaled(body: MeshBody, name: str, unit: str | None) -> ReadMesh:
 
 
 def _sizes(vertices: NDArray[np.float64]) -> tuple[str, str]:
-    """What and hint of the error about a missing unit."""
+    """Text and hint of the error about a missing unit."""
     extents = np.ptp(vertices, axis=0)
     shown = " × ".join(f"{extent:.4g}" for extent in extents)
     return (
@@ -172,8 +172,8 @@ def with_element_size(document: Mapping[str, Any]) -> tuple[dict[str, Any], list
     Returns
     -------
     document : dict
-        With the mean size of the elements as ``voxel_size``: what else takes its size from the
-        voxels, such as rigid objects, goes by it. Without change where there is no mesh.
+        With the mean size of the elements as ``voxel_size``: other entries sized by the voxels,
+        such as rigid objects, use it. Without change where there is no mesh.
     problems : list of ErrorDetail
         The file cannot be read, or entries that need voxels.
     """

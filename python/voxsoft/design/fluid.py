@@ -1,4 +1,4 @@
-"""What fills chambers: gases, liquids and their temperature."""
+"""Contents of chambers: gases, liquids and their temperature."""
 
 from __future__ import annotations
 

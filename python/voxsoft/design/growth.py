@@ -1,4 +1,4 @@
-"""What an activation is: a part that is longer or shorter by itself, now and over time."""
+"""Base of activations: a part that is longer or shorter by itself, now and over time."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from voxsoft.records import Record
 
 
 class Growth(NamedTuple):
-    """How a free stretch changes over time: a power of what is linear between instants.
+    """Free stretch over time: a power of a base that is linear between instants.
 
     Attributes
     ----------
     times
         Instants in s, rising.
     bases
-        What the power is taken of at each of them, above zero.
+        Base of the power at each of them, above zero.
     power
         1 of a length, 1/3 of a volume.
     profile
-        How much of it each place has; None: all of it.
+        Profile over places; None: everywhere the same.
     """
 
     times: tuple[float, ...]
@@ -38,32 +38,32 @@ class Growth(NamedTuple):
 
     @property
     def at_the_end(self) -> Growth:
-        """What stays as it is at the end."""
+        """Constant growth with the final stretch."""
         return self._replace(times=(0.0,), bases=self.bases[-1:])
 
 
 class Activation(Record):
-    """A part that acts by itself; a kind says what its value means."""
+    """A part that acts by itself; each kind gives its value a meaning."""
 
     part: Name
     history: History | None = None
 
     @property
     def of_fibers(self) -> bool:
-        """Whether the fibers of the part alone are longer, and not what is around them."""
+        """True if only the fibers of the part are longer, and not the material around them."""
         return False
 
     @property
     @abstractmethod
     def growth(self) -> Growth | None:
-        """How many times as long it is over time when it is free of stress; None: that stays."""
+        """Ratio by which it is longer over time when it is free of stress; None: that stays."""
 
     @abstractmethod
     def share(self, part: float) -> Activation:
-        """A part of what it comes to in the end, without a history."""
+        """Scale its final activation by a factor, without a history."""
 
     def at(self, time: float) -> Self:
-        """What stays as it is at a time in s."""
+        """Constant activation with the value of a time in s."""
         if self.history is None:
             return self
         return self.replace(history=History(time=(0.0,), factor=(self.history.at(time),)))
@@ -75,6 +75,6 @@ class Activation(Record):
 
     @property
     def stretch(self) -> float:
-        """How many times as long it is in the end when it is free of stress."""
+        """Ratio by which it is longer in the end when it is free of stress."""
         growth = self.growth
         return 1.0 if growth is None else growth.last

@@ -1,4 +1,4 @@
-"""How a load or a motion changes over time."""
+"""Histories: factors of a load or a motion over time."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from voxsoft.units import Dimensionless, PositiveTime, Time, to_si
 _PIECES: Final = 64
 #: An expression is cut into as many pieces as bring it this near, as a part of its range.
 _NEAR: Final = 1.0 / 800.0
-#: The most pieces of an expression: what is steeper, such as a step, is a ramp this short.
+#: The most pieces of an expression: a steeper change, such as a step, is a ramp this short.
 _MOST_PIECES: Final = 4096
 #: The most instants of a history.
 _MOST: Final = 100_000
@@ -39,11 +39,11 @@ class Sine(Record):
     Parameters
     ----------
     period
-        Of one cycle.
+        Duration of one cycle.
     low, high
         The ends of the swing; default: 0 and 1.
     cycles
-        How many; after them it stays at the lower end.
+        Number of cycles; after them it stays at the lower end.
 
     Examples
     --------
@@ -66,18 +66,18 @@ class History(Record):
         Instants, rising; at least one. Two steps that follow each other at once take two instants
         a little apart.
     factor
-        What the load is multiplied by at each instant.
+        Factor on the load at each instant.
     sine
         Swings in place of `time` and `factor`.
     expression
         A function of ``t``, the time in seconds, in place of `time` and `factor`; the functions of
         :class:`voxsoft.shapes.Expression`. It is followed by straight pieces, an eight-hundredth
-        of its range off at most; what is steeper than 4,096 pieces can be, such as a step, is a
+        of its range off at most; a change steeper than 4,096 pieces allow, such as a step, is a
         ramp of one piece.
     duration
-        How long the expression goes on; then its last value stays.
+        Duration of the expression; then its last value stays.
     repeat
-        How many times the whole is gone through; its end must be its beginning. Default: once.
+        Number of times the whole is gone through; its end must be its beginning. Default: once.
 
     Examples
     --------
@@ -233,7 +233,7 @@ class History(Record):
 
 def _pieces_of(expression: str, duration: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Instants and values of an expression, near enough to each other to be joined by lines."""
-    # Looked at closely from the start: what is short must not hide between few instants.
+    # Sampled finely from the start: a short peak must not hide between few instants.
     times = np.linspace(0.0, duration, 2 * _MOST_PIECES + 1)
     values = _values_of(expression, times)
     pieces = _PIECES

@@ -1,4 +1,4 @@
-"""Moves, turns and mirror images of space, and what becomes of a body under them."""
+"""Moves, turns and mirror images of space, and of a body."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-#: How far from a direction another one may be and still count as the same.
+#: Largest angle between directions that count as the same.
 SAME: Final = 1e-9
 
 
@@ -68,19 +68,19 @@ class Isometry:
 
     @property
     def mirrors(self) -> bool:
-        """Whether it makes a left hand of a right one."""
+        """True if it makes a left hand of a right one."""
         return float(np.linalg.det(self.matrix)) < 0.0
 
     def point(self, at: Triple) -> Triple:
-        """Where a point [m] goes."""
+        """Image of a point [m]."""
         return _triple(self.matrix @ at + self.shift)
 
     def vector(self, along: Triple) -> Triple:
-        """What becomes of a vector, such as a displacement."""
+        """Image of a vector, such as a displacement."""
         return _triple(self.matrix @ along)
 
     def motion(self, motion: Motion) -> Motion:
-        """The motion that does to the image what `motion` did.
+        """Image of a motion: it does to the image of the body the same as `motion` to the body.
 
         A turn ``R`` becomes ``A R Aᵀ``: by the same angle about ``A a``, or about ``-A a`` in a
         mirror, as an axis ``a`` is a cross product and ``A u × A v = det(A) A (u × v)``.

@@ -35,7 +35,7 @@ class Layer(Record):
     Parameters
     ----------
     region
-        Where the layer is.
+        Place of the layer.
     young
         Young's modulus of the layer.
     thickness
@@ -45,17 +45,17 @@ class Layer(Record):
     density
         Default 1070 kg/m³.
     seal
-        Whether the layer, which must then lie in a plane, also spans the openings that it
+        If true, the layer, which must then lie in a plane, also spans the openings that it
         encloses, and so closes the chambers behind them. Default: no.
     name
-        What results call it.
+        Name in results.
 
     Notes
     -----
     The material is linear (Saint Venant-Kirchhoff in plane stress). Compressed, it wrinkles below
     the size of a voxel (tension field) and keeps a hundredth of its stiffness, or that of a voxel
     of the solid at its corners if that is less. Over an opening it
-    is held by the rim and stays flat in between: what it would bulge there, about
+    is held by the rim and stays flat in between: the bulge there, about
     ``(p s⁴/(E t))^(1/3)`` under a pressure ``p`` over a span ``s``, is left out. Where that counts,
     close the chamber by a layer of voxels.
 

@@ -1,4 +1,4 @@
-"""What a fluid flows through on its way: valves, tubes, pumps."""
+"""Valves, tubes and pumps that a fluid flows through."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ class Valve(Record):
     Parameters
     ----------
     conductance
-        Of gas: the sonic conductance ``C``, as data sheets give it, ``"0.5 L/s/bar"``.
+        Sonic conductance ``C`` for gas, as data sheets give it, ``"0.5 L/s/bar"``.
     critical_ratio
-        Of gas: the ratio ``b`` of the pressures after and before it, 0 to 1, below which the flow
+        Ratio ``b`` for gas of the pressures after and before it, 0 to 1, below which the flow
         is choked; default 0.3.
     area
-        Of liquid: the area of the orifice times its coefficient of discharge, about 0.6.
+        Area of the orifice for liquid, times its coefficient of discharge, about 0.6.
     history
-        How far it is open over time, 0 (closed) to 1: its conductance or area is in proportion.
+        Opening over time, 0 (closed) to 1: its conductance or area is in proportion.
         Default: always open. In equilibrium the last factor counts.
 
     Notes
@@ -88,12 +88,12 @@ class Tube(Record):
 
     @property
     def volume(self) -> float:
-        """What it holds [m³]."""
+        """Volume it holds [m³]."""
         return 0.7853981633974483 * self.diameter**2 * self.length
 
 
 class Pump(Record):
-    """What a pump delivers against a pressure, from the atmosphere; it lets nothing back.
+    """A pump from the atmosphere: its flow against a pressure; it lets nothing back.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ class Gravity(Record):
     value
         Acceleration; default 9.81 m/s².
     direction
-        Where down is; default −z. Its length does not matter.
+        Direction of gravity (down); default −z. Its length does not matter.
     history
         The factor over time; default: constant.
 
@@ -80,7 +80,7 @@ class Force(Record):
     Parameters
     ----------
     region
-        Where it acts.
+        Place where it acts.
     value
         Components x, y, z of the total force.
     history
@@ -168,7 +168,7 @@ def scaled(load: AnyLoad, factor: float) -> AnyLoad:
     load
         Any load.
     factor
-        What its value is multiplied by.
+        Factor on its value.
 
     Examples
     --------

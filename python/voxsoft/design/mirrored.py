@@ -1,4 +1,4 @@
-"""The mirror image of what a design says: shapes, places and directions."""
+"""The mirror image of a design's entries: shapes, places and directions."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def mirrored_part(part: Part, axis: Axis) -> Part:
 
 
 def mirrored_activation(activation: AnyActivation, axis: Axis) -> AnyActivation:
-    """The image of what acts in a part: a sheet with its normal, a profile with its axis."""
+    """Mirror the activation of a part: a sheet with its normal, a profile with its axis."""
     if isinstance(activation, Dielectric):
         return activation.replace(normal=mirrored_point(activation.normal, axis))
     profile = getattr(activation, "profile", None)
@@ -84,6 +84,6 @@ def mirrored_fiber(fiber: Fiber, axis: Axis) -> Fiber:
     """The image of a family of fibers: a right-handed helix becomes a left-handed one."""
     if fiber.direction is not None:
         return fiber.replace(direction=mirrored_point(fiber.direction, axis))
-    assert fiber.angle is not None  # what is not straight is wound
+    assert fiber.angle is not None  # fibers that are not straight are wound
     center = None if fiber.center is None else mirrored_point(fiber.center, axis)
     return fiber.replace(axis=mirrored_point(fiber.unit, axis), center=center, angle=-fiber.angle)

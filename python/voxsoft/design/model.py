@@ -70,29 +70,29 @@ SCHEMA: Final = "voxsoft/1"
 
 
 class Design(Record):
-    """A soft robot: parts, how it is held and loaded, and what to measure.
+    """A soft robot: parts, clamps, loads and measured quantities.
 
-    The same model reads a Python call, a dict and a design file. Wherever a value may stand, a
+    One model reads a Python call, a dict and a design file. Wherever a value may stand, a
     dict or file may hold a formula of parameters instead, ``"= radius - wall"``; the attributes
     hold the values, in SI units.
 
     Parameters
     ----------
     name
-        What to call it.
+        Name of the design.
     voxel_size
         Edge of a voxel. A design with a `mesh` has none; the attribute is then the edge of a cube
         with five of its tetrahedra.
     mesh
         The file whose tetrahedra are the body, in place of shapes on a grid.
     fill
-        What a cell that the surface cuts becomes. ``"binary"`` (default): full if its center is
+        Treatment of cells that the surface cuts. ``"binary"`` (default): full if the center is
         inside, else empty. ``"fraction"``: it carries the part of it that is inside, in mass,
         stiffness and pressure.
     shapes
         Named shapes, to be used by parts and by other shapes.
     parts
-        What is made of which material; the first one wins where parts overlap. In a design of
+        Parts and their materials; the first one wins where parts overlap. In a design of
         several bodies each names its own.
     bodies
         Several bodies, each on a grid of its own and in a pose of its own; default: the parts are
@@ -114,21 +114,21 @@ class Design(Record):
     activations
         Parts that are longer or shorter by themselves: swollen, warm, shrunk.
     clamps, loads, floor
-        How it is held and loaded. There is no gravity without a :class:`Gravity` load.
+        Supports, loads and the floor. There is no gravity without a :class:`Gravity` load.
     refine
-        Where voxels are half as large as elsewhere.
+        Regions in which voxels are half as large as elsewhere.
     symmetry
         Planes of symmetry: a half, quarter or eighth of the body is solved.
     objects, contact
-        Rigid things beside the body, and what touches with how much friction.
+        Rigid things beside the body, and contact with its friction.
     chambers
-        Cavities by name, each found by its place: what loads and metrics call ``cavity``.
+        Cavities by name, each found by its place; loads and metrics refer to them by ``cavity``.
     supplies, connections
-        What drives chambers as volumes of gas or liquid, and what lets them exchange it.
+        Drives of chambers as volumes of gas or liquid, and lines that let them exchange it.
     probes
         Named places to measure at.
     objectives, constraints
-        What a study asks of the design.
+        Goals of a study of the design.
     solver
         Choices about the solution.
 
@@ -212,7 +212,7 @@ class Design(Record):
         overrides
             New values of parameters by name: text with a unit, or numbers in SI units.
         from_file
-            Whether a bare number where a unit belongs is an error (default), or SI.
+            True if a bare number where a unit belongs is an error (default); else it is SI.
 
         Raises
         ------
@@ -289,7 +289,7 @@ class Design(Record):
         return design
 
     def _assemble(self, empty: tuple[str, ...]) -> list[ErrorDetail]:
-        """Gather what the designs of bodies say; return what is wrong."""
+        """Gather the entries of the designs of bodies; return their problems."""
         wrong = list(body_problems(self))
         if not wrong and not is_assembled(self):
             try:
@@ -301,7 +301,7 @@ class Design(Record):
             whole._empty_shapes = (*empty, *found.empty_shapes)
             whole._origins, whole._left_out = found.origins, tuple(found.left_out)
             self._assembled = whole
-            return []  # what contact and references lack is found in the whole
+            return []  # lacks of contact and references are found in the whole
         floor = self.floor is not None
         wrong += symmetry_problems(self.symmetry)
         wrong += contact_problems(self.objects, self.contact, floor, self.body_names)
@@ -311,14 +311,14 @@ class Design(Record):
     def assembled(self) -> Self:
         """The design with all that the designs of its bodies say in lists of its own.
 
-        What is of a body has its name: the parts and regions by ``body``, chambers and probes by
-        the beginning of their names. The same design where that is so already.
+        Entries of a body have its name: the parts and regions by ``body``, chambers and probes by
+        the beginning of their names. A design that is so already is returned as it is.
         """
         return self if self._assembled is None else self._assembled
 
     @property
     def body_names(self) -> tuple[str, ...]:
-        """What contact calls the bodies: ``"body"`` where there is but one without a name."""
+        """Names of the bodies in contact: ``"body"`` where there is but one without a name."""
         return tuple(body.name for body in self.assembled.bodies) or (BODY,)
 
     def alone(self, body: str) -> Self:
@@ -341,13 +341,13 @@ class Design(Record):
         return type(self)(**entries) if entries else self
 
     def origin_of(self, where: str) -> str:
-        """Where in which file an entry of an assembled design stands; the same for its own."""
+        """File and place of an entry of an assembled design; its own entries keep their place."""
         head, dot, rest = where.partition(".")
         return self._origins.get(head, head) + dot + rest
 
     @property
     def left_out(self) -> tuple[ErrorDetail, ...]:
-        """What of the designs of bodies is left out although it decides how they behave alone."""
+        """Entries of the designs of bodies left out although they decide how these behave alone."""
         return self._left_out
 
     def __str__(self) -> str:
@@ -372,7 +372,7 @@ class Design(Record):
         return self._empty_shapes
 
     def is_typed(self, key: str) -> bool:
-        """Whether an entry was typed in Python, where numbers may be without a unit."""
+        """Check if an entry was typed in Python, where numbers may be without a unit."""
         return key in self._typed
 
     def material_of(self, part: Part) -> Material:
@@ -399,7 +399,7 @@ class Design(Record):
         return load_card(part.material).material if own is None else own
 
     def __eq__(self, other: object) -> bool:
-        """Whether all values and all formulas are the same, wherever the two came from."""
+        """Compare all values and all formulas, wherever the two came from."""
         if not isinstance(other, Design):
             return NotImplemented
         return self._entries() == other._entries() and self._formulas == other._formulas
@@ -428,7 +428,7 @@ class Design(Record):
 
     @property
     def _whole(self) -> Self:
-        """The same with shapes that are empty, for what is written of it."""
+        """The design with its empty shapes, for writing it."""
         context = {"whole": True, "ready": True}
         return type(self).model_validate(self._source, context=context)
 
@@ -485,7 +485,7 @@ class Design(Record):
         Parameters
         ----------
         **values
-            By name: text with a unit, or numbers in SI units.
+            Values by name: text with a unit, or numbers in SI units.
 
         Raises
         ------
@@ -542,7 +542,7 @@ class Design(Record):
             Texts ``key=value`` as :func:`voxsoft.design.set_values` reads them, such as
             ``"voxel_size=2.5 mm"`` or ``"parts[0].material=ecoflex-00-50"``.
         **values
-            The same for single names: a parameter of the design, else a key of it. Text with a
+            Values by single names: a parameter of the design, else a key of it. Text with a
             unit, or numbers in SI units. They are set first.
 
         Raises
@@ -571,7 +571,7 @@ class Design(Record):
         Parameters
         ----------
         resolved
-            Whether to write values in place of formulas.
+            True to write values in place of formulas.
         """
         # `files` lies above `design` in the layers; this method is the one convenience that
         # reaches up, and it does so when called, so that no import runs in a circle.

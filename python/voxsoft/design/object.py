@@ -1,4 +1,4 @@
-"""Rigid objects beside the body: what it touches."""
+"""Rigid objects beside the body, with which it has contact."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ class Object(Record):
     Parameters
     ----------
     name
-        What results and :class:`Contact` call it.
+        Name in results and :class:`Contact`.
     shape
         Name of a shape of the design, or a shape. It is not part of the body.
     motion
-        ``"fixed"`` (default), ``"free"``, or the way that it goes, as a clamp does. What is free
-        moves as its weight and what it touches let it, over time or to where it is in equilibrium.
+        ``"fixed"`` (default), ``"free"``, or a prescribed motion, as of a clamp. A free object
+        moves under its weight and contact, over time or to its place in equilibrium.
     density, mass
-        Of a free object, either of them. Volume and moments of inertia are those of its shape, of
+        Density or mass of a free object. Volume and moments of inertia are those of its shape, of
         one density.
     voxel_size
-        How finely its surface is traced: edges are rounded by a third of it. Default: the voxel
+        Size of the triangles of its surface: edges are rounded by a third of it. Default: the voxel
         size of the design.
 
     Examples
@@ -74,7 +74,7 @@ class Object(Record):
 
     @property
     def is_free(self) -> bool:
-        """Whether it moves freely."""
+        """True if it moves freely."""
         return self.motion == "free"
 
     @property

@@ -141,7 +141,7 @@ class Parameter(Record):
     def _written(
         self, handler: SerializerFunctionWrapHandler, info: SerializationInfo
     ) -> dict[str, Any]:
-        """Write numbers with their units in JSON mode, and only what says something."""
+        """Write numbers with their units in JSON mode, and leave out empty entries."""
         return write_quantities(handler(self), self.kind, info)
 
     @property

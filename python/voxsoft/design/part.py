@@ -1,4 +1,4 @@
-"""Parts: what is made of what."""
+"""Parts: shapes with their materials."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Part(Record):
         before it deforms; 0.05 to 0.2 T in rubber filled with powder of neodymium-iron-boron.
         Default: no magnet. It takes a load ``magnetic_field`` to act.
     name
-        What results call it; default: the shape's name.
+        Name in results; default: the shape's name.
     body
         The body that it is of, in a design that has several.
 

@@ -1,4 +1,4 @@
-"""How much of an activation each place of a part has."""
+"""Profiles: the share of an activation at each place of a part."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Profile(Record):
     Parameters
     ----------
     axis
-        Along which it changes, with `at` and `factor`.
+        Axis along which it changes, with `at` and `factor`.
     at
         Coordinates along the axis, rising; two at least.
     factor

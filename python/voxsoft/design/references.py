@@ -32,8 +32,8 @@ def dangling_references(
     Parameters
     ----------
     document
-        The design as tables or records with values in place of formulas. What is of a wrong type
-        is passed over: reading the tables tells it.
+        The design as tables or records with values in place of formulas. Values of a wrong type
+        are passed over: reading the tables reports them.
     empty
         Names of subtracted shapes of which the parameters leave nothing.
     included

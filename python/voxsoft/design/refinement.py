@@ -51,5 +51,5 @@ class Refinement(Record):
         return self
 
 
-#: How many times as small voxels are where they are refined.
+#: Ratio of the large voxels to the refined ones.
 TIMES_AS_SMALL = 2

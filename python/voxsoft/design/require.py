@@ -9,19 +9,19 @@ from voxsoft.errors import DesignError
 
 
 def require_design(given: object, where: str = "design") -> Design:
-    """Return a design as it is, and refuse what is none.
+    """Return a design as it is, and refuse anything else.
 
     Parameters
     ----------
     given
-        What came.
+        The argument.
     where
         The argument's name.
 
     Raises
     ------
     DesignError
-        It is no design; for a path with the way to load it.
+        It is no design; the message for a path gives the way to load it.
 
     Examples
     --------

@@ -31,23 +31,23 @@ class ShapeMemory(Activation):
     value
         Its temperature in kelvin.
     strain
-        How much longer it is when all of it is transformed, above −1: ``"-4 %"`` shortens.
+        Strain when all of it is transformed, above −1: ``"-4 %"`` shortens.
     heating
         The temperatures in kelvin between which it transforms when it is heated.
     cooling
         Those between which it goes back when it is cooled: the higher one first, neither above
         those of `heating`.
     fibers
-        Whether it is the fibers of the part that are longer, and not all of it. Default: all of it,
+        True if the fibers of the part are longer, and not all of it. Default: all of it,
         along every axis.
     transformed
-        How much of it is transformed before it takes the temperature `value`, or that of the
+        Part of it that is transformed before it takes the temperature `value`, or that of the
         beginning of its history; default 0, cold.
     reference
         The temperature in kelvin that the factor 0 of a history stands for, as 1 does for `value`;
         default 293.15 K.
     history
-        How the temperature changes over time. Default: it is `value`.
+        The temperature over time. Default: it is `value`.
 
     Examples
     --------
@@ -101,12 +101,12 @@ class ShapeMemory(Activation):
 
     @property
     def of_fibers(self) -> bool:
-        """Whether the fibers of the part alone are longer, and not what is around them."""
+        """True if only the fibers of the part are longer, and not the material around them."""
         return self.fibers
 
     @property
     def growth(self) -> Growth:
-        """How many times as long it is over time, exact between the instants."""
+        """Ratio by which it is longer over time, exact between the instants."""
         states = self._states()
         bases = tuple(1.0 + self.strain * state.share for state in states)
         return Growth(tuple(state.time for state in states), bases, 1.0)
@@ -121,7 +121,7 @@ class ShapeMemory(Activation):
         )
 
     def at(self, time: float) -> Self:
-        """What stays as it is at a time in s, with what has been transformed by then."""
+        """Constant activation with the value of a time in s, and the part transformed by then."""
         if self.history is None:
             return self
         states = self._states()
@@ -134,7 +134,7 @@ class ShapeMemory(Activation):
         return self.replace(transformed=_part(share), history=held)
 
     def after(self, before: ShapeMemory) -> Self:
-        """The same that goes on from where another has come to."""
+        """Go on from the final state of another."""
         return self.replace(transformed=_part(before._states()[-1].share))
 
     def _temperature(self, factor: float) -> float:
@@ -148,7 +148,7 @@ class ShapeMemory(Activation):
         return min(max(share, min(heated, 1.0)), max(cooled, 0.0))
 
     def _states(self) -> list[_State]:
-        """What is transformed at all instants between which that is linear in time."""
+        """Transformed parts at all instants between which they are linear in time."""
         if self.history is None:
             return [_State(0.0, self._next(self.transformed, self.value))]
         temperatures = [self._temperature(factor) for factor in self.history.factors]
@@ -167,7 +167,7 @@ class ShapeMemory(Activation):
         return found
 
     def _corners(self, share: float, *, rising: bool) -> tuple[float, float]:
-        """Where the way at one temperature after the other meets its branch, and leaves it."""
+        """Temperatures where the path meets its branch, and where it leaves it."""
         (start, finish), (down, cold) = self.heating, self.cooling
         if rising:
             return start + share * (finish - start), finish
@@ -175,7 +175,7 @@ class ShapeMemory(Activation):
 
 
 class _State(NamedTuple):
-    """What is transformed at an instant in s."""
+    """Transformed part at an instant in s."""
 
     time: float
     share: float

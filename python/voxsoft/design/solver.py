@@ -28,7 +28,7 @@ Tolerance = Annotated[float, Field(gt=0, lt=1)]
 
 
 class Solver(Record):
-    """How to solve; whatever is left out is chosen from the design and reported.
+    """Solver settings; entries left out are chosen from the design and reported.
 
     These flat settings choose one of the methods of :mod:`voxsoft.simulation.solving.choice`, each
     a type with its own settings: load, arc-length and volume control of statics, relaxation,
@@ -69,7 +69,7 @@ class Solver(Record):
     control
         Statics only. ``"load"`` (default): all loads grow together; ``"arc-length"``: the
         same, followed through snaps; ``"volume"``: other loads first, then the pressurized volume
-        grows to ``volume_ratio`` and the pressure is what it takes, past the limit of a balloon.
+        grows to ``volume_ratio`` and the pressure follows, past the limit of a balloon.
         All three know contact; with ``"arc-length"`` objects that are free are refused.
     steps
         Arc-length and volume control only: the steps; default 20. With friction a step takes at
@@ -81,7 +81,7 @@ class Solver(Record):
         Load and arc-length control only: the first step of the path, as a part of the full load;
         default 1, or an arc of 0.2.
     error
-        How a run finds its discretization error: on ``"finer"`` voxels, half as large; on
+        Method for the discretization error of a run: on ``"finer"`` voxels, half as large; on
         ``"coarser"`` ones, twice as large; by ``"auto"`` (default), finer ones for small bodies and
         coarser ones for others, where they are still the same body; or not at all, ``"off"``.
         It changes no result.
@@ -114,5 +114,5 @@ class Solver(Record):
 
     @property
     def is_timed(self) -> bool:
-        """Whether a run ends at a time, at rest or not."""
+        """True if a run ends at a time, at rest or not."""
         return self.end_time is not None

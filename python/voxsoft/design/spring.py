@@ -35,7 +35,7 @@ class Spring(Attachment):
         The length at which it pulls at nothing; default: as long as it is on the unloaded body.
         A spring that is shorter than this pushes.
     name
-        What results call it.
+        Name in results.
 
     Notes
     -----

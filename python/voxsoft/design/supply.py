@@ -1,4 +1,4 @@
-"""What drives chambers: pressure, syringe, sealed gas, flow; and what joins them."""
+"""Supplies of chambers: pressure, syringe, sealed gas, flow; and lines between chambers."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def check_pressure(pressure: float, where: str) -> None:
 
 
 class Supply(Record):
-    """What all supplies have.
+    """Entries that all supplies have.
 
     Parameters
     ----------
@@ -44,19 +44,19 @@ class Supply(Record):
         The chamber that is driven: its name, the index of a cavity, or ``"all"`` for all
         cavities behind one manifold.
     chambers
-        Instead: several chambers that one manifold joins.
+        Several chambers that one manifold joins, in place of `chamber`.
     fluid
         ``"air"`` (default), ``"water"``, or a table of a gas or a liquid.
     temperature
-        Of gas; default 20 °C. Walls and lines keep it.
+        Temperature of gas; default 20 °C. Walls and lines keep it.
     line_volume
-        Of hoses and fittings, beside that of a `tube`; default 0.
+        Volume of hoses and fittings, beside that of a `tube`; default 0.
     leak
         A valve to the atmosphere; default: none.
     history
-        The factor over time of what is supplied; default: constant.
+        Factor over time on the supplied quantity; default: constant.
     name
-        What results call it; default: the chamber.
+        Name in results; default: the chamber.
     """
 
     chamber: CavityChoice | None = None
@@ -84,7 +84,7 @@ class Supply(Record):
 
     @property
     def medium(self) -> Gas | Liquid:
-        """What fills them."""
+        """The fluid that fills them."""
         return fluid_of(self.fluid)
 
 
@@ -165,11 +165,11 @@ class MassSupply(Supply):
     Parameters
     ----------
     value
-        The mass in chamber and lines; default: what is in them unloaded, under the atmosphere.
+        The mass in chamber and lines; default: their content unloaded, under the atmosphere.
     temperature
-        Of the sealed gas in the end; it begins at `fill_temperature`.
+        Temperature of the sealed gas in the end; it begins at `fill_temperature`.
     fill_temperature
-        At which the unloaded body is filled under the atmosphere; default 20 °C.
+        Temperature at which the unloaded body is filled under the atmosphere; default 20 °C.
 
     Examples
     --------
@@ -187,16 +187,16 @@ class MassSupply(Supply):
 class FlowSupply(Supply):
     """A source behind a valve, a tube, or one after the other; or a pump.
 
-    At rest nothing flows, and the chamber has the pressure of the source, less what a leak takes.
+    At rest nothing flows, and the chamber has the pressure of the source, less the drop by a leak.
 
     Parameters
     ----------
     source
         The gauge pressure of the source; negative is a vacuum. Give this or `pump`.
     pump
-        Instead: a pump that feeds the chamber itself.
+        A pump that feeds the chamber itself, in place of `source`.
     valve, tube
-        What the flow goes through, in this order; at least one of them with a `source`.
+        Elements that the flow goes through, in this order; at least one of them with a `source`.
 
     Examples
     --------
@@ -239,14 +239,14 @@ AnySupply = Annotated[
 
 
 class Connection(Record):
-    """A line between two chambers, through which they exchange what fills them.
+    """A line between two chambers, through which they exchange their fluid.
 
     Parameters
     ----------
     chambers
         The two. One without a supply is closed, and full of air under the atmosphere at first.
     valve, tube
-        What the flow goes through, from the first chamber to the second; at least one of them.
+        Elements that the flow goes through, from the first chamber to the second; at least one.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Planes of symmetry: what saves the solver one half of a body."""
+"""Planes of symmetry, each of which saves the solver one half of a body."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Symmetry(Record):
     plane
         The axis across the plane: ``"y"`` is the plane of x and z.
     at
-        Where it is along this axis, on faces of voxels; default: 0.
+        Position of the plane along this axis, on faces of voxels; default: 0.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Objectives and constraints: what a study asks of a design."""
+"""Objectives and constraints: goals of a study."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Objective(Record):
     maximize, minimize
         Name of the metric, such as ``"displacement"``; give one of the two.
     probe
-        Where it is measured, for a metric that needs a place.
+        Place of the measurement, for a metric that needs a place.
     base
         Another probe, where the line to the first one begins, for a metric that needs a line.
     axis
@@ -43,23 +43,23 @@ class Objective(Record):
         The name of a chamber of the design, or the index of a cavity; 0 is the largest. Default:
         ``"all"``.
     percentile
-        Of a metric that takes the largest of all voxels: what so many percent of the volume stay
+        Percentile of a metric that takes the largest of all voxels: that share of the volume stays
         at or below, above 0 and at most 100; default: 100.
     accuracy
         The error to leave of it, as a part of its size, ``"2 %"``: a run takes as small voxels as
         that needs. Default: as the solver says, or none.
     object
-        What touches the body, for a metric of contact: the name of an object, or ``"body"`` for the
-        body with itself. Default: the only object there is.
+        The other side of a contact, for a metric of contact: the name of an object, or
+        ``"body"`` for the body with itself. Default: the only object there is.
     tendon
         The name of a tendon, for a metric of one. Default: the only one there is.
     clamp
         The name of a clamp, or its place, ``"clamps[0]"``, for a metric of supports. Default: all
         that hold the body.
     region
-        Where supports count, in the unloaded body. Default: everywhere.
+        Place where supports count, in the unloaded body. Default: everywhere.
     along
-        Which number of a path of equilibria counts: ``"last"``, ``"largest"``, ``"smallest"`` or
+        The number of a path of equilibria that counts: ``"last"``, ``"largest"``, ``"smallest"`` or
         ``"mean"``. Default: the last. Without a path there is only one.
 
     Examples
@@ -108,7 +108,7 @@ class Constraint(Record):
     metric
         Name of the metric.
     probe, base, axis, cavity, percentile, object, tendon, clamp, region, along, accuracy
-        As for :class:`Objective`.
+        See :class:`Objective`.
     min, max
         The bounds, with units where the metric has one; at least one of them.
     kind

@@ -20,7 +20,7 @@ class Guide(Record):
     Parameters
     ----------
     point
-        Where the line runs through a body or an object, in the undeformed design.
+        Point of the line in a body or an object, in the undeformed design.
     body
         The body that carries the point, in whose own frame it is then; default: whichever it is in.
     object
@@ -28,8 +28,8 @@ class Guide(Record):
     fixed
         A point in space that does not move: a pulley, an eyelet of the frame, the motor.
     radius
-        Of a ball around a point of a body over which the pull is spread, as by a disc or a knot in
-        the rubber; default: none, as by a channel. An anchor that pulls hard needs one.
+        Radius of a ball around a point of a body over which the pull is spread, as by a disc or a
+        knot in the rubber; default: none, as by a channel. An anchor that pulls hard needs one.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def _point_or_table(value: object) -> str:
     return "point" if isinstance(value, (list, tuple)) else "table"
 
 
-#: A point of the body, or a table that says what carries it.
+#: A point of the body, or a table that says which body carries it.
 Waypoint = Annotated[
     Annotated[Point, Tag("point")] | Annotated[Guide, Tag("table")],
     Discriminator(_point_or_table),
@@ -77,7 +77,7 @@ Waypoint = Annotated[
 
 Drive = Literal["tension", "length", "shortening"]
 _DRIVES: Final[tuple[Drive, ...]] = ("tension", "length", "shortening")
-#: What says how it is pulled.
+#: Entries that give its pull.
 PULLS: Final = (*_DRIVES, "history")
 
 
@@ -95,7 +95,7 @@ class Tendon(Record):
     length
         The length without tension between the first point and the last.
     shortening
-        By how much it is drawn in from the length that it has in the undeformed design; negative
+        Length drawn in from the length that it has in the undeformed design; negative
         pays it out. Give one of `tension`, `length` and `shortening`.
     history
         The factor on that over time; default: constant.
@@ -103,19 +103,19 @@ class Tendon(Record):
         Force per strain, ``EA``, where `length` or `shortening` is given. Default: 100 kN, a steel
         rope of a millimeter, which 10 N make longer by a ten-thousandth.
     friction
-        The coefficient ``μ`` of the line on what it bends around; default: 0. The tensions on
+        The coefficient ``μ`` of friction of the line where it bends; default: 0. The tensions on
         both sides of a bend of angle ``θ`` have a ratio of at most ``exp(μ θ)``.
     guide
         ``"channel"`` (default): between points of one body the line runs inside of it, as in a
         tube that is molded in. ``"eyelets"``: it is guided at the points alone, and straight
         between them.
     name
-        What results call it.
+        Name in results.
 
     Notes
     -----
     It pulls and never pushes: a line that is longer than its way is slack. It has no mass, and
-    does not touch what is beside its way.
+    has no contact with things beside its way.
 
     Examples
     --------
@@ -169,12 +169,12 @@ class Tendon(Record):
 
     @property
     def value(self) -> float:
-        """What is given of `tension`, `length` and `shortening`."""
+        """The given one of `tension`, `length` and `shortening`."""
         return float(getattr(self, self.drive))
 
     @property
     def summary(self) -> str:
-        """What it is, in a few words with its size, for pictures and lists."""
+        """Short description with its size, for pictures and lists."""
         kind = "force" if self.drive == "tension" else "length"
         words = {"tension": "tendon, ", "length": "tendon of ", "shortening": "tendon drawn in by "}
         return words[self.drive] + format_quantity(self.value, kind)
@@ -189,7 +189,7 @@ class Tendon(Record):
         Parameters
         ----------
         guide
-            What becomes of a point on its way.
+            Function that maps a point on its way.
         """
         return self.replace(through=[guide(guide_of(each)) for each in self.through])
 

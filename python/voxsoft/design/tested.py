@@ -1,4 +1,4 @@
-"""How far the materials of a design were tested."""
+"""Tested stretch of the materials of a design."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from voxsoft.materials import Hyperelastic, Lattice, StretchRange
 
 
 def tested_ranges(design: Design) -> list[StretchRange | None]:
-    """How far the material of each part was tested; None where that is not known.
+    """Return the range in which the material of each part was tested; None where it is unknown.
 
     Examples
     --------

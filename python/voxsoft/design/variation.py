@@ -15,7 +15,7 @@ from voxsoft.design.part import Part
 from voxsoft.errors import DesignError, VoxSoftError
 from voxsoft.records import Record, closest, steps_of
 
-#: What a change may not reach: what is no part of the mechanics, and parameters, which have names.
+#: Entries closed to changes: those outside the mechanics, and parameters, which have names.
 _OTHERS = frozenset(
     {"schema", "name", "description", "parameters", "objectives", "constraints", "solver"}
 )
@@ -67,7 +67,7 @@ def with_number(design: Design, name: str, value: float) -> Design:
     design
         The design; it is not changed.
     name
-        As for :func:`number_of`.
+        See :func:`number_of`.
     value
         In SI units, exact to the last bit.
 
@@ -147,5 +147,5 @@ def _with(design: Design, node: Any, path: list[str], value: float, name: str) -
 
 
 def _fields(record: Record) -> dict[str, str]:
-    """From what a user writes to the name of the attribute."""
+    """Map the names that a user writes to those of the attributes."""
     return {info.alias or field: field for field, info in type(record).model_fields.items()}

@@ -44,9 +44,9 @@ class Job(Record):
     Attributes
     ----------
     spec
-        What is to be done.
+        Spec of the job.
     version, machine, written
-        By which VoxSoft, where and when it was begun last; empty where that is not known.
+        VoxSoft version, machine and time of the last start; empty where that is not known.
     """
 
     error_type: ClassVar[type[VoxSoftError]] = FileError
@@ -58,7 +58,7 @@ class Job(Record):
 
 
 class _File(Record):
-    """What ``job.toml`` holds."""
+    """Content of ``job.toml``."""
 
     error_type: ClassVar[type[VoxSoftError]] = FileError
 

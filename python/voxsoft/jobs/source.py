@@ -25,7 +25,7 @@ class DesignSource(Record):
     Parameters
     ----------
     text
-        As a design file holds it, with its formulas and comments.
+        Text of a design file, with its formulas and comments.
     folder
         An absolute path; empty where no path in the text is relative.
 
@@ -108,7 +108,7 @@ class MeasuredTable(Record):
     Parameters
     ----------
     name
-        What errors and reports call it: the name of its file.
+        Name in errors and reports: the name of its file.
     text
         Comma-separated, as :func:`voxsoft.calibration.read_measurement` reads it.
     select

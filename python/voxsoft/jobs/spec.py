@@ -36,7 +36,7 @@ Domain = Annotated[Range | Choices, BeforeValidator(_domain)]
 
 
 class JobSpec(Record):
-    """What the specs of all jobs have: the design, which may be given as a Design."""
+    """Fields of the specs of all jobs: the design, which may be given as a Design."""
 
     error_type: ClassVar[type[VoxSoftError]] = StudyError
 
@@ -61,10 +61,10 @@ class RunSpec(JobSpec):
     over
         A path to follow, as :func:`voxsoft.follow` reads it: ``"loads[0].value=0..30 kPa/16"``.
     figure
-        Whether ``body.png`` is drawn too, ``contact.png`` where something touches, and ``path.png``
+        True to draw ``body.png`` too, ``contact.png`` where something touches, and ``path.png``
         of a path.
     kept
-        Whether the folder holds what stood on the studio's screen: such a state no job repeats.
+        True if the folder holds the state on the studio's screen, which no job repeats.
 
     Examples
     --------
@@ -86,9 +86,9 @@ class Stage(Record):
     Parameters
     ----------
     sampler, batch
-        As for :class:`StudySpec`.
+        See :class:`StudySpec`.
     budget
-        How many trials the study held at its end.
+        Number of trials that the study held at its end.
     """
 
     error_type: ClassVar[type[VoxSoftError]] = StudyError
@@ -99,12 +99,12 @@ class Stage(Record):
 
 
 class StudySpec(JobSpec):
-    """Solve many designs: all of a grid (a sweep), or what a sampler suggests (an optimization).
+    """Solve many designs: all of a grid (a sweep), or suggestions of a sampler (an optimization).
 
     Parameters
     ----------
     sampler, batch, workers, seed
-        As for :meth:`voxsoft.study.Study.optimize`; the number of workers changes no result.
+        See :meth:`voxsoft.study.Study.optimize`; the number of workers changes no result.
     budget
         Number of trials in the end; None for a grid, which ends with its last point.
     space, objectives, constraints
@@ -112,9 +112,9 @@ class StudySpec(JobSpec):
     over
         A path that each design is followed along, ``"loads[0].value=0..30 kPa/8"``.
     confirm
-        How many of the best designs are solved again, as rubber and on finer voxels.
+        Number of the best designs that are solved again, as rubber and on finer voxels.
     earlier
-        What the study held already when this part of it began. Suggestions depend on where an
+        Trials that the study held when this part of it began. Suggestions depend on where an
         earlier budget cut a batch, so that a repetition goes the same way.
     """
 
@@ -152,7 +152,7 @@ class CalibrateSpec(JobSpec):
     bounds
         Range of each constant, as the `parameters` of :func:`voxsoft.calibration.calibrate`.
     method, generations, population, free_scale, refine, identify, seed, workers
-        As for :func:`voxsoft.calibration.calibrate`.
+        See :func:`voxsoft.calibration.calibrate`.
     card
         Name of the material card; default: that of the material or file that was measured.
     """
@@ -191,7 +191,7 @@ class CompareSpec(JobSpec):
     data
         Measured tables of the real body.
     solvers, outside, voxel_sizes, splits, time_limit
-        As for :func:`voxsoft.compare`; sizes in m, the time in s.
+        See :func:`voxsoft.compare`; sizes in m, the time in s.
     """
 
     kind: Literal["compare"] = "compare"

@@ -26,26 +26,26 @@ class Card(Record):
     Parameters
     ----------
     name
-        What designs call it by.
+        Name in designs.
     title
-        What people call it.
+        Name for people.
     material
         The model and its constants.
     source
-        Where the numbers come from: data and method, in plain words.
+        Source of the numbers: data and method, in plain words.
     caution
-        What the numbers are not good for, and what the source is worth.
+        Limits of the numbers, and the quality of the source.
     license
-        Under which terms the numbers may be passed on, where they are not VoxSoft's own.
+        Terms under which the numbers may be passed on, where they are not VoxSoft's own.
     shore
         Shore hardness as the maker states it: ``"00-30"`` on the scale 00, ``"10A"`` on the scale
         A. Empty where the card states none.
     elongation_at_break
         Strain at break (change of length over length), if it was measured.
     same_as, choice
-        Of a plain name, such as ``ecoflex-00-30``: the card that it stands for, and why that one.
+        For a plain name, such as ``ecoflex-00-30``: the card that it stands for, and the reason.
     calibration
-        What a calibration noted: voxel size, solver settings, errors, seed, versions.
+        Data noted by a calibration: voxel size, solver settings, errors, seed, versions.
 
     Examples
     --------

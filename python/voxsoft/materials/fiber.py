@@ -32,18 +32,18 @@ class Fiber(Record):
     Parameters
     ----------
     direction
-        Where straight fibers run in the undeformed body; the length does not matter.
+        Direction of straight fibers in the undeformed body; the length does not matter.
     angle
-        Of wound fibers to their axis, at each place of the wall: 0 runs along the axis, 90° around
-        it; between 0 and 90° the helix is right-handed, at a negative angle left-handed.
+        Angle of wound fibers to their axis, at each place of the wall: 0 runs along the axis, 90°
+        around it; between 0 and 90° the helix is right-handed, at a negative angle left-handed.
     axis
-        What wound fibers go around: ``"x"``, ``"y"``, ``"z"`` or three numbers.
+        Axis of wound fibers: ``"x"``, ``"y"``, ``"z"`` or three numbers.
     center
         A point of that axis [m]; default: the origin.
     modulus
         Young's modulus of a fiber times the part of the volume that is fiber.
     compression
-        Whether they carry compression too. Default: no, thin fibers buckle.
+        True if they carry compression too. Default: no, thin fibers buckle.
 
     Raises
     ------

@@ -81,7 +81,7 @@ class Hyperelastic(Record):
 
     The energy is ``W(λ̄₁, λ̄₂, λ̄₃) + K/2 (J - 1)²`` with the principal stretches freed of the
     change of volume ``J``, ``λ̄ = λ J^(-1/3)``, and the bulk modulus
-    ``K = 2 μ₀ (1 + ν)/(3 (1 - 2 ν))``. Models say what ``W`` is.
+    ``K = 2 μ₀ (1 + ν)/(3 (1 - 2 ν))``. Each model gives its ``W``.
 
     Parameters
     ----------
@@ -94,10 +94,10 @@ class Hyperelastic(Record):
         sudden load meets ``1/(1 - Σ g)`` times as much. Their ``g`` add up to less than 1.
         Default: none, a purely elastic material.
     mullins
-        How it softens where it was stretched more before, see :class:`Mullins`. The constants are
+        Softening where it was stretched more before, see :class:`Mullins`. The constants are
         those of the first loading. Default: not at all.
     tested_stretch
-        How far the specimens were stretched that the constants come from, if that is known;
+        Stretch of the specimens from which the constants come, if that is known;
         results that go farther carry a warning. Default: not known.
     """
 

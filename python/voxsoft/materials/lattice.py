@@ -28,15 +28,15 @@ class Lattice(Record):
     Parameters
     ----------
     edge
-        How hard the material resists stretch: the modulus of the springs along the edges of its
+        Resistance to stretch: the modulus of the springs along the edges of its
         tetrahedra. Young's modulus is 2.1 to 2.6 times as large, see :meth:`young`.
     bulk
-        How hard the material resists a change of volume: the bulk modulus of the tetrahedra. Large
+        Resistance to a change of volume: the bulk modulus of the tetrahedra. Large
         values lock thin walls in bending.
     density
         Default 1070 kg/m³, a platinum-cure silicone.
     tested_stretch
-        How far the specimens were stretched that the constants come from, if that is known;
+        Stretch of the specimens from which the constants come, if that is known;
         results that go farther carry a warning. Default: not known.
 
     Examples

@@ -21,7 +21,7 @@ _ROOT_PI: Final = math.sqrt(math.pi)
 class Mullins(Record):
     """Softening by the largest stretch so far, after Ogden and Roxburgh.
 
-    Where the energy ``W`` of the change of shape is below the largest ``P`` that it has had, the
+    If the energy ``W`` of the change of shape is below the largest ``P`` that it has had, the
     stress that comes from it is ``η`` times that of the first loading,
 
     ``η = 1 - erf((P - W)/(m + β P))/r``.
@@ -31,10 +31,10 @@ class Mullins(Record):
     r
         Above 1: at most the part ``1/r`` of the stress is lost.
     m
-        In Pa (J/m³), not negative: how much energy below the peak it takes to lose it. The larger,
-        the less softens what was stretched little.
+        Energy below the peak that it takes to lose it, in Pa (J/m³), not negative. The larger,
+        the less a material softens that was stretched little.
     beta
-        The same as a part of the peak, not negative; `m` and `beta` are not both zero. Default 0.
+        Energy as a part of the peak, not negative; `m` and `beta` are not both zero. Default 0.
     preconditioned
         Strain to which all of the material was pulled before, as a strip is; ``"40 %"`` or 0.4.
         Default 0: virgin material.

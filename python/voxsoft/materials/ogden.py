@@ -27,7 +27,7 @@ class Ogden(Hyperelastic):
     mu
         One to three moduli.
     alpha
-        As many exponents, none of them zero.
+        Exponents, as many as `mu`, none of them zero.
     poisson, density, prony
         See :class:`~voxsoft.materials.hyperelastic.Hyperelastic`.
 

@@ -25,7 +25,7 @@ _DENSITY: Final = 1240.0
 
 
 class Rigid(Record):
-    """What does not deform against the soft parts it is bonded to.
+    """A stiff part that does not deform against the soft parts it is bonded to.
 
     It has no stiffness of its own: a design solves it as a neo-Hookean solid of 10⁴ times the
     largest initial shear modulus among its soft parts, with Poisson's ratio 0.3.

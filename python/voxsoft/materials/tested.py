@@ -17,9 +17,9 @@ class StretchRange(Record):
     Parameters
     ----------
     largest
-        How far specimens were pulled, 1 or more.
+        Largest stretch of specimens in tension, 1 or more.
     smallest
-        How far they were pressed, above 0 and at most 1, if they were.
+        Smallest stretch in compression, above 0 and at most 1, if they were pressed.
 
     Examples
     --------

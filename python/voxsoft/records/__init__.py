@@ -1,4 +1,4 @@
-"""The base of every typed table of a design, and plain words for what is wrong with one."""
+"""The base of every typed table of a design, and plain messages about its problems."""
 
 from voxsoft.records.complaints import plain_error, problems_of, records_in
 from voxsoft.records.names import Name, check_name

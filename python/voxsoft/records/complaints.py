@@ -1,4 +1,4 @@
-"""Plain words for what pydantic finds wrong."""
+"""Plain messages for the problems that pydantic finds."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ def plain_error(error: ValidationError, model: type[Record], document: object) -
 def problems_of(
     error: ValidationError, model: type[Record], document: object, reported: Collection[Path] = ()
 ) -> list[ErrorDetail]:
-    """List what pydantic found wrong in `document`.
+    """List the problems that pydantic found in `document`.
 
     Parameters
     ----------
     error
-        What pydantic raised.
+        The error that pydantic raised.
     model
-        What the document was read as.
+        The model that the document was read as.
     document
-        What was read.
+        The document.
     reported
-        Paths at which something is known to be wrong already: nothing more is said of them.
+        Paths at which a problem is known already: no other one is reported there.
     """
     found = _without_echo(error.errors(include_url=False), document)
     problems = [problem for details in found for problem in _problems(details, model, document)]
@@ -52,7 +52,7 @@ def problems_of(
 
 
 def _is_reported(problem: ErrorDetail, known: Collection[str]) -> bool:
-    """Whether a problem is at or below one of the places that are known."""
+    """Check if a problem is at or below one of the places that are known."""
     where = problem.where
     return any(where == each or where.startswith((f"{each}.", f"{each}[")) for each in known)
 
@@ -154,8 +154,8 @@ def _in_words(details: ErrorDetails) -> str:
 def _without_echo(found: Sequence[ErrorDetails], document: object) -> list[ErrorDetails]:
     """Drop complaints that only repeat a finding further inside.
 
-    Where text or a table may stand (an operand's name, or the operand itself), a faulty table
-    also fails as text; and a list with a faulty entry also fails as too short.
+    Text or a table may stand in one place (an operand's name, or the operand itself). A faulty
+    table also fails as text; and a list with a faulty entry also fails as too short.
     """
     paths = [tuple(_real_keys(details, document)) for details in found]
     known = list(zip(found, paths, strict=True))
@@ -172,7 +172,7 @@ def _echoes(
     other: ErrorDetails,
     other_path: tuple[str | int, ...],
 ) -> bool:
-    """Whether an `other` finding is the one that the input's author needs."""
+    """Check if an `other` finding is the one that the input's author needs."""
     if path == other_path:
         wrong_unit = isinstance(other.get("ctx", {}).get("error"), UnitError)
         wrong_kind = other["type"] in {"union_tag_invalid", "union_tag_not_found"}
@@ -182,7 +182,7 @@ def _echoes(
 
 
 def _merged(problems: Sequence[ErrorDetail]) -> Iterator[ErrorDetail]:
-    """Say once what came where, with all that is expected: each branch of a union tells its own."""
+    """Report a faulty value once, with all that is expected by the branches of a union."""
     by_place: dict[tuple[str, str], list[ErrorDetail]] = {}
     for problem in dict.fromkeys(problems):
         came = problem.what.partition(" came; ")[0] if " came; " in problem.what else problem.what

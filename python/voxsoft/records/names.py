@@ -14,7 +14,7 @@ _REFUSED: Final = frozenset({"Cc", "Cs", "Zl", "Zp"})
 
 
 def check_name(name: str) -> str:
-    r"""Return a name as it is, in any script; refuse what no file and no terminal can show.
+    r"""Return a name as it is, in any script; refuse one that no file and no terminal can show.
 
     Examples
     --------

@@ -36,7 +36,7 @@ def place(path: Iterable[str | int]) -> str:
 
 
 def steps_of(where: str) -> list[str | int]:
-    """Read a place as keys and indices; what :func:`place` writes, or with dots alone.
+    """Read a place as keys and indices, as :func:`place` writes it, or with dots alone.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def _unquoted(text: str) -> str:
 
 
 def closest(name: str, known: Iterable[str]) -> str:
-    """Suggest the known name closest to a wrong one, or list what there is.
+    """Suggest the known name closest to a wrong one, or list the known names.
 
     Examples
     --------
@@ -73,7 +73,7 @@ def closest(name: str, known: Iterable[str]) -> str:
     >>> closest("color", ["shape", "material"])
     'known are material, shape'
     """
-    names = sorted({*known} - {name})  # what is known elsewhere does not help here
+    names = sorted({*known} - {name})  # a name known elsewhere does not help here
     matches = difflib.get_close_matches(name, names, n=1)
     if matches:
         return f'did you mean "{matches[0]}"?'

@@ -11,8 +11,8 @@ from pydantic import BaseModel
 def plain_values(value: Any) -> Any:  # noqa: ANN401 - a user hands over anything
     """Turn arrays, series and generators into lists, arrays of quantities into such of quantities.
 
-    Everything else stays as it is, in lists and mappings of its own: what a caller does later to
-    those that came changes nothing.
+    Everything else stays as it is, in lists and mappings of its own: later changes to the
+    caller's own lists and mappings have no effect.
 
     Examples
     --------

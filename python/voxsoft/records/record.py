@@ -49,7 +49,7 @@ class Record(BaseModel, metaclass=RecordType):
     error_type: ClassVar[type[VoxSoftError]] = DesignError
 
     def __init__(self, /, *values: Any, **data: Any) -> None:  # noqa: ANN401 - fields are typed
-        """Check what came; the class says what may come."""
+        """Check the arguments against the fields of the class."""
         if values:
             data = _by_name(type(self), values, data)
         data = plain_values(data)
@@ -152,7 +152,7 @@ class Record(BaseModel, metaclass=RecordType):
         return dir(type(self))
 
     def __repr_args__(self) -> Iterable[tuple[str | None, Any]]:
-        """What a printed record tells: the entries that are not what they would be anyway."""
+        """Entries of a printed record: those that differ from their defaults."""
         for name, info in type(self).model_fields.items():
             value = getattr(self, name)
             if info.is_required() or value != info.get_default(call_default_factory=True):
@@ -163,7 +163,7 @@ class Record(BaseModel, metaclass=RecordType):
 
 
 def _by_name(model: type[Record], values: tuple[Any, ...], data: dict[str, Any]) -> dict[str, Any]:
-    """Join what is given by position with what is given by name."""
+    """Join the values given by position with those given by name."""
     order = model._positional()
     name = model.__name__
     if not order:

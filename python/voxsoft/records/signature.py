@@ -1,4 +1,4 @@
-"""What ``help``, a notebook and Tab show of a record: its entries, in short words."""
+"""Signature of a record for ``help``, a notebook and Tab: its entries, in short words."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 else:
     _ModelType = type(BaseModel)  # it has no public name
 
-#: More members than this are called by what they have in common.
+#: Unions of more members than this are shown by a common word.
 _MOST_MEMBERS = 8
 
 
@@ -48,7 +48,7 @@ class RecordType(_ModelType):
         return sorted({*dir(object), *public, *fields, "__init__"})
 
 
-#: Of pydantic's, what is here only to refuse it.
+#: Methods of pydantic that are here only to be refused.
 _REFUSED = {"copy", "construct", "model_construct", "model_copy", "model_config", "error_type"}
 
 
@@ -77,7 +77,7 @@ def signature_of(model: Any) -> inspect.Signature:  # noqa: ANN401 - a record cl
 
 
 def _is_tag(info: FieldInfo) -> bool:
-    """Whether an entry only tells classes apart, and has one value."""
+    """Check if an entry only distinguishes classes, and has one value."""
     return get_origin(info.annotation) is Literal and len(get_args(info.annotation)) == 1
 
 

@@ -31,7 +31,7 @@ class Shape(Record):
     """A solid described by a function s(x, y, z) that is negative inside.
 
     Shapes are immutable values: operators and methods give new ones. ``a | b`` is the union,
-    ``a & b`` the intersection, ``a - b`` the difference. What a shape must have may be given by
+    ``a & b`` the intersection, ``a - b`` the difference. Required fields may be given by
     position, in the order of its signature; all else goes by name.
 
     Examples
@@ -46,7 +46,7 @@ class Shape(Record):
 
     error_type: ClassVar[type[VoxSoftError]] = ShapeError
 
-    kind: str = Field(description="Which shape this is.")
+    kind: str = Field(description="Kind of the shape.")
 
     @classmethod
     def _positional(cls) -> tuple[str, ...]:

@@ -37,7 +37,7 @@ class Offset(Shape):
 
     kind: Literal["offset"] = "offset"
     of: Name | AnyShape = Field(description="Name of a shape, or a shape.")
-    distance: Length = Field(description="How far the surface moves outward.")
+    distance: Length = Field(description="Distance by which the surface moves outward.")
 
     def make(self, scope: Scope) -> _core.Shape:
         """Return the compiled shape."""

@@ -46,7 +46,7 @@ class Translate(_OfOne):
     """
 
     kind: Literal["translate"] = "translate"
-    by: Point = Field(description="How far along x, y, z.")
+    by: Point = Field(description="Distance along x, y, z.")
 
     def make(self, scope: Scope) -> _core.Shape:
         """Return the compiled shape."""
@@ -136,7 +136,7 @@ class Twist(_OfOne):
     angle: Angle = Field(description="Angle by which the section at `height` is turned.")
     height: PositiveLength = Field(description="Height above the center with this angle.")
     axis: Axis = Field("z", description="Axis: x, y, z or three numbers.")
-    center: Point = Field(_ORIGIN, description="Where nothing turns; the origin by default.")
+    center: Point = Field(_ORIGIN, description="Point that does not turn; the origin by default.")
 
     def make(self, scope: Scope) -> _core.Shape:
         """Return the compiled shape."""
@@ -163,7 +163,7 @@ class Bend(_OfOne):
     radius: PositiveLength = Field(description="Radius of the line through the center.")
     axis: Axis = Field("z", description="Direction along which the shape is bent.")
     toward: Axis = Field("x", description="Side of the arc's center; not parallel to the axis.")
-    center: Point = Field(_ORIGIN, description="Where nothing moves; the origin by default.")
+    center: Point = Field(_ORIGIN, description="Point that does not move; the origin by default.")
 
     def make(self, scope: Scope) -> _core.Shape:
         """Return the compiled shape."""
@@ -186,7 +186,7 @@ class Taper(_OfOne):
     factor: _Factor = Field(description="Scale of the section at `height` and above.")
     height: PositiveLength = Field(description="Height above the center with this factor.")
     axis: Axis = Field("z", description="Axis: x, y, z or three numbers.")
-    center: Point = Field(_ORIGIN, description="Where the factor is 1; the origin by default.")
+    center: Point = Field(_ORIGIN, description="Point with factor 1; the origin by default.")
 
     def make(self, scope: Scope) -> _core.Shape:
         """Return the compiled shape."""

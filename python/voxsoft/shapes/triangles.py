@@ -101,7 +101,7 @@ def _whole_path(path: object) -> object:
 class TriangleMesh(Shape):
     """The inside of a mesh from a file: STL, OBJ, PLY, OFF, or anything that meshio reads.
 
-    Of tetrahedra and other volume cells the boundary counts, of the whole or of a `part`. Small
+    The boundary of tetrahedra and other volume cells counts, of the whole or of a `part`. Small
     holes and turned faces do not spoil the inside; ``voxsoft check`` tells of both. Distances are
     those to the triangles.
 

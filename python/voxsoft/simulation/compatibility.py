@@ -366,7 +366,7 @@ def refuse(design: Design, use: str) -> None:
     Parameters
     ----------
     design, use
-        As for :func:`refusals`.
+        See :func:`refusals`.
 
     Raises
     ------

@@ -50,7 +50,7 @@ _SIMPLE: Final[dict[type[types.Type], str]] = {
     types.NoneType: "null",
     types.StrType: "string",
 }
-#: Numbers of the page by name, with what is said of them.
+#: Numbers of the page by name, with their comments.
 _NUMBERS: Final = {
     "PROTOCOL": (PROTOCOL, "Page and server must speak the same."),
     "CREDITS": (CREDITS, "Frames that the server sends before it waits for an `ack`."),
@@ -80,7 +80,7 @@ def typescript() -> str:
         _constant("WRITTEN", _written(), "Formats of files that the server writes, by ending."),
         _constant("CAD_SUFFIXES", CAD_SUFFIXES, "Endings of files of CAD programs."),
         _constant("CAD_WHAT", WHAT, "Why they are not read."),
-        _constant("CAD_HINT", HINT, "What to do with them."),
+        _constant("CAD_HINT", HINT, "Remedy for them."),
         _constant("PACES", PACES, "Speeds of time: simulated seconds for each of the clock."),
         *(_codes(each) for each in (CloseCode, MessageKind, FrameFlag, TopologyFlag)),
         _constant("KINDS", _kinds(), "Kinds: SI unit, unit of bare numbers, exponents."),

@@ -28,7 +28,7 @@ class Range(Record):
     step
         The spacing of the values tried; default: any value, and 1 for whole numbers.
     log
-        Whether to search uniformly in the logarithm; not together with a step.
+        True to search uniformly in the logarithm; not together with a step.
 
     Examples
     --------

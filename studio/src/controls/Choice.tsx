@@ -77,12 +77,12 @@ export interface ButtonProps {
   children: ReactNode;
   /** Read by screen readers and shown as a tip; needed for icon buttons. */
   label?: string;
-  /** What it does, shown as a tip where the words on it say it shortly. */
+  /** Tip with its effect, where the words on it are short. */
   title?: string;
   kind?: "plain" | "primary" | "quiet" | "danger";
   icon?: boolean;
   pressed?: boolean;
-  /** Of one that opens something: whether that is open. */
+  /** For a button that opens something: true while that is open. */
   expanded?: boolean;
   disabled?: boolean;
   testId?: string;
@@ -108,7 +108,7 @@ export function Button(props: ButtonProps) {
   );
 }
 
-/** What an empty pane shows: what is missing, and what to do next. */
+/** Content of an empty pane: the missing thing, and the next step. */
 export function Empty(props: { title: string; children?: ReactNode }) {
   return (
     <div className="empty">

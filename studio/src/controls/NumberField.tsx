@@ -22,7 +22,7 @@ export interface NumberFieldProps {
   step?: number | null | undefined;
   /** The former value; where it differs, a mark behind the label shows it and gives it back. */
   fallback?: number;
-  /** Takes what was typed as a formula, where the place may hold one. */
+  /** Takes typed text as a formula, where the place may hold one. */
   formulas?: { readonly parameters: Amounts; take(formula: string): void };
   /** Adds a slider where `min` and `max` are known. */
   slider?: boolean;
@@ -31,7 +31,7 @@ export interface NumberFieldProps {
   disabled?: boolean;
   problem?: string | undefined;
   title?: string;
-  /** What is done with the value by a press within the field, while the pointer or the keyboard is there. */
+  /** Button within the field for the value, shown while the pointer or the keyboard is there. */
   tool?: ReactNode;
   /** Called with SI values; `settled` is false while a slider or label is being dragged. */
   onChange(value: number, settled: boolean): void;
@@ -172,11 +172,11 @@ export function NumberField(props: NumberFieldProps) {
   );
 }
 
-// How long an answer may take before the field shows what it is told instead of what was asked, ms.
+// Time that an answer may take before the field shows the value of the page instead of the requested one, ms.
 const PATIENCE = 800;
 
 /**
- * What was asked for last, until the owner of the value has answered: the answer may take a
+ * Value asked for last, until its owner has answered: the answer may take a
  * moment, and a slider that jumps back meanwhile cannot be moved by keys.
  */
 function useRequested(told: number, onChange: NumberFieldProps["onChange"]) {

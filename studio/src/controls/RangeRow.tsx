@@ -16,7 +16,7 @@ export interface RangeChange {
 export interface RangeRowProps {
   name: string;
   kind: string;
-  /** What a bare number counts in. */
+  /** Unit of a bare number. */
   unit: string;
   on: boolean;
   /** Said at the right, such as how many values there are, or the one that stays. */
@@ -27,7 +27,7 @@ export interface RangeRowProps {
   high: number;
   /** SI; null for any value in between; left out where there are no steps. */
   step?: number | null;
-  /** Whether values are spread over powers of ten; left out where that is no question. */
+  /** True if values are spread over powers of ten; left out where that is no question. */
   log?: boolean;
   problem?: string | undefined;
   onChange(change: RangeChange): void;

@@ -6,7 +6,7 @@ export interface RangeSliderProps {
   label: string;
   /** All values; others than finite ones do not count. */
   values: readonly number[];
-  /** What is kept; infinite where an end is open. */
+  /** Kept range; infinite where an end is open. */
   range: readonly [number, number];
   /** A value in words, such as "4.2 mm". */
   text(value: number): string;
@@ -72,7 +72,7 @@ export function RangeSlider(props: RangeSliderProps) {
   );
 }
 
-/** How many values lie in each of as many equal bins, over the largest such number. */
+/** Numbers of values in equal bins, over the largest such number. */
 function heights(values: readonly number[], least: number, most: number): number[] {
   const counts = new Array<number>(BARS).fill(0);
   for (const value of values) {

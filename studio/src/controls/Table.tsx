@@ -4,9 +4,9 @@ export interface Column<Row> {
   readonly key: string;
   readonly title: ReactNode;
   readonly right?: boolean;
-  /** What the cell shows. */
+  /** Content of the cell. */
   cell(row: Row): ReactNode;
-  /** What the column sorts by; without it the column does not sort. */
+  /** Key of the column for sorting; without it the column does not sort. */
   sort?(row: Row): number | string | null;
 }
 
@@ -19,7 +19,7 @@ export interface TableProps<Row> {
   onChoose?(row: Row, extend: boolean): void;
   onHover?(row: Row | null): void;
   empty?: ReactNode;
-  /** How many rows are drawn at most, after sorting. */
+  /** Largest number of drawn rows, after sorting. */
   most?: number;
   testId?: string;
 }
@@ -101,7 +101,7 @@ export function Table<Row>(props: TableProps<Row>) {
   );
 }
 
-/** What has no value stands last, whichever way the others are sorted. */
+/** A row without a value stands last, whichever way the others are sorted. */
 export function compare(
   a: number | string | null,
   b: number | string | null,

@@ -5,7 +5,7 @@ export interface TextFieldProps {
   value: string;
   title?: string | undefined;
   problem?: string | undefined;
-  /** Said in gray behind the value, such as what a formula comes to. */
+  /** Shown in gray behind the value, such as the result of a formula. */
   aside?: string | undefined;
   /** Names to offer while typing. */
   offers?: readonly string[];
@@ -13,15 +13,15 @@ export interface TextFieldProps {
   /** Numbers stand at the right, names and sentences at the left. */
   right?: boolean;
   disabled?: boolean;
-  /** The input alone; whoever holds it shows what `onRefusal` says. */
+  /** The input alone; its owner shows the text of `onRefusal`. */
   bare?: boolean;
   onRefusal?: ((problem: string | null) => void) | undefined;
-  /** Gives what is wrong with the text, or null after taking it. */
+  /** Gives the problem of the text, or null after taking it. */
   onCommit(text: string): string | null;
   onDefault?: (() => void) | undefined;
   /** Up and down arrows. */
   onNudge?: ((count: number) => void) | undefined;
-  /** What is done with the value by a press within the field, while the pointer or the keyboard is there. */
+  /** Button within the field for the value, shown while the pointer or the keyboard is there. */
   tool?: ReactNode;
 }
 

@@ -1,8 +1,8 @@
 import { type RefObject, useEffect } from "react";
 
 /**
- * Calls `close` on Escape and on a press outside of the element, as long as that is open; what opened it closes it
- * itself.
+ * Calls `close` on Escape and on a press outside of the element, as long as that is open; the
+ * button that opened it closes it itself.
  */
 export function useAway(
   box: RefObject<HTMLElement | null>,
@@ -18,7 +18,7 @@ export function useAway(
     };
     const key = (event: KeyboardEvent) => {
       if (event.key !== "Escape") return;
-      // One Escape does one thing: what lies over the picture closes before its tools end.
+      // One Escape does one thing: cards over the picture close before its tools end.
       event.stopPropagation();
       close("escape");
     };

@@ -1,11 +1,11 @@
-// What cavities are called, and how one of them is chosen.
+// Names of cavities, and the choice of one.
 
-/** What a cavity is called in words: its name, or its number as designs count. */
+/** Name of a cavity in words: its name, or its number as designs count. */
 export function cavityName(cavity: { readonly name: string }, index: number): string {
   return cavity.name || `cavity ${index}`;
 }
 
-/** All chambers by name, and by number those that have none; what is written now is always there. */
+/** All chambers by name, and by number those that have none; the written one is always there. */
 export function cavityOptions(
   names: readonly string[],
   cavities: readonly { readonly name: string }[],

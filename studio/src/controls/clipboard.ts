@@ -1,4 +1,4 @@
-// Copying what a pane shows.
+// Copying the content of a pane.
 import { toast } from "../store/studio";
 
 /** Put text on the clipboard, and say so or why not. */

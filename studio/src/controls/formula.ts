@@ -1,5 +1,5 @@
 // Formulas as VoxSoft reads them (python/voxsoft/design/formula.py has the grammar), so that a field
-// can say at once what is wrong; tests/unit/design/formulas.json holds both readers to the same cases.
+// can report errors at once; tests/unit/design/formulas.json holds both readers to the same cases.
 import {
   type Dimension,
   describeDimension,
@@ -53,13 +53,13 @@ export function evaluate(formula: string, parameters: Amounts = NO_PARAMETERS): 
   }
 }
 
-/** Whether a text speaks of a parameter, so that it is a formula even without its `=`. */
+/** Check if a text names a parameter, so that it is a formula even without its `=`. */
 function namesParameter(text: string, parameters: Amounts): boolean {
   return (text.match(/[A-Za-z_]\w*/g) ?? []).some((name) => Object.hasOwn(parameters, name));
 }
 
 /**
- * What was typed as a formula of a design file, or what is wrong with it; null where it is none.
+ * Read typed text as a formula of a design file, or give its error; null where it is none.
  * `due` is the dimension of its place.
  */
 export function writtenFormula(
@@ -215,7 +215,7 @@ class Reader {
     return `${name}^${sign}${exponent}`;
   }
 
-  /** Whether what follows a sign belongs to the unit before it: only units of daily use do. */
+  /** Check if the text after a sign belongs to the unit before it: only units of daily use do. */
   private goesOnAsUnit(): boolean {
     return COMMON_UNITS.includes(canonical(this.after)) && this.parameter(this.after) === undefined;
   }

@@ -31,9 +31,9 @@ export function dimensionOf(kind: string): Dimension {
 }
 
 /**
- * Read what was typed into a field of a design and give what belongs in the file: text with its
+ * Read the typed text of a field of a design and give the value for the file: text with its
  * unit, a plain number where there is none, or a formula. Arithmetic of numbers is worked out;
- * what names a parameter becomes a formula. What this page does not know, such as a rare unit,
+ * text that names a parameter becomes a formula. Text unknown to this page, such as a rare unit,
  * goes on to VoxSoft.
  */
 export function readWritten(

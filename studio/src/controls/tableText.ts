@@ -1,7 +1,7 @@
 // Tables as spreadsheets take them from the clipboard.
 type Cell = string | number | null | undefined;
 
-/** Rows with tabs between their cells; numbers in full, what is missing left empty. */
+/** Rows with tabs between their cells; numbers in full, missing ones left empty. */
 export function tableText(head: readonly string[], rows: readonly (readonly Cell[])[]): string {
   const text = (cell: Cell) =>
     cell == null || (typeof cell === "number" && !Number.isFinite(cell))

@@ -1,9 +1,9 @@
-// The units that this page reads. VoxSoft knows more; what is not known here is left to it.
+// The units that this page reads. VoxSoft knows more; unknown ones are left to it.
 import { COMMON_UNITS as COMMON_TABLE } from "../protocol";
 import { type Dimension, PLAIN, timesDimension } from "./dimension";
 
 export interface Unit {
-  /** How many SI units it is. */
+  /** Its size in SI units. */
   readonly factor: number;
   readonly dimension: Dimension;
 }
@@ -83,7 +83,7 @@ function readUnit(text: string): Unit | null {
 
 const known = new Map<string, Unit | null>();
 
-/** What a unit such as `g/cm^3` is worth, or null if this page does not know it. */
+/** Value of a unit such as `g/cm^3`, or null if this page does not know it. */
 export function unitOf(text: string): Unit | null {
   let unit = known.get(text);
   if (unit === undefined) {

@@ -3,7 +3,7 @@ import { describeDimension, PLAIN, sameDimension } from "./dimension";
 import { type Evaluated, evaluate, type Problem } from "./formula";
 import { canonical, unitOf } from "./unitTable";
 
-// What soft-robotics people read: millimeters, kilopascals.
+// Units that soft-robotics people read: millimeters, kilopascals.
 const SHOWN: Readonly<Record<string, string>> = {
   m: "mm",
   Pa: "kPa",
@@ -25,7 +25,7 @@ export function shownUnit(si: string): string {
   return SHOWN[unit] ?? unit;
 }
 
-/** How many SI units one `unit` is; an unknown unit counts as itself. */
+/** Size of one `unit` in SI units; an unknown unit counts as itself. */
 export function factorOf(unit: string): number {
   return unitOf(unit)?.factor ?? 1;
 }
@@ -34,7 +34,7 @@ export type Parsed = { readonly value: number } | Problem;
 
 /**
  * Read "5 mm", "0.5 cm", "2*5 mm + 1 cm" or, with a unit `m` and `mm` shown, a bare "5" or "2*5".
- * What has no unit at all counts in the unit that the field shows. Gives an SI value, or what is wrong.
+ * A number without any unit counts in the unit that the field shows. Gives an SI value, or the error.
  */
 export function parseQuantity(text: string, shown: string): Parsed {
   const typed = text.trim().replaceAll("−", "-");
@@ -56,7 +56,7 @@ export function parseQuantity(text: string, shown: string): Parsed {
   return read;
 }
 
-/** Whether a text is one number with its unit, known or not, so that nothing is to be worked out. */
+/** Check if a text is one number with its unit, known or not, so that nothing is to be worked out. */
 export function isOneNumber(text: string): boolean {
   const unit = QUANTITY.exec(text)?.[2];
   return (
@@ -67,7 +67,7 @@ export function isOneNumber(text: string): boolean {
 /** Calls of functions, and the letter inside of 1e3: letters that are neither unit nor parameter. */
 const EXPONENTS_AND_CALLS = /(?:min|max)(?=\s*\()|(?<=[\d.])e(?=[+-]?\d)/gi;
 
-/** A number with one unit, or what a formula comes to. */
+/** A number with one unit, or the result of a formula. */
 function amountOf(typed: string): Evaluated {
   const [, number, written = ""] = QUANTITY.exec(typed) ?? [];
   const unit = number === undefined ? null : unitOf(written);
@@ -92,7 +92,7 @@ export function formatNumber(value: number, digits = 4): string {
   return text.replaceAll("-", "−").replace("e+", "e");
 }
 
-// What rounding leaves of zero, by SI unit: beside bodies of millimeters and grams it is nothing. Places
+// Rounding error of zero, by SI unit: negligible beside bodies of millimeters and grams. Places
 // are rounded to 1e-16 of a body's size, strains in voxels of a hundredth of it to 1e-14, and stress to that
 // part of a bulk modulus, of rubber 100 MPa at most: 1e-6 Pa, a strain of 1e-11 where Young's modulus is
 // 100 kPa. Energy densities are rounded to 1e-16 of a modulus, of 10 MPa at most.

@@ -1,5 +1,5 @@
 // The typed side of the core in WebAssembly: crates/wasm/src/lib.rs lists the exports. Numbers go in as
-// arguments, bytes through the core's memory; what comes back is always a copy.
+// arguments, bytes through the core's memory; results are always copies.
 import type { AnyEvent, StatEvent } from "../protocol";
 
 interface Exports {
@@ -16,7 +16,7 @@ interface Exports {
   vx_positions(): number;
 }
 
-/** What the core says, which knows of no command's number. */
+/** Events of the core, which knows of no command's number. */
 export type Told = AnyEvent | { t: "error"; where: string; what: string; hint: string };
 
 /** The core said no, or its scene is damaged. */
@@ -42,7 +42,7 @@ export class Core {
     return core;
   }
 
-  /** What the writer noted beside the scene, mostly JSON. */
+  /** Notes of the writer beside the scene, mostly JSON. */
   get notes(): string {
     return this.text(this.exports.vx_notes());
   }
@@ -52,7 +52,7 @@ export class Core {
     return JSON.parse(this.text(this.exports.vx_stat())) as StatEvent;
   }
 
-  /** Do what a command asks. */
+  /** Execute a command. */
   command(command: object): Told[] {
     this.hand(new TextEncoder().encode(JSON.stringify(command)));
     return this.told(this.exports.vx_command());

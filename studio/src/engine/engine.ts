@@ -1,4 +1,4 @@
-// What the page needs of whatever runs the simulation: the native core behind a websocket
+// Interface of the page to the engine that runs the simulation: the native core behind a websocket
 // (server.ts) or the same core compiled to WebAssembly in a worker (wasm.ts).
 import type { AnyCommand, AnyEvent } from "../protocol";
 import type { Frame, Smooth, Topology } from "./frames";
@@ -10,13 +10,13 @@ export type Draft = Unnumbered<AnyCommand>;
 
 export type LinkState = "connecting" | "open" | "lost" | "refused";
 
-/** Whether the engine answers; `retryAt` is the time of the next attempt in ms since 1970. */
+/** State of the link: connected or not; `retryAt` is the time of the next attempt in ms since 1970. */
 export interface Link {
   readonly state: LinkState;
   readonly attempt: number;
   readonly retryAt: number | null;
   readonly reason: string;
-  /** Whether a new load of the page helps where it was refused; else its address is not good. */
+  /** True if a new load of the page helps where it was refused; else its address is not good. */
   readonly reload?: boolean;
 }
 

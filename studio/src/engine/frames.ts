@@ -15,13 +15,13 @@ export interface Topology {
   readonly triangles: Uint32Array;
   /** Edges of voxels, without face diagonals. */
   readonly edges: Uint32Array;
-  /** The corners of each voxel, x, y, z in bits 2, 1, 0: what a section shows; empty unless asked for. */
+  /** The corners of each voxel, x, y, z in bits 2, 1, 0, for sections; empty unless asked for. */
   readonly voxels: Uint32Array;
-  /** Of each triangle the part's index, or CAVITY + the cavity's index. */
+  /** Index of the part of each triangle, or CAVITY + the cavity's index. */
   readonly owners: Uint8Array;
 }
 
-/** Where the vertices are at one time, with one field's value at each. */
+/** Positions of the vertices at one time, with one field's value at each. */
 export interface Frame {
   readonly kind: "frame";
   readonly topology: number;
@@ -41,7 +41,7 @@ export interface Frame {
   readonly packed: Uint16Array;
 }
 
-/** How many points the surface has: they come before those that voxels alone have. */
+/** Number of points of the surface: they come before those that voxels alone have. */
 export function surfacePoints(topology: Topology): number {
   let last = -1;
   for (const point of topology.triangles) if (point > last) last = point;
@@ -54,7 +54,7 @@ export interface Smooth {
   readonly topology: number;
   readonly vertices: Float32Array;
   readonly triangles: Uint32Array;
-  /** Of each triangle the part's index. */
+  /** Index of the part of each triangle. */
   readonly owners: Uint8Array;
 }
 

@@ -5,10 +5,10 @@ import { CREDITS, PROTOCOL } from "../protocol";
 import type { Core, Told } from "./core";
 import type { Draft } from "./engine";
 
-/** What of the core a player needs. */
+/** Methods of the core that a player needs. */
 export type Run = Pick<Core, "notes" | "stat" | "command" | "advance" | "topology" | "frame">;
 
-/** What the writer of a scene says about it. */
+/** Notes of the writer of a scene. */
 export interface Notes {
   readonly version: string;
   readonly name: string;
@@ -16,11 +16,11 @@ export interface Notes {
   readonly sentence: string;
   readonly fields: Field[];
   readonly body: BodyEvent;
-  /** Where the body is in itself as it is shown first. */
+  /** Overlap of the body with itself as it is shown first. */
   readonly overlap?: OverlapEvent | null;
-  /** Where objects are then, and what touches. */
+  /** Poses of objects then, and contacts. */
   readonly moment?: Moment | null;
-  /** Whether what is shown first is an equilibrium. */
+  /** True if the state shown first is an equilibrium. */
   readonly at_rest?: boolean;
 }
 
@@ -177,14 +177,14 @@ export class Player {
     this.audience.event({ t: "moment", topology: this.notes.body.topology, moment });
   }
 
-  // What is known of objects is of the shape that is shown first as well.
+  // Data of objects are of the shape that is shown first as well.
   private forgetMoment(): void {
     if (!this.notes.moment || this.momentForgotten) return;
     this.momentForgotten = true;
     this.tellMoment(NOWHERE);
   }
 
-  // What is known of overlaps is of the shape that is shown first alone.
+  // Data of overlaps are of the shape that is shown first alone.
   private forgetOverlap(stat: StatEvent): void {
     const { overlap } = this.notes;
     if (!overlap || this.overlapForgotten || stat.frame === 0) return;
@@ -198,7 +198,7 @@ const NOWHERE: Moment = {
   ...{ frame: 0, time: 0, poses: [], contacts: [], fields: false, depth: null },
 };
 
-/** What a page without panes says where the core has nothing to say. */
+/** Text of a page without panes where the core has nothing to report. */
 function hint(state: StatEvent["state"]): string {
   if (state === "paused") return "Press Space, or drag the body.";
   return state === "playing" ? "Time runs. Drag the body to pull on it." : "";

@@ -12,7 +12,7 @@ const FINAL: readonly number[] = [CloseCode.OTHER_PROTOCOL, CloseCode.WRONG_MESS
 
 type Unsent = Omit<TextCommand, "seq"> | Omit<EditCommand, "seq">;
 
-/** How long to wait before attempt `n` (from 1), ms; up to a quarter is chance. */
+/** Pause before attempt `n` (from 1), ms; up to a quarter is chance. */
 export function pauseBefore(attempt: number, chance = Math.random()): number {
   const pause = Math.min(LONGEST_PAUSE, FIRST_PAUSE * 2 ** (attempt - 1));
   return pause * (1 - 0.25 * chance);

@@ -3,12 +3,12 @@ import type { AnyEvent } from "../protocol";
 import type { Draft, Engine, EngineListener } from "./engine";
 import { decode } from "./frames";
 
-/** What the page sends to the worker. */
+/** Messages of the page to the worker. */
 export type ToWorker =
   | { kind: "open"; core: ArrayBuffer; scene: ArrayBuffer }
   | { kind: "command"; command: Draft & { seq: number } };
 
-/** What the worker sends to the page; binary messages come as they are. */
+/** Messages of the worker to the page; binary messages come as they are. */
 export type FromWorker =
   | { kind: "event"; event: AnyEvent }
   | { kind: "failed"; reason: string }

@@ -9,7 +9,7 @@ import { seekTo } from "./seek";
 
 const COLORS = ["--series-1", "--series-2", "--series-3", "--series-4", "--series-5", "--series-6"];
 
-/** What can be plotted of a chamber, with its kind of quantity. */
+/** Readings of a chamber that can be plotted, with their kinds of quantity. */
 const READINGS = {
   pressure: { label: "Pressure", kind: "pressure" },
   volume: { label: "Volume", kind: "volume" },
@@ -17,7 +17,7 @@ const READINGS = {
 } as const satisfies Partial<Record<keyof ChamberCurve, { label: string; kind: string }>>;
 type Reading = keyof typeof READINGS;
 
-/** What supplies did over time: pressure, volume or flow of each of their chambers. */
+/** State of supplies over time: pressure, volume or flow of each of their chambers. */
 export default function ChambersPane() {
   const [reading, setReading] = useState<Reading>("pressure");
   const found = useStudio(({ chambers, body }) =>

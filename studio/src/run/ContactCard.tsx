@@ -5,7 +5,7 @@ import { useStudio } from "../store/studio";
 import { holdColor } from "../view/marks/forces";
 import { holdOf } from "./hold";
 
-/** What touches what in the frame that is shown: with how much force, over which area, and whether it holds. */
+/** Contacts in the frame that is shown: force, area, and whether each holds. */
 export function ContactCard() {
   const moment = useStudio(({ moments, stat }) => moments.get(stat?.frame ?? 0));
   if (!moment) return null;
@@ -68,7 +68,7 @@ export function isSmooth({ bound, slipping }: Touch): boolean {
   return (bound ?? 0) === 0 && slipping > 0.5;
 }
 
-/** How much of the friction that there can be is there: both in N, and as a part. */
+/** Present share of the largest possible friction: both in N, and as a part. */
 export function frictionOf({ friction, bound }: Touch): string {
   const most = bound ?? 0;
   const share = most > 0 ? Math.min(1, (friction ?? 0) / most) : 0;

@@ -9,7 +9,7 @@ const ENERGY = [
 ];
 const RESIDUAL = [{ label: "out of balance", color: "--series-3" }];
 
-/** How the body comes to rest: energies, and what is left of the forces over the load. */
+/** Decay to rest: energies, and the residual force over the load. */
 export default function EnergyPane() {
   useStudio((state) => state.plotted);
   const history = useStudio((state) => state.history);

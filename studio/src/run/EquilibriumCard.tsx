@@ -19,7 +19,7 @@ export function useEquilibrium(): EquilibriumEvent | null {
   );
 }
 
-/** What the equilibrium that is shown comes to: probes, metrics, chambers, and what is doubtful. */
+/** Values of the equilibrium that is shown: probes, metrics, chambers, and doubtful points. */
 export function EquilibriumCard() {
   const found = useEquilibrium();
   if (!found) return null;
@@ -97,7 +97,7 @@ export function EquilibriumCard() {
   );
 }
 
-/** What a number comes to on ever smaller voxels, with its error, on a line of its own. */
+/** Limit of a number on ever smaller voxels, with its error, on a line of its own. */
 function Estimate({ words }: { words: string }) {
   return words === "" ? null : (
     <span className="estimate" title="On ever smaller voxels, with its discretization error">
@@ -108,7 +108,7 @@ function Estimate({ words }: { words: string }) {
 
 function moved(probe: EquilibriumEvent["probes"][number]): string {
   const total = Math.hypot(...probe.displacement);
-  // What is left of rounding beside the whole is no motion.
+  // A rounding error beside the whole is no motion.
   const clean = (x: number) => (Math.abs(x) < 1e-6 * total ? 0 : x);
   const parts = probe.displacement.map((x) => formatNumber(1000 * clean(x), 3)).join(", ");
   return `${formatQuantity(total, "m", 4)} (${parts} mm)`;

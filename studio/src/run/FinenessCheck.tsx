@@ -1,4 +1,4 @@
-// Whether the mesh is fine enough for the numbers of the result, and what finer voxels would cost.
+// Check that the mesh is fine enough for the numbers of the result, and the cost of finer voxels.
 import { type ReactNode, useEffect, useState } from "react";
 import { Button, Select } from "../controls/Choice";
 import { formatNumber, formatQuantity, formatSpan } from "../controls/units";
@@ -67,7 +67,7 @@ function Answer({ of: found }: { of: EquilibriumEvent }) {
   );
 }
 
-/** What voxels half as large would cost; asked for anew with each body and each solution. */
+/** Cost of voxels half as large; asked for anew with each body and each solution. */
 function useCost(found: EquilibriumEvent): FinenessEvent | null {
   const { topology, frame } = found;
   const cost = useStudio((state) => state.fineness);
@@ -81,8 +81,7 @@ function useCost(found: EquilibriumEvent): FinenessEvent | null {
 
 function Missing(props: { of: EquilibriumEvent; cost: FinenessEvent | null }) {
   const { of: found, cost } = props;
-  if (found.looking)
-    return <p role="status">The error bars are being looked for on other voxels.</p>;
+  if (found.looking) return <p role="status">The error bars are being computed on other voxels.</p>;
   return (
     <>
       <p role="status">

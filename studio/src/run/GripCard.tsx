@@ -2,7 +2,7 @@ import { Section } from "../controls/Choice";
 import type { Grip } from "../protocol";
 import { useEquilibrium } from "./EquilibriumCard";
 
-/** Whether it is as it should be, in doubt, or not: the colors of the whole page. */
+/** Tone of a verdict, good, in doubt, or bad: the colors of the whole page. */
 const TONES: Readonly<Record<Grip["verdict"], string>> = {
   held: "is-good",
   slips: "is-doubtful",
@@ -10,7 +10,7 @@ const TONES: Readonly<Record<Grip["verdict"], string>> = {
   lost: "is-bad",
 };
 
-/** Whether what is free is held at the end of a run, by how much. */
+/** Grip on free objects at the end of a run, with its margin. */
 export function GripCard() {
   const grips = useEquilibrium()?.grips ?? [];
   if (grips.length === 0) return null;

@@ -6,7 +6,7 @@ import { useStudio } from "../store/studio";
 
 const AUTO = "auto";
 
-/** How fast time is shown; the automatic pace says which one it has found. */
+/** Pace of the shown time; the automatic pace shows the one it has found. */
 export function PaceChoice() {
   const pace = useStudio((state) => state.stat?.pace ?? 1);
   const chosen = useStudio((state) => state.stat?.pace_chosen ?? null);

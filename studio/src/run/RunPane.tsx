@@ -155,7 +155,7 @@ function Solver() {
   const solver = useStudio((state) => state.stat?.solver ?? "auto");
   const solving = useStudio((state) => state.stat?.state === "solving");
   const still = useStudio((state) => (state.body?.not_live ?? "") !== "");
-  // XPBD would go through what the body touches.
+  // XPBD would go through objects that the body touches.
   const methods = still ? METHODS.filter(({ value }) => value !== "xpbd") : METHODS;
   return (
     <Section title={still ? "Solution" : "Equilibrium"}>

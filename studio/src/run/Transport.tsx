@@ -142,7 +142,7 @@ export function Transport() {
   );
 }
 
-/** The time of what is shown; what was found without time has none. */
+/** Time of the shown state; a state found without time has none. */
 export function clockText(stat: Pick<StatEvent, "state" | "time" | "untimed"> | null): string {
   const resting = stat?.state === "at-rest";
   if (stat?.untimed || (resting && stat?.time === 0)) return resting ? "at rest" : "no time";

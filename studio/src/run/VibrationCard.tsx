@@ -56,7 +56,7 @@ export function VibrationCard() {
   );
 }
 
-/** How much slower or quicker a swing is drawn than it is. */
+/** Ratio by which a swing is drawn slower or quicker than it is. */
 function pace(frequency: number, period: number): string {
   const slower = frequency * period;
   return slower >= 1

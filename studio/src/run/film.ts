@@ -24,7 +24,7 @@ export function momentAt(film: readonly Moment[], time: number): Moment | undefi
   return film.findLast((moment) => moment.time <= time) ?? film[0];
 }
 
-/** Whether there is a film to show of the body. */
+/** Check if there is a film to show of the body. */
 export function useHasFilm(): boolean {
   return useStudio((state) => newestFilm(state.moments).length > 1);
 }

@@ -1,4 +1,4 @@
-// What the errors of an equilibrium come to: which numbers the mesh is fine enough for.
+// Verdict on the errors of an equilibrium: the numbers for which the mesh is fine enough.
 import { siUnit } from "../controls/kinds";
 import { cleaned, formatNumber } from "../controls/units";
 import type { EquilibriumEvent } from "../protocol";
@@ -25,7 +25,7 @@ export interface Rating {
 export function rated(found: EquilibriumEvent): Rating {
   const all = [
     ...found.probes.map(({ name, share }) => ({ name: `probe ${name}`, share })),
-    // Of what is zero up to rounding there is no part.
+    // A number that is zero up to rounding has no relative error.
     ...found.metrics
       .filter(({ value, kind }) => value !== null && cleaned(value, siUnit(kind)) !== 0)
       .map(({ name, share }) => ({ name: name.replaceAll("_", " "), share })),

@@ -17,7 +17,7 @@ export async function upload(file: File): Promise<void> {
   if (sent) openDocument({ t: "open", what: "upload", name: sent.name });
 }
 
-/** Why a file of this name is not opened, and what to try. */
+/** Reason why a file of this name is not opened, and a remedy. */
 export function refusalOf(name: string): { readonly what: string; readonly hint: string } {
   if (CAD_SUFFIXES.some((suffix) => name.toLowerCase().endsWith(suffix)))
     return { what: `${name} ${CAD_WHAT}`, hint: `Try: ${CAD_HINT}.` };
@@ -27,7 +27,7 @@ export function refusalOf(name: string): { readonly what: string; readonly hint:
   };
 }
 
-/** Send a file to the server; gives what it is called there and where it is, or null where it was not taken. */
+/** Send a file to the server; gives its name and path there, or null where it was not taken. */
 export async function sendFile(file: File): Promise<{ name: string; path: string } | null> {
   if (file.size > LARGEST_UPLOAD) {
     toast({

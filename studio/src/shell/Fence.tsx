@@ -1,4 +1,4 @@
-// What is shown in place of a pane, or of the whole page, once an error has taken it down.
+// Replacement for a pane, or the whole page, once an error has taken it down.
 import { Component, type ReactNode } from "react";
 import { Button, Empty } from "../controls/Choice";
 
@@ -7,7 +7,7 @@ const NO_WEBGL =
 
 interface FenceProps {
   children: ReactNode;
-  /** What to show instead; `again` tries what stood there once more. */
+  /** Content shown instead; `again` tries the pane once more. */
   instead(error: Error, again: () => void): ReactNode;
 }
 
@@ -44,7 +44,7 @@ export function PaneFence(props: { title: string; children: ReactNode }) {
 /** The last resort: an error that no pane has held, as one while a pane is taken away. */
 export function PageFence(props: {
   children: ReactNode;
-  /** Where the design and its runs are now, and what else may help. */
+  /** Present place of the design and its runs, and other help. */
   comfort: string;
   resetLayout?: () => void;
 }) {

@@ -2,7 +2,7 @@ import { useEffect, useState } from "react";
 import { Button } from "../controls/Choice";
 import { useStudio } from "../store/studio";
 
-/** Whether the engine answers, in words: color alone tells nobody anything. */
+/** State of the engine's link, in words: color alone is not enough. */
 export function LinkLamp() {
   const link = useStudio((state) => state.link);
   const [, tick] = useState(0);

@@ -1,4 +1,4 @@
-// What lies over the page and goes away with Escape: palette, shortcuts, tour, toasts.
+// Sheets over the page that go away with Escape: palette, shortcuts, tour, toasts.
 import { useEffect, useMemo, useRef, useState } from "react";
 import { Button } from "../controls/Choice";
 import { openSheet, setMode, usePage } from "../store/page";
@@ -68,7 +68,7 @@ function Scrim(props: { children: React.ReactNode; label: string; testId: string
   );
 }
 
-/** How well `query` matches: all its letters in order, better where they begin words. */
+/** Score of `query` in a title: all its letters in order, better where they begin words. */
 export function matches(query: string, title: string): number {
   const text = title.toLowerCase();
   let score = 0;

@@ -35,7 +35,7 @@ export function Toasts() {
   );
 }
 
-/** Where messages lie, as long as there are any: panes may be moved under them at any time. */
+/** Place of messages, as long as there are any: panes may be moved under them at any time. */
 function usePlace(needed: boolean): ToastPlace | null {
   const [place, setPlace] = useState<ToastPlace | null>(null);
   useLayoutEffect(() => {

@@ -7,7 +7,7 @@ import { toast, useStudio } from "../store/studio";
 import { whenWords } from "../store/when";
 import { Icon } from "./icons";
 
-/** Texts of the document as they were saved or left: what changed since, and a way back. */
+/** Texts of the document as they were saved or left: the changes since, and a way back. */
 export function VersionsSheet() {
   const found = useStudio((state) => state.versions);
   const document = useStudio((state) => state.document);
@@ -87,7 +87,7 @@ export function BodyPicture(props: { url: string }) {
   );
 }
 
-/** What was changed since a version, and a way back to it. */
+/** Changes since a version, and a way back to it. */
 function Difference(props: { id: string | null }) {
   const difference = useStudio((state) => state.versionDifference);
   if (difference === null || difference.id !== props.id) return <div className="difference" />;

@@ -53,7 +53,7 @@ export function showPane(id: string): void {
 export function togglePlay(): void {
   const { stat, body, moments } = useStudio.getState();
   const state = stat?.state;
-  // Time does not run for a body that may touch something: what was solved is shown again.
+  // Time does not run for a body that may touch something: the solved motion is shown again.
   if (body?.not_live && newestFilm(moments).length > 1) {
     toggleFilm();
     return;
@@ -318,7 +318,7 @@ function keyName(
 // is pressed, so :focus-visible does not tell it from one that was reached by keyboard.
 let clicked: Element | null = null;
 
-/** Whether a key belongs to the element that has the focus, and not to the page. */
+/** Check if a key belongs to the element that has the focus, and not to the page. */
 function ownsKey(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target.isContentEditable || target.closest(".cm-editor")) return true;

@@ -62,7 +62,7 @@ const NARROW = 1400;
 /** A node of a kept layout: a group with its panes, or nodes beside each other. */
 type KeptNode = SerializedDockview["grid"]["root"];
 
-/** Whether a kept layout has panes in its groups: one without would show an empty page. */
+/** Check if a kept layout has panes in its groups: one without would show an empty page. */
 export function holdsViews(layout: SerializedDockview | undefined): layout is SerializedDockview {
   const shown = (node: KeptNode | undefined): string[] => {
     if (!node) return [];

@@ -1,4 +1,4 @@
-// Where messages lie: in the picture, over its ground, beside what can be pressed there.
+// Place of messages: in the picture, over its ground, beside the buttons there.
 
 export interface Box {
   readonly left: number;

@@ -1,4 +1,4 @@
-// Opens what was chosen on the start screen, and lets it move where it can.
+// Opens the choice made on the start screen, and lets it move where it can.
 import { openDocument } from "../shell/actions";
 import { openSheet, type Pending, usePage } from "../store/page";
 import { send } from "../store/session";
@@ -25,7 +25,7 @@ export function openRobot(what: "robot" | "start", name: string): void {
     if (!document || document.rev <= rev || body?.rev !== document.rev || !stat) return;
     if (stat.topology !== body.topology) return; // of the body before
     stop();
-    // What touches does not move by itself: it has its equilibrium once that is asked for.
+    // A body with contact does not move by itself: it has its equilibrium once that is asked for.
     if (!body.not_live) send({ t: "play" });
   });
   setTimeout(stop, LONGEST);

@@ -53,7 +53,7 @@ export function open(ways: readonly Way[], answers: Answers): Way[] {
   );
 }
 
-/** Whether an answer leads somewhere, with those that were given to the questions before it. */
+/** Check if an answer leads to a robot, with those given to the questions before it. */
 export function leads(
   ways: readonly Way[],
   answers: Answers,
@@ -86,7 +86,7 @@ export function answer(
   return given;
 }
 
-/** Where the answers lead once all questions have one. */
+/** Robot for the answers once all questions have one. */
 export function found(ways: readonly Way[], answers: Answers): Way | null {
   if (QUESTIONS.some(({ question }) => answers[question] === undefined)) return null;
   return open(ways, answers)[0] ?? null;

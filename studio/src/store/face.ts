@@ -5,7 +5,7 @@ import type { Face } from "../view/hands/face";
 /** A place as it is written. */
 export type WrittenPlace = readonly (string | number)[];
 
-/** Where a tendon begins that has no other place yet, and of which design. */
+/** First place of a tendon that has no other yet, and its design. */
 interface TendonBegun {
   readonly place: WrittenPlace;
   readonly design: string;
@@ -14,7 +14,7 @@ interface TendonBegun {
 interface Pressed {
   readonly face: Face | null;
   readonly tendon: TendonBegun | null;
-  /** Whether it was pressed by a key: then the keyboard goes on in the card of the place. */
+  /** True if it was pressed by a key: then the keyboard goes on in the card of the place. */
   readonly byKey: boolean;
 }
 

@@ -7,7 +7,7 @@ export type Gathered = TrialEvent | GenerationEvent;
 /** Milliseconds between two times that they are taken up. */
 const EVERY = 150;
 
-/** What takes events one by one, and passes on gathered ones together; their order stays. */
+/** Takes events one by one, and passes on gathered ones together; their order stays. */
 export function gathering(
   apply: (event: Exclude<AnyEvent, Gathered>) => void,
   applyAll: (events: readonly Gathered[]) => void,
@@ -28,7 +28,7 @@ export function gathering(
       timer ??= setTimeout(takeUp, EVERY);
       return;
     }
-    // How far a job is may be told before its last trials are drawn; all else waits for them.
+    // Progress of a job may be reported before its last trials are drawn; all else waits for them.
     if (event.t !== "job" || event.state !== "running") takeUp();
     apply(event);
   };

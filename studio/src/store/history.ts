@@ -1,4 +1,4 @@
-// What was plotted over time: columns that grow, outside of React. Beyond the longest length
+// Plotted values over time: columns that grow, outside of React. Beyond the longest length
 // every second row is dropped, so that a long run stays whole at a coarser spacing.
 import type { PlotEvent } from "../protocol";
 
@@ -36,7 +36,7 @@ export class PlotHistory {
     }
   }
 
-  // A probe that is added keeps what the others have shown so far.
+  // A probe that is added keeps the earlier values of the others.
   private rename(names: readonly string[]): void {
     const rows = this.length;
     const old = new Map(this.names.map((name, i) => [name, this.columns[i] ?? []]));

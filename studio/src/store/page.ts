@@ -1,4 +1,4 @@
-// What belongs to this page alone: mode, theme, open sheets. Kept between visits; the mode
+// State of this page alone: mode, theme, open sheets. Kept between visits; the mode
 // stands in the address, so that a reload or a copied address shows the same.
 import { create } from "zustand";
 import type { OpenCommand } from "../protocol";
@@ -26,7 +26,7 @@ export type Sheet =
   | "discard"
   | null;
 
-/** What is to be opened once the open design has been saved or given up. */
+/** File to be opened once the open design has been saved or given up. */
 export type Pending = Pick<OpenCommand, "t" | "what" | "name">;
 
 export interface Page {
@@ -50,7 +50,7 @@ function readAddress(): Partial<Page> {
   };
 }
 
-/** What was kept under `key`, or an empty object where nothing readable was. */
+/** State kept under `key`, or an empty object where nothing readable was. */
 export function kept<T extends object>(key: string): Partial<T> {
   try {
     const value: unknown = JSON.parse(localStorage.getItem(key) ?? "{}");

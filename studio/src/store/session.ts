@@ -6,7 +6,7 @@ import { gathering } from "./gather";
 import { apply, applyAll, toast, useStudio } from "./studio";
 import { flushText } from "./typing";
 
-/** What draws bodies; the viewport registers itself here. */
+/** Drawer of bodies; the viewport registers itself here. */
 export interface Stage {
   topology(topology: Topology): void;
   frame(frame: Frame): void;
@@ -25,7 +25,7 @@ export function currentEngine(): Engine | null {
   return engine;
 }
 
-/** Called whenever the engine has (again) answered, to tell it what this tab shows. */
+/** Called whenever the engine has (again) answered, to send it the view of this tab. */
 export function onReady(callback: () => void): () => void {
   ready.add(callback);
   return () => {
@@ -63,7 +63,7 @@ export function connect(chosen: Engine): void {
   });
 }
 
-/** Let `next` draw from now on; it gets what came last at once. */
+/** Let `next` draw from now on; it gets the newest messages at once. */
 export function present(next: Stage): void {
   stage = next;
   if (lastTopology) next.topology(lastTopology);
@@ -71,7 +71,7 @@ export function present(next: Stage): void {
   if (lastFrame) next.frame(lastFrame);
 }
 
-/** Commands that speak of the document, which must hold what was typed by then. */
+/** Commands about the document, which must hold the typed text by then. */
 const ON_DOCUMENT: ReadonlySet<Draft["t"]> = new Set([
   "edit",
   "copy",

@@ -1,4 +1,4 @@
-// What the page knows. Events of the engine are folded in by `apply`; panes read by selectors.
+// State of the page. Events of the engine are folded in by `apply`; panes read by selectors.
 import { create } from "zustand";
 import type { Link } from "../engine/engine";
 import type {
@@ -43,7 +43,7 @@ export interface Toast {
   readonly what: string;
   readonly hint: string;
   readonly action?: { readonly label: string; run(): void };
-  /** What it is about, where a newer message about the same takes its place. */
+  /** Subject, where a newer message about the same takes its place. */
   readonly about?: string;
 }
 
@@ -61,12 +61,12 @@ export interface AskedPace {
 export interface Studio {
   link: Link;
   hello: HelloEvent | null;
-  /** What the start screen shows. */
+  /** Content of the start screen. */
   start: StartEvent | null;
   document: DocumentEvent | null;
   /** Design files beside it. */
   designs: DesignFilesEvent | null;
-  /** What is known of all materials, once a pane asked for it. */
+  /** Data of all materials, once a pane asked for them. */
   materials: MaterialsEvent | null;
   /** Shapes by themselves, as this tab asked for them. */
   ghosts: GhostsEvent | null;
@@ -74,15 +74,15 @@ export interface Studio {
   stat: StatEvent | null;
   /** The last pace that was asked for and is not confirmed yet. */
   askedPace: AskedPace | undefined;
-  /** Where the body is in itself as it is shown. */
+  /** Overlap of the body with itself as it is shown. */
   overlap: OverlapEvent | null;
   equilibrium: EquilibriumEvent | null;
-  /** What finer voxels would cost, once it was asked. */
+  /** Cost of finer voxels, once it was asked. */
   fineness: FinenessEvent | null;
   vibration: VibrationEvent | null;
-  /** What supplies did in the motion that is shown. */
+  /** State of supplies in the motion that is shown. */
   chambers: ChambersEvent | null;
-  /** What is known of frames of a solution with contact, by their numbers. */
+  /** Moments of frames of a solution with contact, by their numbers. */
   moments: ReadonlyMap<number, Moment>;
   picked: PickedEvent | null;
   jobs: Readonly<Record<string, JobEvent>>;
@@ -99,7 +99,7 @@ export interface Studio {
   fileExists: string | null;
   /** Versions of the document, once they were asked for. */
   versions: VersionsEvent | null;
-  /** How the version that was asked for last differs from the document. */
+  /** Difference of the version asked for last from the document. */
   versionDifference: VersionDifferenceEvent | null;
   /** Grows with each design that was saved. */
   saved: number;
@@ -113,7 +113,7 @@ export interface Studio {
 const LONGEST_LOG = 500;
 const MOST_TOASTS = 4;
 
-/** Frames of a body that moves of which it is kept what touches: half a minute of them. */
+/** Frames of a moving body whose contacts are kept: half a minute of them. */
 const MOST_MOMENTS = 2000;
 
 export const useStudio = create<Studio>(() => ({
@@ -156,7 +156,7 @@ export const useStudio = create<Studio>(() => ({
 
 let nextId = 1;
 
-/** How long a message stays, ms: long enough to read it, longer where there is something to do. */
+/** Duration of a message, ms: long enough to read it, longer where there is something to do. */
 const STAYS = { plain: 5_000, action: 10_000, error: 20_000 };
 
 /** Show a message that goes away by itself; an error stays in the log. */
@@ -185,7 +185,7 @@ export function note(level: LogEvent["level"], text: string): void {
   useStudio.setState((state) => ({ log: [...state.log, line].slice(-LONGEST_LOG) }));
 }
 
-/** Fold one event of the engine into what the page knows; those that come in crowds: `applyAll`. */
+/** Fold one event of the engine into the state; those that come in crowds: `applyAll`. */
 export function apply(event: Exclude<AnyEvent, Gathered>): void {
   const set = useStudio.setState;
   switch (event.t) {
@@ -212,7 +212,7 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
     case "body":
       set(({ body, moments, askedPace, picked }) => ({
         body: event,
-        // What the checks report comes behind a body, of which a place may be picked already.
+        // The report of the checks comes behind a body, of which a place may be picked already.
         picked: body?.topology === event.topology ? picked : null,
         // Another body starts with the pace that was chosen, and counts anew.
         askedPace: body?.topology === event.topology ? askedPace : undefined,
@@ -331,7 +331,7 @@ function withPace(stat: StatEvent, asked: AskedPace | undefined): StatEvent {
   return { ...stat, pace: asked.factor ?? 1, pace_chosen: asked.factor };
 }
 
-/** Whether the engine had not yet come to what was asked for. */
+/** Check if the engine had not yet come to the requested pace. */
 function isOpen(asked: AskedPace | undefined, stat: StatEvent): asked is AskedPace {
   return asked !== undefined && stat.pace_choices < asked.choice;
 }
@@ -361,7 +361,7 @@ function savedToast({ what, path }: SavedEvent): Omit<Toast, "id"> {
   return { level: "good", what: `Kept as ${name}`, hint: "It is the newest of the runs." };
 }
 
-/** Fold many trials and generations in at once: what shows them is drawn once. */
+/** Fold many trials and generations in at once: their panes are drawn once. */
 export function applyAll(events: readonly Gathered[]): void {
   useStudio.setState((state) => {
     const [trials, generations] = [{ ...state.trials }, { ...state.generations }];
@@ -402,7 +402,7 @@ function withGenerations(
 ): readonly GenerationEvent[] {
   const all = [...known];
   for (const event of fresh) {
-    // A job that is told again from its start replaces what was known from there on.
+    // A job that is sent again from its start replaces the earlier events from there on.
     while (all.length > 0 && (all.at(-1) as GenerationEvent).index >= event.index) all.pop();
     all.push(event);
   }

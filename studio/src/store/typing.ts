@@ -1,11 +1,11 @@
-// What is being typed and was not sent yet. Whatever else is asked of the document hands it over
+// Text being typed that was not sent yet. Any other command about the document hands it over
 // first, so that nothing typed is lost by undo, by opening another document, or by leaving.
 import { useStudio } from "./studio";
 
 interface Typing {
-  /** Send what was typed, if anything was. */
+  /** Send the typed text, if there is any. */
   flush(): void;
-  /** What was typed and not sent yet. */
+  /** Typed text that was not sent yet. */
   text(): string | null;
 }
 
@@ -19,7 +19,7 @@ export function provideTyping(typing: Typing): () => void {
   };
 }
 
-/** Send what was typed into the text. */
+/** Send the text typed into the editor. */
 export function flushText(): void {
   editor?.flush();
 }
@@ -29,7 +29,7 @@ export function textNow(): string {
   return editor?.text() ?? useStudio.getState().document?.text ?? "";
 }
 
-/** Let the field that is being typed into take its value, and send what was typed into the text. */
+/** Let the field being typed into take its value, and send the text typed into the editor. */
 export function finishTyping(): void {
   const field = globalThis.document?.activeElement;
   if (field?.matches("input")) (field as HTMLInputElement).blur();

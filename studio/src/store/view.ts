@@ -1,4 +1,4 @@
-// How the body is shown. Kept between visits; nothing here needs a round trip but the field
+// Options of the view of the body. Kept between visits; nothing here needs a round trip but the field
 // and the change between surface and tetrahedra.
 import { create } from "zustand";
 import type { ColormapName } from "../view/body/colormaps";
@@ -34,7 +34,7 @@ export interface View {
   orthographic: boolean;
   exaggeration: number;
   section: SectionAxis;
-  /** Where the section is, as a share of the body's bounds. */
+  /** Place of the section, as a share of the body's bounds. */
   sectionAt: number;
   sectionFlipped: boolean;
   sectionNormal: readonly [number, number, number];
@@ -50,7 +50,7 @@ export interface View {
 }
 
 const KEY = "voxsoft.view";
-// Lasting taste is kept; what belongs to one body is not.
+// Lasting taste is kept; options of one body are not.
 const KEPT = [
   "colormap",
   "bands",
@@ -103,7 +103,7 @@ export function setView(change: Partial<View>): void {
   useView.setState({ ...one, ...change });
 }
 
-/** What the view tells the panes a few times a second: what is drawn, not how. */
+/** State of the view for the panes, a few times a second: drawn content, not its form. */
 export interface Shown {
   frame: number;
   time: number;

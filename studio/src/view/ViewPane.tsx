@@ -217,7 +217,7 @@ function Picked() {
   );
 }
 
-/** Says in the picture that what it shows has diverged; a healthy lamp beside it would lie. */
+/** Banner in the picture of a diverged state; a healthy lamp beside it would lie. */
 function Banner() {
   const diverged = useShown((shown) => shown.diverged);
   const stat = useStudio((state) => state.stat);

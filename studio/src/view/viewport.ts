@@ -1,4 +1,4 @@
-// The picture: scene, render loop and what frames change in it, outside of React. It draws only
+// The picture: scene, render loop and changes by frames, outside of React. It draws only
 // when something has changed. Long because it is the one place where all parts of the view meet.
 import {
   Box3,
@@ -75,7 +75,7 @@ function nameOf(document: DocumentEvent | null): string | null {
   return document && `${document.path} ${document.name}`;
 }
 
-/** What the engine packs for a view: with a section through a field also what is behind the surface. */
+/** Mode of the engine's packing for a view: with a section through a field also the voxels behind the surface. */
 function modeOf(view: View): "surface" | "solid" | "tets" {
   if (view.appearance === "tets") return "tets";
   const opened = view.section !== "off" && view.coloring === "field";
@@ -146,7 +146,7 @@ export class Viewport {
   private readonly raycaster = new Raycaster();
   private surface: BodyMesh | null = null;
   private tets: BodyMesh | null = null;
-  /** What takes the place of the surface with its first frame. */
+  /** Mesh that takes the place of the surface with its first frame. */
   private coming: BodyMesh | null = null;
   private smooth: SmoothMesh | null = null;
   private tetPlaces: TetPlaces | null = null;
@@ -223,7 +223,7 @@ export class Viewport {
       if (now.stat !== before.stat) {
         this.takePulls(now.stat);
         if (now.stat?.grabs.length === 0 && before.stat?.grabs.length) this.grabs.forgetPinned();
-        // While time runs the next frame is on its way and will show what else is new.
+        // While time runs the next frame is on its way and will show other news too.
         if (now.stat?.state !== "playing" || before.stat?.state !== "playing") this.request();
       }
       if (now.ghosts !== before.ghosts) this.ghostsChanged();
@@ -248,12 +248,12 @@ export class Viewport {
     if (useStudio.getState().body) this.bodyChanged();
   }
 
-  // ---- what comes from the engine ----
+  // ---- messages of the engine ----
 
   topology(topology: Topology): void {
     const current = this.surface ?? this.tets;
     const fresh = current?.topology.id !== topology.id;
-    // A change from tetrahedra back to the surface sends again what is known already.
+    // A change from tetrahedra back to the surface sends again the known one.
     const surface = this.surface?.topology;
     if (!fresh && !topology.tets && surface?.rest.length === topology.rest.length) return;
     const mesh = new BodyMesh(topology, { plane: this.section.plane, section: this.section.on });
@@ -262,7 +262,7 @@ export class Viewport {
       this.drop(this.tets);
       this.tets = mesh;
     } else if (surface && !fresh) {
-      // The same surface with what is behind it, or without: drawn once it knows where it is.
+      // Surface with the voxels behind it, or without: drawn once its positions are known.
       this.coming?.dispose();
       this.coming = mesh;
       return;
@@ -277,7 +277,7 @@ export class Viewport {
     this.request();
   }
 
-  // Another body: what hung on the old one goes, the camera stays where it is.
+  // Another body: things attached to the old one go, the camera stays where it is.
   private clearBody(box: Box3, id: number): void {
     this.drop(this.surface);
     this.drop(this.tets);
@@ -344,7 +344,7 @@ export class Viewport {
     this.contactMarks.build(body?.bonds ?? [], body?.bounds ?? null, design);
     this.attachments.build(body?.attachments ?? []);
     this.objects.build(body?.objects ?? []);
-    // Only what may touch something has fields of contact.
+    // Only a body that may touch something has fields of contact.
     const shown = hello?.fields.find((one) => one.id === useView.getState().field);
     if (body && !body.touches && shown?.contact) setView({ field: 0, range: "auto" });
     this.takeIn();
@@ -386,7 +386,7 @@ export class Viewport {
       this.rig.fit(this.objects.around(mesh.box(1).clone()).union(own));
   }
 
-  // The body's layers, whichever of its surface and what is told of it comes first.
+  // The body's layers, whichever of its surface and its event comes first.
   private coverSurface(): void {
     const body = useStudio.getState().body;
     if (body && body.topology === this.surface?.topology.id) this.surface.cover(body.layers);
@@ -526,14 +526,14 @@ export class Viewport {
     return lasts ? ladder.quality : { ...ladder.quality, share: this.painter.share };
   }
 
-  // Whether the design can be changed in the picture: while it is drawn as it was built.
+  // True if the design can be changed in the picture: while it is drawn as it was built.
   private get asBuilt(): boolean {
     const { stat, document } = useStudio.getState();
     if (usePage.getState().mode !== "design" || currentEngine()?.kind !== "server") return false;
     return (document?.valid ?? false) && isAsBuilt(stat);
   }
 
-  // The middle of what is chosen in the form, where it can be moved.
+  // The middle of the entry chosen in the form, where it can be moved.
   private middleToMove(view: View): Vector3 | null {
     const { body } = useStudio.getState();
     if (!view.chosen || !body || !this.asBuilt) return null;
@@ -573,7 +573,7 @@ export class Viewport {
     return { ...frame, grips: this.shapeGrips.grips };
   }
 
-  // What is recorded is whole, however long it takes.
+  // A recorded picture is whole, however long it takes.
   private moving(now: number): boolean {
     if (useShown.getState().recording) return false;
     return useStudio.getState().stat?.state === "playing" || now - this.lastMoved < SETTLED;
@@ -610,7 +610,7 @@ export class Viewport {
     if (!this.rig.steered && !this.rig.holds(box)) this.rig.fit(box.clone(), atOnce);
   }
 
-  // So is one that is shown elsewhere first than it is unloaded, with what it holds.
+  // A body shown elsewhere first than unloaded is fitted too, with the things it holds.
   private seeFirst(view: View, mesh: BodyMesh | null): void {
     if (!this.unseen || !mesh) return;
     this.unseen = false;
@@ -688,7 +688,7 @@ export class Viewport {
     return this.colors;
   }
 
-  // Whether what is colored is a field of contact.
+  // True if the coloring field is one of contact.
   private get ofContact(): boolean {
     const { field, coloring } = useView.getState();
     const about = useStudio.getState().hello?.fields.find((one) => one.id === field);
@@ -714,7 +714,7 @@ export class Viewport {
       labels.push(...this.several.labels(body, this.surface, view.chosen, view.exaggeration));
     }
     if (this.ghosts.group.visible && view.symbols) labels.push(...this.ghosts.labels());
-    // Where all values are the same there is no least and no greatest.
+    // If all values are the same there is no least and no greatest.
     const varies = mesh.frame && mesh.frame.max > mesh.frame.min;
     if (view.extremes && varies && view.coloring === "field")
       labels.push(...this.extremeWords(mesh, view));
@@ -810,7 +810,7 @@ export class Viewport {
     if (entry) setView({ chosen: entry });
   }
 
-  /** Mark the face of the body that was pressed, for what can be done there. */
+  /** Mark the face of the body that was pressed, for the actions there. */
   chooseFace(hit: Target): void {
     const topology = this.surface?.topology;
     // A page of its own has no design that could be changed.
@@ -822,7 +822,7 @@ export class Viewport {
     this.request();
   }
 
-  /** What of the body is at a place of the page. */
+  /** Point of the body at a place of the page. */
   hit(x: number, y: number): Target | null {
     const view = useView.getState();
     const [surface, mesh] = [this.surface, this.shownMesh()];
@@ -847,7 +847,7 @@ export class Viewport {
     return found && body && far(body.point) < far(found.point) ? null : found;
   }
 
-  /** Where the vertices of the surface are drawn, also where tetrahedra stand for it. */
+  /** Positions where the vertices of the surface are drawn, also where tetrahedra stand for it. */
   get places(): Places | null {
     const [surface, mesh] = [this.surface, this.shownMesh()];
     if (!surface || !mesh || mesh === surface) return surface;
@@ -901,9 +901,9 @@ export class Viewport {
     });
   }
 
-  // ---- what buttons and keys ask for ----
+  // ---- requests of buttons and keys ----
 
-  /** Take the body that comes next in whole: what was asked for makes it larger. */
+  /** Take the body that comes next in whole: the requested change makes it larger. */
   fitSoon(): void {
     this.fitNext = true;
   }
@@ -957,7 +957,7 @@ export class Viewport {
     setView({ section, sectionFlipped: eye[section] < 0, sectionAt: 0.5 });
   }
 
-  // ---- what tests and measurements read ----
+  // ---- readings for tests and measurements ----
 
   get drawn(): {
     frame: number;
@@ -985,7 +985,7 @@ export class Viewport {
     return frame && 4 * vertex < frame.packed.length ? positionIn(frame, vertex) : null;
   }
 
-  /** Where the middle of a rigid object is drawn, m. */
+  /** Position where the middle of a rigid object is drawn, m. */
   objectPosition(name: string): [number, number, number] | null {
     return this.objects.middleOf(name);
   }
@@ -1001,12 +1001,12 @@ export class Viewport {
     return box && [box.min.toArray(), box.max.toArray()];
   }
 
-  /** How many triangles of a section through the field are drawn. */
+  /** Number of drawn triangles of a section through the field. */
   get cut(): number {
     return this.fill.triangles;
   }
 
-  /** Where a vertex is on the page, in CSS pixels. */
+  /** Position of a vertex on the page, in CSS pixels. */
   screenOf(vertex: number): [number, number] | null {
     if (!this.surface) return null;
     const at = this.surface.place(vertex, useView.getState().exaggeration).project(this.rig.camera);

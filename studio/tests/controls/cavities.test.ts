@@ -8,7 +8,7 @@ describe("cavities", () => {
     expect(cavityName({ name: "" }, 0)).toBe("cavity 0");
   });
 
-  it("are chosen by name; those without one by number, and what is written now is kept", () => {
+  it("are chosen by name; those without one by number, and the written one is kept", () => {
     const cavities = [{ name: "left" }, { name: "" }];
     const values = (current: string) =>
       cavityOptions(["left", "lost"], cavities, current).map((one) => one.value);

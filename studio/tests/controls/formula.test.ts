@@ -36,7 +36,7 @@ describe("evaluate", () => {
     for (const word of words) expect("problem" in found && found.problem).toContain(word);
   });
 
-  it("refuses what nests deeper or is longer than VoxSoft allows", () => {
+  it("refuses formulas deeper or longer than VoxSoft allows", () => {
     expect(evaluate(`=${"(".repeat(60)}1${")".repeat(60)}`)).toHaveProperty("problem");
     expect(evaluate(`=1${"+1".repeat(500)}`)).toHaveProperty("problem");
   });

@@ -14,7 +14,7 @@ describe("readWritten", () => {
     expect(readWritten("0.5 cm", "length")).toEqual({ value: "0.5 cm" });
     expect(readWritten("1 psi", "pressure")).toEqual({ value: "1 psi" });
   });
-  it("passes what only VoxSoft knows", () => {
+  it("passes text that only VoxSoft knows", () => {
     expect(readWritten("2 kip/ft^2", "modulus")).toEqual({ value: "2 kip/ft^2" });
     expect(readWritten("2 ft", "length")).toEqual({ value: "2 ft" });
     expect(readWritten("2*3 ft", "length")).toEqual({ value: "= 2*3 ft" });
@@ -30,7 +30,7 @@ describe("readWritten", () => {
     expect(readWritten("5 mm − 5 mm", "length")).toEqual({ value: 0 });
     expect(readWritten("90 deg/2", "angle")).toEqual({ value: "45 deg" });
   });
-  it("takes what names a parameter for a formula, with its = or without", () => {
+  it("takes text that names a parameter for a formula, with its = or without", () => {
     for (const typed of ["2*wall + 1 mm", "=2*wall + 1 mm", " = 2*wall + 1 mm"]) {
       expect(readWritten(typed, "length", [], PARAMETERS)).toEqual({ value: "= 2*wall + 1 mm" });
     }
@@ -47,7 +47,7 @@ describe("readWritten", () => {
     const read = readWritten(typed, "length", [], PARAMETERS);
     expect("problem" in read && read.problem).toContain(words);
   });
-  it("refuses a unit of another quantity, and what is no number", () => {
+  it("refuses a unit of another quantity, and text that is no number", () => {
     expect(readWritten("5 kPa", "length")).toHaveProperty("problem");
     expect(readWritten("wide", "length")).toHaveProperty("problem");
     expect(readWritten("=", "length")).toHaveProperty("problem");

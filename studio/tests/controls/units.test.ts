@@ -67,7 +67,7 @@ describe("format", () => {
     expect(formatEnergy(6.2e-8)).toBe("0.062 µJ");
     expect(formatEnergy(-5.7e-34)).toBe("0 mJ");
   });
-  it("writes what people read", () => {
+  it("writes the units that people read", () => {
     expect(formatQuantity(0.02, "m")).toBe("20 mm");
     expect(formatQuantity(4000, "Pa")).toBe("4 kPa");
     expect(formatQuantity(1e-6, "m^3")).toBe("1 ml");
@@ -78,7 +78,7 @@ describe("format", () => {
     expect(formatSpan(3730)).toBe("1:02:10");
   });
 
-  it("reads back what it writes", () => {
+  it("reads back its own text", () => {
     for (const x of [0.005, 0.0123, 0.5, 1.25]) {
       const text = formatQuantity(x, "m").replace("−", "-");
       expect(value(text, "mm")).toBeCloseTo(x, 10);

@@ -18,7 +18,7 @@ function settle(core: Core): StatEvent {
 }
 
 describe("the core in the page", () => {
-  it("is what the player needs", async () => {
+  it("has the interface that the player needs", async () => {
     const run: Run = await open();
     expect(JSON.parse(run.notes)).toEqual({ name: "beam" });
     expect(run.stat).toMatchObject({ topology: 4, state: "paused", loads: [9.81] });
@@ -42,7 +42,7 @@ describe("the core in the page", () => {
     expect(core.positions()).toEqual(rest);
   });
 
-  it("says what is wrong", async () => {
+  it("reports errors", async () => {
     await expect(Core.open(wasm, new Uint8Array([1, 2, 3]))).rejects.toThrow("this is no scene");
     const cut = file("beam.scene").subarray(0, 900);
     await expect(Core.open(wasm, cut)).rejects.toThrow("cut off");

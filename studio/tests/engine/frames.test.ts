@@ -78,7 +78,7 @@ describe("decode", () => {
     expect([topology.id, topology.tets, topology.voxelSize]).toEqual([9, true, 0.005]);
   });
 
-  it("refuses what is short, foreign or unknown", () => {
+  it("refuses short, foreign or unknown messages", () => {
     expect(() => decode(new ArrayBuffer(10))).toThrow(FrameError);
     expect(() => decode(new ArrayBuffer(64))).toThrow("not a message");
     const cut = frameBytes([[1, 2, 3, 4]]).slice(0, 68);

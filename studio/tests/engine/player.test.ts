@@ -15,7 +15,7 @@ import type {
 
 const file = (name: string) => new Uint8Array(readFileSync(new URL(name, import.meta.url)));
 
-// What a server would note of the beam of 6 x 2 x 2 voxels in beam.scene.
+// Event that a server would send of the beam of 6 x 2 x 2 voxels in beam.scene.
 const BODY: BodyEvent = {
   ...{ t: "body", topology: 4, rev: 1, voxels: 24, vertices: 63, tets: 120 },
   ...{ surface_vertices: 58, triangles: 112, voxel_size: 0.005, cavities: [], leaks: [] },
@@ -174,7 +174,7 @@ describe("a scene that plays in the page", () => {
     expect(stat().time).toBe(0);
   });
 
-  it("says what it cannot do", () => {
+  it("reports impossible requests", () => {
     take({ t: "undo" });
     const error = events.findLast((one) => one.t === "error");
     expect(error).toMatchObject({ seq: 1, what: expect.stringContaining("by itself") });
@@ -291,7 +291,7 @@ it("tells where objects are as the body is shown first, until time runs or goes 
   expect(told()[1]).toMatchObject({ moment: { frame: 0, poses: [] } });
 });
 
-it("says that what is shown first is at rest where it is, until something wakes it", async () => {
+it("reports the state shown first at rest in place, until something wakes it", async () => {
   const after = async (notes: Notes, ...commands: readonly Draft[]) => {
     const run = await Core.open(file("../../public/voxsoft.wasm"), file("beam.scene"));
     const heard: AnyEvent[] = [];

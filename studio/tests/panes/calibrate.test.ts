@@ -62,7 +62,7 @@ describe("a calibration", () => {
     };
     expect(calibrateSpec(draft, lattice).bounds).toEqual({ edge: [2e4, 1e6] });
   });
-  it("says what is missing", () => {
+  it("lists missing entries", () => {
     expect(obstacle({ ...DRAFT, files: [] }, {}, lattice)).toMatch(/Drop a table/);
     expect(obstacle(DRAFT, {}, lattice)).toMatch(/being read/);
     const bad = [
@@ -108,7 +108,7 @@ it("writes a fitted material with the units that a design file needs", () => {
   });
 });
 
-it("says what a constant of a model is", () => {
+it("describes a constant of a model", () => {
   const lattice = {
     description: "Springs.\n\nParameters\n----------\nedge\n    How hard it resists stretch.",
     properties: { edge: { type: "number" } },

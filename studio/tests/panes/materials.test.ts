@@ -54,7 +54,7 @@ describe("the list of materials", () => {
     expect(modelsOf(all)).toEqual(["lattice", "yeoh"]);
   });
 
-  it("puts what is not stated last", () => {
+  it("puts unstated values last", () => {
     expect(names(listed(all, "", "", "shore")).slice(0, 2)).toEqual(["ecoflex", "dragon"]);
     expect(names(listed(all, "", "", "tested"))[0]).toBe("dragon");
     expect(names(listed(all, "", "", "young")).at(-1)).toBe("dragon");
@@ -73,7 +73,7 @@ describe("the list of materials", () => {
   });
 });
 
-describe("what a part is made of", () => {
+describe("material of a part", () => {
   it("knows a part by its name, its shape or its place", () => {
     expect([wall.name, tip.name]).toEqual(["wall", "tip"]);
     expect(partsOf({ parts: [{ shape: { kind: "box" } }] })[0]?.name).toBe("part 1");
@@ -99,7 +99,7 @@ describe("what a part is made of", () => {
     expect(mixes({ ...plain, live: "none" }, wall, parts, all)).toBe("");
   });
 
-  it("refuses what the core refuses, before it is tried", () => {
+  it("refuses the combinations of the core, before they are tried", () => {
     const wound = { ...wall, fibers: true };
     expect(refusal(springs, wound, two)).toMatch(/fibers of wall need a hyperelastic/);
     expect(refusal(eco, wound, two)).toBeNull();

@@ -21,7 +21,7 @@ describe("a measured curve", () => {
     expect(found.x).toEqual([0, 1500]);
     expect(found.y[1]).toBeCloseTo((-0.5 * Math.PI) / 180);
   });
-  it("says what it cannot be", () => {
+  it("reports unusable columns", () => {
     expect(read("pressure_mm,angle_deg\n1,2\n3,4")).toMatchObject({
       problem: expect.stringMatching(/pressure_mm/),
     });

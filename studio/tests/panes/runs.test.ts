@@ -77,7 +77,7 @@ describe("export", () => {
       options: { unit: "mm", deformed: true },
     });
   });
-  it("says in a sentence what each file is for", () => {
+  it("describes the purpose of each file in a sentence", () => {
     for (const format of FORMATS) expect(format.purpose).toMatch(/^[A-Z].*\.$/);
   });
 });
@@ -89,7 +89,7 @@ it("calls runs by their names, and designs of studies by their numbers", () => {
   expect(changeTitle(side("arm"), side("leg"))).toBe("leg minus arm, in % of arm");
 });
 
-it("gives changes in percent of the size of what was before", () => {
+it("gives changes in percent of the earlier size", () => {
   expect(percentChange(2, 3)).toBe(50);
   expect(percentChange(-2, -3)).toBe(-50);
 });

@@ -60,7 +60,7 @@ const SAMPLERS = [
 const RANGED = parameter("wall", { min: 0.005, max: 0.015, step: 0.005 });
 
 describe("setup", () => {
-  it("varies what has a range, not formulas, and counts the values of a step", () => {
+  it("varies values with a range, not formulas, and counts the values of a step", () => {
     const all = choices([RANGED, parameter("cap"), parameter("f", { formula: true })], DRAFT);
     expect(all.map((one) => [one.parameter.name, one.on])).toEqual([
       ["wall", true],
@@ -70,7 +70,7 @@ describe("setup", () => {
     expect(countOf({ low: 0.005, high: 0.015, step: 0.005, log: false })).toBe(3);
     expect(gridSize(all.filter((one) => one.on))).toBe(3);
   });
-  it("asks for what was chosen", () => {
+  it("asks for the chosen study", () => {
     const draft = { ...DRAFT, chosen: { cap: true }, ranges: { cap: { high: 0.02 } } };
     const spec = studySpec(choices([RANGED, parameter("cap")], draft), draft);
     expect(spec).toMatchObject({ kind: "study", name: "arm", sampler: "grid", seed: 3 });
@@ -178,7 +178,7 @@ describe("trials", () => {
       { x: 3, y: 0.002 },
     ]);
   });
-  it("keeps equals on the front, and takes off what a later trial beats", () => {
+  it("keeps equals on the front, and takes off trials that a later one beats", () => {
     const one = (index: number, rise: number, weight: number) => ({
       ...trial(index, 0.01, 1),
       objectives: { rise, weight },
@@ -187,11 +187,11 @@ describe("trials", () => {
     expect([...frontOf({ ...STUDY, trials })]).toEqual([0, 3]);
     expect([...frontOf({ ...STUDY, trials: trials.slice(0, 3) })]).toEqual([0, 1, 2]);
   });
-  it("lists the best first, then what is not allowed, then what failed", () => {
+  it("lists the best first, then infeasible trials, then failed ones", () => {
     const league = bestFirst(STUDY, frontOf(STUDY)).map((one) => one.index);
     expect(league).toEqual([2, 0, 3, 1]);
   });
-  it("keeps what is brushed", () => {
+  it("keeps brushed trials", () => {
     const kept = STUDY.trials.filter((one) =>
       within(one, axes, { "parameter:wall": [0.004, 0.012] }),
     );
@@ -212,7 +212,7 @@ describe("trials", () => {
   });
 });
 
-it("spreads a range of one value, and skips what is no number", () => {
+it("spreads a range of one value, and skips text that is no number", () => {
   expect(rangeOf([2, Number.NaN, 4])).toEqual([2, 4]);
   expect(rangeOf([0])).toEqual([-0.5, 0.5]);
   expect(rangeOf([])).toEqual([0, 1]);
@@ -224,7 +224,7 @@ it("puts ticks on round numbers", () => {
   expect(ticks(1, 1, 4)).toEqual([1]);
 });
 
-it("draws what is nearer larger, and up as up", () => {
+it("draws near bodies larger, and up as up", () => {
   const turn = { around: 0, above: 0, zoom: 1 };
   const top = project([0, 0, 1], turn, 200, 100);
   expect(top.x).toBeCloseTo(100);
@@ -234,7 +234,7 @@ it("draws what is nearer larger, and up as up", () => {
   expect(near.x).toBeGreaterThan(far.x);
 });
 
-it("sorts what has no value to the end, up and down", () => {
+it("sorts rows without a value to the end, up and down", () => {
   const rows = [2, null, 1, 3];
   expect([...rows].sort((a, b) => compare(a, b, 1))).toEqual([1, 2, 3, null]);
   expect([...rows].sort((a, b) => compare(a, b, -1))).toEqual([3, 2, 1, null]);

@@ -44,7 +44,7 @@ describe("points of a history", () => {
     expect(pointsOf({ ...line, times: many, factors: many }, source)).toBeNull();
   });
 
-  it("stay between their neighbors, and where what follows them can go", () => {
+  it("stay between their neighbors, and within the range of their users", () => {
     expect(moved(points, 1, 5, 2, line)[1]!.time).toBe(0.5999);
     expect(moved(points, 1, -5, 2, line)[1]!.time).toBeGreaterThan(0);
     expect(moved(points, 0, -5, 0, line)[0]!.time).toBe(0);
@@ -57,7 +57,7 @@ describe("points of a history", () => {
     expect(moved(points, 2, 0.9, 0.5, line)[2]).toMatchObject({ time: 0.6, factor: 0.5 });
   });
 
-  it("of what repeats end as they begin", () => {
+  it("end as they begin where they repeat", () => {
     const breath = { ...line, repeat: 3 };
     const next = moved(points, 0, 0, 0.4, breath);
     expect(values(next)).toEqual([
@@ -82,7 +82,7 @@ describe("points of a history", () => {
 });
 
 describe("the text of a history", () => {
-  it("keeps what was not touched, and the unit of what was", () => {
+  it("keeps untouched points, and the unit of touched ones", () => {
     const next = moved(points, 1, 0.3, 0.5, line);
     expect(written(line, next)).toEqual([
       { path: ["loads", 0, "history", "time"], value: ["0 s", "300 ms", "= long"] },
@@ -116,7 +116,7 @@ describe("the axes", () => {
     expect(endOf([], null)).toBe(1);
   });
 
-  it("show zero and one, and what lies beyond", () => {
+  it("show zero and one, and values beyond", () => {
     expect(rangeOf([0, 1])[0]).toBeLessThan(0);
     expect(rangeOf([0, 2])[1]).toBeGreaterThan(2);
     expect(rangeOf([-1, 0])[0]).toBeLessThan(-1);

@@ -17,7 +17,7 @@ function found(...shares: (number | null)[]): EquilibriumEvent {
   } as unknown as EquilibriumEvent;
 }
 
-describe("whether a mesh is fine enough", () => {
+describe("fineness of a mesh", () => {
   it("parts the numbers at 2 % and at 5 %, the largest error first", () => {
     const rating = rated(found(0.02, 0.021, 0.05, 0.051, 0.3, null));
     expect(inWords(rating.small)).toBe("probe p0 2 %");
@@ -37,7 +37,7 @@ describe("whether a mesh is fine enough", () => {
     );
   });
 
-  it("leaves out what is zero up to rounding", () => {
+  it("leaves out numbers that are zero up to rounding", () => {
     const metric = { name: "reaction", kind: "force", estimate: "", share: 1.5 };
     const some = { ...found(0.01), metrics: [{ ...metric, value: 8e-11 }] };
     expect(rated(some).beyond).toEqual([]);

@@ -2,7 +2,7 @@ import { expect, it } from "vitest";
 import { CAD_HINT } from "../../src/protocol";
 import { refusalOf } from "../../src/shell/DropZone";
 
-it("says of a CAD model what to do with it, and of other files what is taken", () => {
+it("gives a remedy for a CAD model, and the accepted files for others", () => {
   const cad = refusalOf("Finger.STEP");
   expect(cad.what).toContain("Finger.STEP is a CAD model");
   expect(cad.hint).toContain(CAD_HINT);

@@ -31,7 +31,7 @@ function Page() {
   );
 }
 
-it("holds what fails while a pane is taken away, and says so", async () => {
+it("holds a pane that fails while it is taken away, and reports it", async () => {
   const said = vi.spyOn(console, "error").mockImplementation(() => undefined);
   const host = document.createElement("div");
   const forget = vi.fn();

@@ -48,7 +48,7 @@ describe("the place of messages", () => {
   const stage = { left: 300, right: 1200, bottom: 600 };
   const cube = { left: 1114, right: 1166, bottom: 566 };
 
-  it("is the middle of the picture, above what stands at its bottom", () => {
+  it("is the middle of the picture, above things at its bottom", () => {
     expect(toastPlace(stage, null, cube, 900)).toEqual({ left: 490, width: 520, bottom: 340 });
   });
   it("is beside the card of a vertex and the cube", () => {

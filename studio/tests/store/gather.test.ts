@@ -46,7 +46,7 @@ describe("gathering", () => {
     vi.advanceTimersByTime(200);
     expect(told).toEqual(["500 at once", "1 at once"]);
   });
-  it("keeps the order where an event speaks of what came before it", () => {
+  it("keeps the order where an event refers to earlier ones", () => {
     const { told, take } = listening();
     take(trial(0));
     take({ t: "job", state: "running" } as AnyEvent);
@@ -61,7 +61,7 @@ describe("gathering", () => {
 describe("applyAll", () => {
   beforeEach(() => useStudio.setState({ trials: {}, generations: {}, jobs: {} }));
 
-  it("draws once, keeps studies apart, and takes what is told again in place of the old", () => {
+  it("draws once, keeps studies apart, and replaces old events by those sent again", () => {
     let drawn = 0;
     const stop = useStudio.subscribe(() => void drawn++);
     applyAll([trial(0), trial(1), trial(0, "other")]);

@@ -4,13 +4,13 @@ import { withoutDust } from "../../src/view/body/dust";
 
 const frame = (min: number, max: number) => ({ kind: "frame", min, max }) as Frame;
 
-it("takes what rounding leaves of zero for zero", () => {
+it("takes rounding errors of zero for zero", () => {
   expect(withoutDust(frame(0, 1.46e-13), "Pa")).toMatchObject({ min: 0, max: 0 });
   expect(withoutDust(frame(0, 1.16e-29), "J/m^3")).toMatchObject({ min: 0, max: 0 });
   expect(withoutDust(frame(-1e-18, 1e-18), "m")).toMatchObject({ min: 0, max: 0 });
 });
 
-it("keeps what is small and true, also beside what is large", () => {
+it("keeps small true values, also beside large ones", () => {
   for (const [min, max, unit] of [
     [0, 1e-5, "Pa"],
     [-1e-12, 5000, "Pa"],

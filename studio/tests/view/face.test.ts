@@ -22,7 +22,7 @@ const length = (name: string, value: number) => ({ name, value, kind: "length" }
 describe("the face that is pressed", () => {
   const one = boxes({ low: [0, 0, 0], high: [0.04, 0.01, 0.01] });
 
-  it("knows how far it is to what lies straight opposite", () => {
+  it("knows the distance to the opposite face", () => {
     const two = boxes(
       { low: [0, 0, 0], high: [0.04, 0.01, 0.01] },
       { low: [0.07, 0, 0], high: [0.08, 0.01, 0.01] },
@@ -57,7 +57,7 @@ describe("the face that is pressed", () => {
     });
   });
 
-  it("is found by its corners, or else by what faces the eye", () => {
+  it("is found by its corners, or else by the triangles that face the eye", () => {
     const corners = [...one.triangles.slice(6, 9)] as [number, number, number];
     expect(triangleAt(one, corners, [0, 0, 1])).toBe(2);
     expect(faceAt(one, triangleAt(one, [7, 7, 7], [0, 0, 1]) as number).axis).toBe(2);
@@ -65,7 +65,7 @@ describe("the face that is pressed", () => {
   });
 });
 
-describe("what is written of it", () => {
+describe("text of a face", () => {
   const end = faceAt(boxes({ low: [0, 0, 0], high: [0.04, 0.01, 0.01] }), 2);
 
   it("follows the parameter that it comes from", () => {
@@ -95,7 +95,7 @@ describe("what is written of it", () => {
     expect(regionAround(oblique)).toMatchObject({ radius: "7.5 mm" });
   });
 
-  it("goes behind what is there, under a free name", () => {
+  it("goes behind existing entries, under a free name", () => {
     const source = { clamps: [{}], probes: { probe: {} }, layers: [{ name: "fabric" }] };
     const verbs = Object.fromEntries(
       verbsAt({ x: [0, 0] }, end.normal, source).map((verb) => [verb.id, verb.changes[0]]),
@@ -156,7 +156,7 @@ describe("a tendon through places that were pressed", () => {
     ]);
   });
 
-  it("does not go on from what was not pressed, and has no place among several bodies", () => {
+  it("does not go on from places that were not pressed, and has no place among several bodies", () => {
     expect(tendonOn([0, 0, 0], 0.005, {})).toBeNull();
     expect(
       tendonOn([0, 0, 0], 0.005, {

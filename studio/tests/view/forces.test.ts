@@ -19,7 +19,7 @@ function meanOf(points: Float32Array, near: ReturnType<typeof nearOf>): number[]
   return sum;
 }
 
-it("finds where two surfaces touch in the middle of what lies on each other", () => {
+it("finds the contact place in the middle of surfaces on each other", () => {
   const table = sheet(0, 0, 100);
   const [x, y, z] = meanOf(table, nearOf(table, sheet(0.0002, 40, 44), 1e-3));
   expect(x).toBeCloseTo(0.042, 6);
@@ -34,7 +34,7 @@ it("reaches farther where nothing is near, and not farther than three voxels", (
   expect(nearOf(table, new Float32Array(), 1e-3)).toBeNull();
 });
 
-it("takes the lowest points for what a floor touches", () => {
+it("takes the lowest points for those that touch a floor", () => {
   const both = Float32Array.from([...sheet(0.01, 0, 10), ...sheet(0.005, 20, 24)]);
   const [x, , z] = meanOf(both, lowestOf(both, 1e-3));
   expect(x).toBeCloseTo(0.022, 6);
@@ -71,7 +71,7 @@ it("measures by the largest force of all moments between two things", () => {
   expect(largestForce([])).toBe(0);
 });
 
-it("colors by what holds", () => {
+it("colors by the hold of surfaces", () => {
   expect([0, 0.3, 1].map(holdColor)).toEqual([
     ...[HOLD_COLORS.sticks, HOLD_COLORS.partly, HOLD_COLORS.slips],
   ]);

@@ -33,7 +33,7 @@ it("moves along an axis by keys", () => {
   ]);
 });
 
-it("stands at what is chosen, without the axis that points at the eye", () => {
+it("stands at the chosen entry, without the axis that points at the eye", () => {
   const { rig, moving } = handle();
   moving.place(null, 800, 600);
   expect(moving.element.hidden).toBe(true);

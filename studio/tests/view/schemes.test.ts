@@ -8,7 +8,7 @@ const press = (button: number, held = "") => ({
   metaKey: false,
 });
 
-describe("what the mouse does in the view", () => {
+describe("actions of the mouse in the view", () => {
   it.each<[Scheme, number, string, string | null]>([
     ["voxsoft", 2, "", "turn"],
     ["voxsoft", 1, "", "move"],

@@ -48,7 +48,7 @@ it("writes lengths, and leaves the middle where it is", () => {
   });
 });
 
-it("leaves what a formula sizes, or what has no middle of its own", () => {
+it("leaves objects sized by a formula, or without a middle of their own", () => {
   expect(resized("ball", 2)).toBeNull();
   expect(resized({ kind: "sphere", radius: "= r" }, 2)).toBeNull();
   expect(resized({ kind: "box", size: ["1 mm", "1 mm", "1 mm"] }, 2)).toBeNull();

@@ -46,7 +46,7 @@ def volume_of(vertices, triangles):
     return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
 
 
-def test_what_cuts_and_what_nothing_uses_have_surfaces(design):
+def test_cutting_and_unused_shapes_have_surfaces(design):
     hole = ghost_of(design, "hole")
     assert hole.trouble == ""
     # Its ends are flat and along an axis: they are where the shape says.
@@ -83,7 +83,7 @@ def test_a_shape_of_a_body_is_where_that_body_stands():
     assert both[1].rotation == pytest.approx([0, -1, 0, 1, 0, 0, 0, 0, 1], abs=1e-12)
 
 
-def test_what_has_no_surface_says_why(design):
+def test_shapes_without_a_surface_give_the_reason(design):
     shapes = {
         **design.shapes,
         "thin": Sphere(radius=1e-3) & Box(size=(1e-3,) * 3, corner=(1, 1, 1)),
@@ -129,7 +129,7 @@ def test_a_known_surface_is_not_traced_again(design, monkeypatch):
 def test_a_tab_gets_the_shapes_that_it_asks_for(fresh_studio):
     async def scenario():
         async with fresh_studio.page() as page:
-            # Of two requests that come at once the newer one alone needs an answer.
+            # Two requests come at once: the newer one alone needs an answer.
             await page.send("ghosts", names=["body"])
             await page.send("ghosts", names=["cavity", "gone"])
             found = await page.until(

@@ -1,4 +1,4 @@
-"""Whether what is free is held at the end of a run, as the page says it."""
+"""Verdict on the grip of free objects at the end of a run, in the words of the page."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def pinched(end_time=0.2, **changes):
     return vs.simulate(PINCH.replace(solver=solver, **changes))
 
 
-def test_what_friction_alone_carries_is_held():
+def test_objects_carried_by_friction_alone_are_held():
     result = pinched()
     (grip,) = grips_of(result)
     assert (grip.name, grip.verdict) == ("plate", "held")
@@ -34,7 +34,7 @@ def test_what_friction_alone_carries_is_held():
     assert equilibrium_of(result, 1, 1).grips == [grip]
 
 
-def test_what_stands_on_the_floor_between_smooth_pads_is_touched():
+def test_an_object_on_the_floor_between_smooth_pads_is_touched():
     contact = PINCH.contact.model_copy(update={"friction": 0.0})
     (grip,) = grips_of(pinched(contact=contact, floor=FLOOR))
     assert grip.verdict == "touched"
@@ -42,19 +42,19 @@ def test_what_stands_on_the_floor_between_smooth_pads_is_touched():
     assert "still stands" in grip.sentence
 
 
-def test_what_nothing_presses_is_lost():
+def test_an_unpressed_object_is_lost():
     clamps = [clamp.model_copy(update={"motion": None}) for clamp in PINCH.clamps]
     lost = pinched(clamps=clamps, floor=FLOOR)
     (grip,) = grips_of(lost)
     assert (grip.verdict, grip.pressed, grip.margin) == ("lost", 0.0, None)
     assert grip.sentence == "plate: not held."
-    # What lies on the floor is not gripped by it: a study would else drop what it should hold.
+    # The floor does not grip an object on it: a study would else drop the object it should hold.
     assert lost.metric("grip_force", object="plate") == 0.0
     assert lost.metric("hold_margin", object="plate") == 0.0
 
 
 @pytest.mark.slow
-def test_what_goes_up_with_its_clamps_is_held_above_where_it_began():
+def test_a_body_lifted_by_its_clamps_is_held_above_its_start():
     clamps = []
     for clamp in PINCH.clamps:
         x, _, _ = clamp.motion.displacement

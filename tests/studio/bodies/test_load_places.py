@@ -1,4 +1,4 @@
-"""Where the page draws what a load does."""
+"""Arrows of loads in the page's picture: their places and directions."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def test_the_arrow_of_gravity_ends_where_it_enters_the_body(direction):
     (load,) = body.loads
     low, high = body.mesh.vertices.min(axis=0), body.mesh.vertices.max(axis=0)
     at, along = np.array(load.at), np.array(load.direction)
-    # On the bounds of the body: its arrow is outside, and what is just beyond the tip is inside.
+    # On the bounds of the body: its arrow is outside, and a point just beyond the tip is inside.
     before, after = at - 1e-6 * along, at + 1e-6 * along
     assert not np.all((low < before) & (before < high))
     assert np.all((low < after) & (after < high))

@@ -89,7 +89,7 @@ def test_bonds_come_with_points_of_the_body_that_they_hold(pressed):
     assert points[:, :2].max() > 0.010
 
 
-def test_what_is_not_bonded_or_out_of_reach_has_no_points(pressed):
+def test_unbonded_or_distant_surfaces_have_no_points(pressed):
     assert StudioBody.of(load(pressed), 1, 1).event().bonds == []
     bonded = """pairs = [{ of = ["body", "plate"], kind = "bonded" }]"""
     pressed.write_text(f"{PRESSED.replace('12.5 mm', '18 mm')}{bonded}\n")
@@ -120,13 +120,13 @@ def test_an_object_within_the_body_is_drawn_and_keeps_it_from_being_solved():
 
 
 def of_lattice(design):
-    """The same design of the lattice material, whose contact is not found live."""
+    """Replace the material by the lattice, whose contact is not found live."""
     material = vs.Lattice(edge="25 kPa", bulk="100 kPa")
     parts = [part.model_copy(update={"material": material}) for part in design.parts]
     return design.replace(parts=parts)
 
 
-def test_time_does_not_run_through_an_object_where_contact_is_not_found_live(pressed):
+def test_time_does_not_run_where_contact_is_not_found_live(pressed):
     playback = playing(of_lattice(load(pressed)))
     grab = commands.Grab(seq=1, id=1, vertex=0, target=(0.0, 0.0, 0.0))
     for command in (commands.Play(seq=1), commands.Step(seq=1), grab):
@@ -136,7 +136,7 @@ def test_time_does_not_run_through_an_object_where_contact_is_not_found_live(pre
     assert playback.body.event().not_live
 
 
-def test_what_was_pulled_or_played_stops_where_an_object_comes(pressed):
+def test_pulled_or_played_bodies_stop_when_an_object_comes(pressed):
     design = of_lattice(load(pressed))
     playback = playing(design.replace(objects=(), contact=None))
     playback.do(commands.Grab(seq=1, id=1, vertex=0, target=(0.0, 0.0, 0.1)))
@@ -299,7 +299,7 @@ def test_fields_of_contact_are_packed_as_the_result_has_them(solved, field, mode
     assert (len(values) > len(solved.body.surface.vertices)) == (mode != "surface")
 
 
-def test_what_nothing_is_near_has_the_largest_gap():
+def test_a_distant_surface_has_the_largest_gap():
     nothing = np.zeros(3)
     found = ContactField(nothing, np.zeros((3, 3)), np.array([0.1, np.inf, 0.3]), nothing)
     gap = next(field.id for field in CONTACT_FIELDS if field.name == "contact_gap")
@@ -327,7 +327,7 @@ def test_only_the_end_of_a_solution_knows_its_fields(solved):
 
 
 def gray_in(png):
-    """How many pixels of a picture are of the gray of objects."""
+    """Number of pixels of a picture in the gray of objects."""
     picture = (255 * imread(png)[..., :3]).astype(int)
     gray = (np.ptp(picture, axis=2) <= 2) & (picture[..., 0] > 120) & (picture[..., 0] < 240)
     return int(gray.sum())

@@ -92,7 +92,7 @@ def test_only_the_newest_of_several_requests_is_answered(requests):
 
 
 class Heard:
-    """A bus that keeps what it is told."""
+    """A bus that keeps its events."""
 
     def __init__(self):
         self.reported = []
@@ -132,7 +132,7 @@ def drawn(packed):
 
 
 @pytest.mark.parametrize("mode", ["surface", "solid", "tets"])
-def test_the_first_frame_equals_what_the_core_packs(body, mode, monkeypatch):
+def test_the_first_frame_equals_that_of_the_core(body, mode, monkeypatch):
     canvas = Canvas(body)
     of_core = canvas.frame(Player(body), DISPLACEMENT, mode)
     monkeypatch.setattr(Canvas, "_surface", None)

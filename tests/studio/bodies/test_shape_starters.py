@@ -1,4 +1,4 @@
-"""What the studio's page writes for a new shape is a design, and can be seen."""
+"""The page's first text of a new shape is a design, and can be seen."""
 
 import json
 import re

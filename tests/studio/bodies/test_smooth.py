@@ -25,7 +25,7 @@ def cross(a, b):
 
 
 def crossings(vertices, triangles, axis, at):
-    """Where a line along an axis meets a surface, in order; `at` are the other two coordinates."""
+    """Crossings of a line along an axis with a surface, in order; `at` has the others."""
     others = [other for other in range(3) if other != axis]
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     flat_a, flat_b, flat_c, point = a[:, others], b[:, others], c[:, others], np.asarray(at)
@@ -83,7 +83,7 @@ def test_a_ball_has_its_volume_and_the_colors_of_its_parts():
     assert set(owners[middles[:, 0] > 9 * mm]) == {1}
 
 
-def test_what_has_no_voxels_is_not_shown():
+def test_designs_without_voxels_are_not_shown():
     mm = 1e-3
     body = vs.Box((20 * mm, 20 * mm, 20 * mm))
     # A wall far thinner than a voxel, which finds none.

@@ -28,7 +28,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-# Generous: on two busy cores a page may take long; what is waited for comes or it does not.
+# Generous: on two busy cores a page may take long; an event comes or it does not.
 PATIENCE = 120.0
 
 SERVE = """
@@ -172,7 +172,7 @@ def bare(tmp_path):
 
 @dataclass
 class Tab:
-    """A page with what it logged and asked for."""
+    """A page with its log and its requests."""
 
     page: object
     errors: list[str] = field(default_factory=list)

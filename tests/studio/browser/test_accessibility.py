@@ -16,7 +16,7 @@ MODES = ("design", "simulate", "calibrate", "optimize", "runs")
 KEYS = {"Control+k": "palette", "?": "shortcuts", "Control+Shift+S": "save-sheet"}
 SCHEMES = ("dark", "light")
 
-#: What axe found that is serious or critical, as lines that name the rule and the element.
+#: Serious or critical findings of axe, as lines that name the rule and the element.
 FOUND = """async () => {
   const run = await axe.run(document, { resultTypes: ["violations"] });
   return run.violations
@@ -34,7 +34,7 @@ LOADED = """(() => {
 
 
 class Audit:
-    """Collects what is found in one page after the other."""
+    """Collects the findings of one page after the other."""
 
     def __init__(self, tab):
         self.tab, self.found = tab, {}

@@ -214,7 +214,7 @@ def test_the_gripper_of_three_is_made_again_from_one_finger(tmp_path, serving, o
         bodies = saved(tab, server)["bodies"]
     finally:
         server.stop()
-    # What the example has written by hand, formulas and all.
+    # Text that the example has written by hand, formulas and all.
     unnamed = [{key: body[key] for key in body if key != "name"} for body in bodies]
     by_hand = tomllib.loads(text)["bodies"]
     assert unnamed == [{key: body[key] for key in body if key != "name"} for body in by_hand]
@@ -230,7 +230,7 @@ def test_two_bodies_are_pressed_together_and_the_card_says_so(stack, open_tab, s
     card.wait_for()
     assert card.locator("strong").all_inner_texts() == ["lower on upper"]
     assert "Friction" in card.inner_text()
-    # The force as an arrow, with what it and its color mean; it can be switched off.
+    # The force as an arrow, with the meaning of it and its color; it can be switched off.
     legend = tab.find("force-legend")
     legend.wait_for()
     assert "10 mm = " in legend.inner_text()

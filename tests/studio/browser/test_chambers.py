@@ -21,7 +21,7 @@ def test_the_pressure_of_each_chamber_is_drawn_over_time(serving, tmp_path, open
         tab.page.get_by_text("No chamber was filled over time yet").wait_for()
         tab.page.get_by_role("button", name="Solve", exact=True).first.click()
         tab.find("plot-chambers").wait_for()
-        # What asked for it is done, and its motion can be shown again.
+        # The requested solution is done, and its motion can be shown again.
         assert tab.find("not-live").count() == 0
         tab.page.get_by_label("Show the motion that was solved (Space)").wait_for()
         tab.shot("chambers")

@@ -39,14 +39,14 @@ def colors(picture):
 
 
 def alike(one, other):
-    """Whether two pictures are the same but for the rims of cells."""
+    """Check if two pictures are the same but for the rims of cells."""
     height, width = (min(pair) for pair in zip(one.shape[:2], other.shape[:2], strict=True))
     apart = np.abs(one[:height, :width] - other[:height, :width]).max(axis=2) > 0.05
     return apart.mean() < 0.004
 
 
 def bright(picture):
-    """How many points have the color of the largest value."""
+    """Number of points with the color of the largest value."""
     red, green, blue = np.moveaxis(picture, 2, 0)
     return int(((red > 0.6) & (green > 0.6) & (blue < 0.35)).sum())
 
@@ -95,9 +95,7 @@ def largest_of(tab, name):
 
 
 class TestCompare:
-    def test_two_runs_stand_side_by_side_with_what_their_summaries_say(
-        self, side_by_side, compared_runs
-    ):
+    def test_two_runs_stand_side_by_side_with_their_summaries(self, side_by_side, compared_runs):
         tab = side_by_side
         due = {}
         for name in ("short", "long"):

@@ -22,7 +22,7 @@ MODES = ("design", "simulate", "calibrate", "optimize", "runs")
 
 MEASURED = "s (mm),dz (mm)\n10,-0.3\n25,-1.7\n40,-4.0\n"
 
-# What is wrong with the page as it stands, or "": a pane that is empty, has no size or failed, a
+# Faults of the page as it stands, or "": a pane that is empty, has no size or failed, a
 # page that is wider than its window, a word of the picture under a card, a bar or a banner.
 FAULTS = """((mode) => {
   if (document.querySelector(`[data-testid=mode-${mode}][aria-current=page]`) === null)
@@ -56,7 +56,7 @@ def visit(tab, mode):
 
 
 def whole(tab, mode):
-    """Wait until there is no fault; what does not go away is what the test fails with."""
+    """Wait until there is no fault; a lasting one fails the test."""
 
     def fault():
         return tab.page.evaluate(f"{FAULTS}('{mode}')")
@@ -76,7 +76,7 @@ def state(*names):
 
 
 class Actions:
-    """What a user does, by name; the modes are visited after each."""
+    """Actions of a user, by name; the modes are visited after each."""
 
     def __init__(self, tab, folder):
         self.tab, self.page, self.folder = tab, tab.page, folder

@@ -53,7 +53,7 @@ def look(tab, key):
 
 
 def saved(tab, server, condition):
-    """The design, once the file has what a condition asks for."""
+    """The design, once the file meets a condition."""
     tab.page.keyboard.press("Control+s")
     return until(lambda: design if condition(design := vs.load(server.source)) else None)
 

@@ -1,4 +1,4 @@
-"""What a new user once stumbled over: findings without a place, numbers that are none, a lamp that
+"""Stumbling blocks of a new user: findings without a place, numbers that are none, a lamp that
 is lit for nothing, and materials that stop time."""
 
 import pytest
@@ -39,7 +39,7 @@ def hinged(serving, tmp_path, open_tab):
     assert tab.errors == []
 
 
-def test_a_finding_says_what_it_is_about_and_leads_to_its_place(hinged):
+def test_a_finding_names_its_subject_and_leads_to_its_place(hinged):
     finding = hinged.find("findings").locator("button.finding").first
     finding.wait_for()
     assert "edge" in finding.inner_text()

@@ -1,4 +1,4 @@
-"""Whether the mesh is fine enough, asked where the result stands."""
+"""Fineness check of the mesh, asked beside the result."""
 
 import pytest
 

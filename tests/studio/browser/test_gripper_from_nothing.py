@@ -14,7 +14,7 @@ from voxsoft.shapes import TriangleMesh
 
 pytestmark = pytest.mark.browser
 
-#: What is built, number by number.
+#: The gripper to build, number by number.
 GRIPPER = """
 schema = "voxsoft/1"
 name = "robot"
@@ -92,7 +92,7 @@ LIFT, BEGAN = 0.04, 0.013  # how far the ball goes up, and from where, m
 #: Two busy cores solve one such design in minutes.
 SOLVED = 900
 
-#: Where the vertex of the body that is nearest to a place (m) is on the page.
+#: Place on the page of the vertex of the body that is nearest to a place (m).
 ON_PAGE = """(place) => {
     let best = null, least = Infinity;
     for (let i = 0, at; (at = window.voxsoft.vertexPosition(i)) !== null; i++) {
@@ -104,7 +104,7 @@ ON_PAGE = """(place) => {
 
 
 def build(tab, hand):
-    """Two hanging fingers of silicone with fabric inside, a ball between them, and what they do."""
+    """Two hanging fingers of silicone with fabric inside, a ball between them, and the program."""
     first_shape(tab, hand, "box")
     entry = tab.find("shapes-box")
     for axis, size in (("x", "30 mm"), ("z", "100 mm")):
@@ -115,7 +115,7 @@ def build(tab, hand):
     hand.key("5")  # from above
     hand.face(2, 1)
     hand.here("here-clamp")
-    hand.key("3")  # from the left: what will be the inside
+    hand.key("3")  # from the left: the future inside
     hand.face(0, -1)
     hand.here("here-layer")
     hand.key("1")
@@ -151,7 +151,7 @@ def test_a_gripper_is_built_from_nothing(empty, tmp_path):
     (tmp_path / "by-hand.toml").write_text(GRIPPER)
     assert built == vs.load(tmp_path / "by-hand.toml")
     print("actions", hand.actions)
-    # Four more lead to what it does: the mode Simulate, from the front, solve, fit.
+    # Four more lead to its motion: the mode Simulate, from the front, solve, fit.
     assert hand.actions + 4 <= 60
 
 
@@ -183,12 +183,12 @@ def test_the_ball_is_gripped_lifted_and_held(serving, open_tab, tmp_path):
     finally:
         server.stop()
     assert hand.actions <= 4
-    # The same without the page.
+    # The gripper solved without the page.
     held = vs.simulate(vs.load(tmp_path / "robot.toml"))
     assert held.status == "ok"
     heights = held.recording.objects["ball"][0][:, 2]
     assert heights[-1] - heights[0] == pytest.approx(rise, abs=1e-3)
-    # By friction and shape: nothing else touches it, and it does not move any more.
+    # Friction and shape hold it: nothing else touches it, and it does not move any more.
     assert {each.of for each in held.contacts} == {("body", "ball")}
     assert abs(heights[-1] - heights[-3]) < 1e-3
     weight = 0.02 * 9.81
@@ -200,7 +200,7 @@ def test_the_ball_is_gripped_lifted_and_held(serving, open_tab, tmp_path):
 
 @pytest.mark.slow  # three solutions of minutes
 @pytest.mark.timeout(6 * SOLVED)
-def test_its_study_for_grip_force_and_what_is_taken_away(serving, open_tab, alone, tmp_path):
+def test_its_study_for_grip_force_and_its_export(serving, open_tab, alone, tmp_path):
     server, tab, hand = opened(serving, open_tab, tmp_path, "design")
     page = tab.page
     try:

@@ -1,4 +1,4 @@
-"""The legend of the view: where colors end, and what lies beyond."""
+"""The legend of the view: ends of the colors, and values beyond."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The browser of materials: find one, read what is known of it, and make a part of it."""
+"""The browser of materials: find one, read its data, and make a part of it."""
 
 import pytest
 
@@ -45,7 +45,7 @@ def test_one_press_makes_the_only_part_of_a_material(design):
     has_text(design, 'material = "ecoflex-00-30-lattice"')
 
 
-def test_what_nobody_stated_is_not_stated(design):
+def test_unstated_values_stay_empty(design):
     browse(design)
     item = design.find("material-ecoflex-00-30")
     item.get_by_role("button", expanded=False).click()

@@ -1,6 +1,6 @@
 """The way of a new user: from `voxsoft studio cylinder.toml` to an optimized, exported actuator.
 
-Only what stands on the page is used, in one window, as the paper's users would go. Where
+Only text on the page is used, in one window, as the paper's users would go. Where
 VOXSOFT_SCREENSHOTS names a folder, each step leaves a picture for people to look at.
 """
 

@@ -190,9 +190,7 @@ def test_pads_touch_a_plate_live_and_it_is_shown(pinch, open_tab):
     assert tab.errors == []
 
 
-def test_a_small_page_says_that_time_does_not_run_and_shows_the_film_of_a_solution(
-    pinch_of_lattice, open_tab
-):
+def test_a_small_page_without_time_shows_the_film_of_a_solution(pinch_of_lattice, open_tab):
     tab = open_tab(pinch_of_lattice.address, mode="simulate", size=(1000, 640))
     tab.until("window.voxsoft !== undefined && voxsoft.objectPosition('plate') !== null")
     banner = tab.find("not-live")

@@ -30,7 +30,7 @@ def design(served, open_tab):
     tab.find("parameter-length").wait_for()
     tab.find("text-editor").locator(".cm-content").wait_for()
     yield tab
-    # A page that goes hands over what was typed last, so that it can be undone too.
+    # A page that goes hands over the text typed last, so that it can be undone too.
     tab.page.reload()
     tab.find("link").get_by_text("connected", exact=True).wait_for()
     tab.find("text-editor").locator(".cm-content").wait_for()
@@ -189,7 +189,7 @@ class TestDesign:
 
 @pytest.fixture(scope="module")
 def study_done(served, chromium):
-    """Whether the study of this file has been run; the tests after it look at its folder."""
+    """Check if the study of this file has been run; the tests after it look at its folder."""
     return {"done": False}
 
 
@@ -232,7 +232,7 @@ class TestStudy:
         studied.shot("study")
         assert studied.errors == []
 
-    def test_what_is_brushed_on_an_axis_is_kept_in_all_plots(self, studied):
+    def test_brushed_trials_of_an_axis_are_kept_in_all_plots(self, studied):
         grip = studied.page.locator("[data-testid=parallel-chart] rect[data-axis=length]")
         box = grip.bounding_box()
         x = box["x"] + box["width"] / 2
@@ -311,7 +311,7 @@ def finer(own_server):
 
 class TestHoldingAStudy:
     @pytest.mark.slow
-    def test_a_study_is_paused_goes_on_and_is_stopped_with_what_it_has(self, finer, open_tab):
+    def test_a_study_is_paused_goes_on_and_is_stopped_with_its_trials(self, finer, open_tab):
         tab = open_tab(finer.address, mode="optimize")
         tab.find("study-form").wait_for()
         add_objective(tab)
@@ -363,7 +363,7 @@ class TestRuns:
         row.hover()
         row.get_by_role("button", name="Work on with renamed").click()
         studied.until("location.hash.includes('mode=optimize')")
-        # What the job said last is there under its new name, and its designs with it.
+        # The last event of the job is there under its new name, and its designs with it.
         job = studied.page.locator("[data-testid=job-study][data-state=done]")
         job.get_by_text("4 of 4 designs").wait_for()
         assert job.locator("strong").inner_text() == "renamed"

@@ -129,7 +129,7 @@ def robot(request, tmp_path, serving, open_tab):
     for part in FILES.get(name, ()):
         shutil.copy(EXAMPLES / part, tmp_path)
     server = serving(tmp_path, (EXAMPLES / name).read_text(), name)
-    # Words of clamps, layers and chambers of three fingers would hide what touches.
+    # Words of clamps, layers and chambers of three fingers would hide the contacts.
     tab = open_tab(server.address, symbols=name != "gripper_three.toml")
     tab.suffix = ""
     tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
@@ -171,7 +171,7 @@ def test_picture_of_the_gripper(robot):
 
 
 @pytest.mark.parametrize("robot", ["gripper_three.toml"], indirect=True)
-def test_picture_of_what_touches(robot):
+def test_picture_of_contacts(robot):
     bar = robot.find("scrubber").bounding_box()
     robot.page.mouse.click(bar["x"] + 0.8 * bar["width"], bar["y"] + bar["height"] / 2)
     robot.find("contacts").get_by_text("third on can").wait_for()

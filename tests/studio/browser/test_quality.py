@@ -1,4 +1,4 @@
-"""What pictures cost: coarse while they move where graphics are slow, and none in a hidden tab."""
+"""Cost of pictures: coarse while they move where graphics are slow, and none in a hidden tab."""
 
 import io
 import struct
@@ -117,7 +117,7 @@ def test_a_hidden_tab_is_sent_no_frames_and_draws_nothing(prepared):
     tab.until("voxsoft.time > 0.02")
     show = "state => dispatchEvent(new CustomEvent('test:show', { detail: state }))"
     tab.page.evaluate(show, "hidden")
-    # What was on its way may still come; then time goes on without a frame.
+    # Frames on their way may still come; then time goes on without a frame.
     began = tab.until(clock)
     tab.until(f"{clock} > {began} + 0.05")
     tab.until("(now => window.drawn === now || (window.drawn = now, false))(drawCalls)")

@@ -81,7 +81,7 @@ def test_edited_work_is_not_replaced_without_a_question(design, own_server):
     design.find("save-now").click()
     design.find("document-name").get_by_text("sphere.toml").wait_for()
     assert '"55 mm"' in own_server.source.read_text()
-    # What has not been edited is replaced at once.
+    # A document without edits is replaced at once.
     open_template(design, "beam")
     design.find("document-name").get_by_text("beam.toml").wait_for()
     edit(design, "80 mm")

@@ -92,14 +92,14 @@ def test_a_new_shape_is_found_by_keys_and_seen_at_once(plate):
     # It stays to be seen when another one is chosen.
     choose(tab, "hole")
     tab.until("voxsoft.ghosts.length === 2")
-    # Escape gives the focus back to what opened the list.
+    # Escape gives the focus back to the button that opened the list.
     hand.press(name="Add a shape")
     tab.page.keyboard.press("Escape")
     picker.wait_for(state="detached")
     assert tab.page.evaluate("document.activeElement.dataset.testid") == "add-shape"
 
 
-def test_what_cuts_the_body_is_moved_and_sized_in_the_picture(plate, tmp_path):
+def test_cutting_shapes_are_moved_and_sized_in_the_picture(plate, tmp_path):
     tab, _ = plate
     choose(tab, "hole")
     tab.shot("shapes-4-hole")
@@ -114,7 +114,7 @@ def test_what_cuts_the_body_is_moved_and_sized_in_the_picture(plate, tmp_path):
     moved = float(base.input_value().split()[0])
     assert moved > 20
     assert moved * 2 == round(moved * 2)
-    # The radius is a parameter, which is what a typed number changes.
+    # The radius is a parameter, which a typed number changes.
     grip = tab.find("shape-radius")
     assert "changes the parameter bore" in grip.get_attribute("aria-label")
     grip.focus()
@@ -128,7 +128,7 @@ def test_what_cuts_the_body_is_moved_and_sized_in_the_picture(plate, tmp_path):
     renewed(tab, lambda: field.press("Enter"))
     tab.until("voxsoft.ghostBox('hole')[1][1] > 0.0295")
     assert saved_parameter(tab) == "10"
-    # By keys along z.
+    # Moves by keys along z.
     renewed(tab, lambda: tab.find("shape-move-z").press("ArrowDown"))
     tab.until("voxsoft.ghostBox('hole')[0][2] < -0.0055")
     design = kept(tab, tmp_path / "plate.toml")
@@ -210,7 +210,7 @@ def row(serving, open_tab, tmp_path):
         server.stop()
 
 
-def test_what_turns_mirrors_repeats_and_scales_has_grips(row, tmp_path):
+def test_operators_that_turn_mirror_repeat_or_scale_have_grips(row, tmp_path):
     tab = row
     # The angle is a parameter, which a drag on its ring changes by whole steps.
     choose(tab, "leaning")

@@ -1,4 +1,4 @@
-"""The page around the panes: modes, keys, connection, and what it asks of the network."""
+"""The page around the panes: modes, keys, connection, and its requests to the network."""
 
 import re
 
@@ -62,7 +62,7 @@ def test_space_plays_after_a_click_and_presses_a_focused_button(tab):
         tab.until("voxsoft.state === 'paused'")
     ghost = tab.find("ghost")
     assert ghost.get_attribute("aria-pressed") == "true"
-    # By keyboard: away from the button and back to it.
+    # Keyboard: away from the button and back to it.
     tab.page.keyboard.press("Tab")
     tab.page.keyboard.press("Shift+Tab")
     assert tab.page.evaluate("document.activeElement.dataset.testid") == "ghost"
@@ -155,7 +155,7 @@ def test_another_version_of_the_protocol_is_reported_and_not_tried_again(served,
     context.close()
 
 
-def test_a_studio_with_another_token_is_distinguished_from_one_that_is_away(own_server, open_tab):
+def test_a_studio_with_another_token_differs_from_an_absent_one(own_server, open_tab):
     tab = open_tab(own_server.address)
     own_server.stop()
     tab.find("disconnected").get_by_text("retrying").wait_for()

@@ -97,7 +97,7 @@ def test_numbers_are_typed_and_the_text_keeps_its_units(timeline, server):
     field.fill("0.3 s")
     field.press("Enter")
     is_now(timeline, FIRST, "0.3 s, factor 1", LAST)
-    # What is drawn is ahead of the document: there is something to save once that has it.
+    # The drawn state is ahead of the document: there is something to save once that has it.
     timeline.find("document-name").get_by_text("edited").wait_for()
     timeline.page.keyboard.press("Control+s")
     timeline.find("document-name").get_by_text("edited").wait_for(state="detached")
@@ -113,7 +113,7 @@ def test_a_double_click_adds_a_point(timeline):
     )
 
 
-def test_what_is_no_table_of_points_is_drawn_with_its_text(timeline):
+def test_histories_without_a_table_are_drawn_with_their_text(timeline):
     breath = timeline.find("history-histories-breath")
     assert "sine of 0 to 1, period 1 s" in breath.inner_text()
     assert "Force (1 is 5 mN)" in breath.inner_text()

@@ -10,7 +10,7 @@ pytestmark = pytest.mark.browser
 
 @pytest.fixture
 def word(request):
-    """What a test types; tests share a document, so each has a word of its own."""
+    """Text that a test types; tests share a document, so each has a word of its own."""
     return f"# {request.node.name}"
 
 
@@ -28,7 +28,7 @@ def typed(served, open_tab, word):
     tab.until("document.querySelector('.cm-content').innerText.includes('50 mm')")
     content.locator(".cm-line", has_text="[parameters]").click()
     tab.page.keyboard.press("End")
-    # What typing waits for never comes: only another request can send the text.
+    # The end of typing never comes: only another request can send the text.
     tab.page.evaluate(
         "window.setTimeout = ((set) => (f, ms) => ms === 700 ? 0 : set(f, ms))(setTimeout)"
     )
@@ -56,12 +56,12 @@ def test_undo_and_redo_of_the_top_bar_cover_typed_text(typed, word):
     typed.until(f"document.querySelector('.cm-content').innerText.includes({word!r})")
 
 
-def test_a_change_of_the_mode_sends_what_was_typed(typed, served, word):
+def test_a_change_of_the_mode_sends_typed_text(typed, served, word):
     typed.find("mode-runs").click()
     draft_holds(word, served)
 
 
-def test_a_value_of_the_form_comes_on_top_of_what_was_typed(typed, word):
+def test_a_value_of_the_form_follows_typed_text(typed, word):
     size = typed.find("parameter-length").get_by_role("textbox", name="length", exact=True)
     size.fill("55 mm")
     size.press("Enter")
@@ -69,7 +69,7 @@ def test_a_value_of_the_form_comes_on_top_of_what_was_typed(typed, word):
     assert word in text(typed)
 
 
-def test_a_new_name_comes_on_top_of_what_was_typed(typed, word):
+def test_a_new_name_follows_typed_text(typed, word):
     typed.find("shapes-body").get_by_role("button", name="body", exact=False).first.click()
     name = typed.find("shapes-body").get_by_label("Name", exact=True)
     name.fill("bar")
@@ -78,7 +78,7 @@ def test_a_new_name_comes_on_top_of_what_was_typed(typed, word):
     assert word in text(typed)
 
 
-def test_opening_another_document_keeps_what_was_typed_for_undo(typed, word):
+def test_opening_another_document_keeps_typed_text_for_undo(typed, word):
     typed.find("templates").click()
     typed.find("template-sphere").click()
     typed.find("discard").click()
@@ -88,6 +88,6 @@ def test_opening_another_document_keeps_what_was_typed_for_undo(typed, word):
     typed.until(f"document.querySelector('.cm-content').innerText.includes({word!r})")
 
 
-def test_closing_the_tab_sends_what_was_typed(typed, served, word):
+def test_closing_the_tab_sends_typed_text(typed, served, word):
     typed.page.close()
     draft_holds(word, served)

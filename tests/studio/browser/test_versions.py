@@ -51,7 +51,7 @@ def test_a_version_is_compared_and_restored_and_nothing_is_lost(own_server, open
     tab.until(f"voxsoft.rev > {rev} + 1")
     assert field.input_value().startswith("55")
     tab.find("document-name").click()
-    tab.find("version").nth(3).wait_for()  # what stood there before is a version too
+    tab.find("version").nth(3).wait_for()  # the earlier text is a version too
     assert tab.find("version").count() == 4
     page.keyboard.press("Escape")
     assert tab.errors == []

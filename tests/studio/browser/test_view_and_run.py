@@ -23,7 +23,7 @@ def colors(tab):
 
 
 def changed(before, after):
-    """How many pixels differ visibly."""
+    """Number of pixels that differ visibly."""
     return int((np.abs(before - after).max(axis=2) > 12).sum())
 
 
@@ -62,7 +62,7 @@ def test_time_runs_and_the_body_sags(tab):
 
 
 def test_a_pull_moves_the_vertex_under_the_mouse(tab):
-    # The body stands still until the hand pulls: what is pressed is where it was looked up.
+    # The body stands still until the hand pulls: the pressed vertex is where it was looked up.
     vertex = farthest_vertex(tab)
     x, y = tab.page.evaluate(f"voxsoft.screenOf({vertex})")
     # The corner itself may lie on the silhouette: press a little inside of it.

@@ -11,7 +11,7 @@ pytestmark = pytest.mark.browser
 
 
 def boxes(tab, selector):
-    """Where elements are on the page: left, top, right and bottom of what encloses them all."""
+    """Places of elements on the page: left, top, right and bottom of the box around them all."""
     return tab.page.evaluate(
         """(selector) => {
           const found = [...document.querySelectorAll(selector)];
@@ -152,7 +152,7 @@ def test_a_section_shows_the_field_inside(tab):
     tab.until("voxsoft.cut() > 100")
     assert share_of_color(tab, CUT) < 0.5 * hatched
     tab.shot("section-field-smooth")
-    # By parts, and without a section, only the surface comes.
+    # Colored by parts, and without a section, only the surface comes.
     tab.find("section").click()
     tab.until("voxsoft.cut() === 0")
     assert tab.errors == []

@@ -36,7 +36,7 @@ def marked(text, found):
         ('name = "cylinder"', 'name = "cylinder', "is not TOML", None),
     ],
 )
-def test_an_error_stands_under_what_is_wrong(old, new, reported, under):
+def test_an_error_underlines_the_fault(old, new, reported, under):
     text = CYLINDER.replace(old, new, 1)
     assert text != CYLINDER
     broken = document(text)
@@ -104,7 +104,7 @@ def test_a_parameter_tells_its_value_at_opening_or_at_the_last_saving(tmp_path):
         (["description"], 'says "hello"\nand more'),
     ],
 )
-def test_an_edit_says_in_toml_what_it_says_in_data(path, value):
+def test_an_edit_in_toml_agrees_with_its_data(path, value):
     due = tomllib.loads(CYLINDER)
     here = due
     for step in path[:-1]:

@@ -1,4 +1,4 @@
-"""What the page is told of how fine a mesh is, and of what finer voxels would cost."""
+"""Events about the fineness of a mesh, and the cost of finer voxels."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def test_the_voxels_with_most_of_the_error_can_be_refined() -> None:
     assert fineness_of(*shown(f'{TWO_PARTS}\n[[refine]]\npart = "low"\n')[:2]).refining == []
 
 
-def test_where_no_part_can_be_refined_it_says_why() -> None:
+def test_a_design_without_refinable_parts_gives_the_reason() -> None:
     both = '[[refine]]\npart = "low"\n[[refine]]\npart = "high"'
     found = fineness_of(*shown(f"{TWO_PARTS}\n{both}\n")[:2])
     assert found.refinable == []
@@ -154,7 +154,7 @@ def test_a_body_of_before_is_refused() -> None:
 
 
 def test_errors_are_parts_of_the_numbers() -> None:
-    """Of a vector that is 5 long and 0.5 off, of a volume that grew by 2 and is 1 off."""
+    """Error of a vector that is 5 long and 0.5 off, of a volume that grew by 2 and is 1 off."""
     vector = [ErrorBar(3.0, 3.0, 0.3, "length"), ErrorBar(4.0, 4.0, 0.4, "length")]
     assert share_of(vector) == pytest.approx(0.1)
     assert share_of([ErrorBar(12.0, 12.0, 1.0, "volume")], beside=10.0) == pytest.approx(0.5)
@@ -170,7 +170,7 @@ def test_error_bars_can_be_asked_for_where_there_are_none() -> None:
     assert first.probes[0].share is None
     asked = with_error(result, "finer")
     assert equilibrium_of(asked, 1, 1).looking
-    # What was tried on finer voxels and failed would fail again.
+    # Finer voxels that failed once would fail again.
     assert not equilibrium_of(asked, 1, 1, ErrorBars.none("it failed", "larger voxels")).askable
     found = equilibrium_of(asked, 1, 1, error_bars(asked))
     assert not found.askable

@@ -1,4 +1,4 @@
-"""What the page is given of materials."""
+"""Event of the materials for the page."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_every_card_is_there_once() -> None:
     assert not {one.name for one in found} & {one.same_as for one in found}
 
 
-def test_what_no_card_states_is_left_open() -> None:
+def test_unstated_values_of_cards_are_left_open() -> None:
     found = facts(DesignDocument(BEAM, "beam.toml"))
     bending = found["dragon-skin-10"]
     assert (bending.tested_to, bending.elongation_at_break, bending.shore) == (None, None, "10A")

@@ -1,4 +1,4 @@
-"""One document after another: what was not saved stays, also over a restart."""
+"""One document after another: unsaved text stays, also over a restart."""
 
 import signal
 
@@ -70,7 +70,7 @@ def test_undo_after_a_restart_leads_to_unsaved_changes(make_studio, tmp_path):
     run(look())
 
 
-def test_a_server_that_is_killed_has_kept_what_was_typed(make_studio, in_own_process, tmp_path):
+def test_a_killed_server_has_kept_typed_text(make_studio, in_own_process, tmp_path):
     arm, _ = arm_and_leg(tmp_path)
     first = in_own_process(arm)
 

@@ -113,7 +113,7 @@ pairs = [{ of = ["left", "cube"], friction = 0.7 }, { of = ["left", "left"], fri
 
 
 class Tabs:
-    """What a session tells, kept."""
+    """Events of a session, kept."""
 
     def __init__(self):
         self.sent = []
@@ -172,7 +172,7 @@ def vertices(design, name):
 
 
 def same_points(first, second):
-    """Whether two sets of points are the same to what text keeps of lengths, 1e-12 m."""
+    """Check if two sets of points are the same to the digits of lengths in text, 1e-12 m."""
     key = [np.rint(each / 1e-8).astype(int) + 0 for each in (first, second)]
     return {*map(tuple, key[0])} == {*map(tuple, key[1])}
 
@@ -208,7 +208,7 @@ def test_a_body_is_copied_to_where_it_was_asked_for_and_back_by_one_undo(opened,
         if name == "right":
             [moved] = [body.motion for body in design.bodies if body.name == copy]
             assert moved.displacement == pytest.approx(isometry.vector((3e-3, 0, 0)), abs=1e-12)
-    # Comments and the rest of the text stay, and the command line reads what was written.
+    # Comments and the rest of the text stay, and the command line reads the written file.
     lines = iter(session.document.text.splitlines())
     assert all(line in lines for line in before.splitlines() if not line.startswith("pairs"))
     session.document.save()
@@ -247,7 +247,7 @@ def test_a_copy_of_a_copy_around_an_axis_keeps_its_formula(opened):
     assert same_points(vertices(design, "left-2-2"), image)
 
 
-def test_a_copy_touches_as_the_original_and_what_names_that_is_copied_where_it_can_be(opened):
+def test_a_copy_has_the_contacts_of_the_original_where_possible(opened):
     session = opened()
     design = do(session, commands.Copy(seq=1, name="left", way=WAYS["beside"][0]))
     pairs = [(pair.of, pair.friction) for pair in design.contact.pairs]
@@ -330,7 +330,7 @@ def test_an_object_that_is_copied_again_and_again_is_moved_once(opened):
     assert shape == {"kind": "translate", "of": "cube", "by": ["40 mm", 0, 0]}
 
 
-def test_what_is_taken_out_takes_its_pairs_along(opened):
+def test_a_removed_object_takes_its_pairs_along(opened):
     session = opened()
     before = session.document.text
     design = do(session, commands.Remove(seq=1, name="cube"))
@@ -348,7 +348,7 @@ def test_bodies_are_added_from_the_folder_from_templates_and_from_uploads(opened
     assert listed.files[0].parameters == {"long": "30 mm"}
     add = commands.AddBody(seq=2, what="file", name="finger.toml", beyond=0.061)
     design = do(session, add)
-    # Free of what is there, and on voxels of its own.
+    # Clear of existing bodies, and on voxels of its own.
     assert design.bodies[2].name == "finger"
     assert vertices(design, "finger")[:, 0].min() == pytest.approx(0.065)
     do(session, commands.AddBody(seq=3, what="template", name="cylinder", beyond=0.2))
@@ -356,7 +356,7 @@ def test_bodies_are_added_from_the_folder_from_templates_and_from_uploads(opened
     session.store_upload("my pad.toml", FINGER.replace("finger", "pad").encode())
     design = do(session, commands.AddBody(seq=4, what="upload", name="my pad.toml", beyond=0.3))
     assert [body.name for body in design.bodies[2:]] == ["finger", "cylinder", "my-pad"]
-    # The same again is the same file; another of that name gets another.
+    # One file added again is one file; another of that name gets another.
     do(session, commands.AddBody(seq=5, what="template", name="cylinder", beyond=0.4))
     (folder / "cylinder.toml").write_text(FINGER)
     design = do(session, commands.AddBody(seq=6, what="template", name="cylinder", beyond=0.5))
@@ -380,7 +380,7 @@ def test_bodies_are_added_from_the_folder_from_templates_and_from_uploads(opened
         (commands.AddBody(seq=1, what="upload", name="none.toml"), "was not uploaded"),
     ],
 )
-def test_what_cannot_be_done_is_refused_and_changes_nothing(opened, command, expected):
+def test_impossible_requests_are_refused_and_change_nothing(opened, command, expected):
     assert expected in refused(opened(), command)
 
 
@@ -407,7 +407,7 @@ def test_copying_the_body_of_a_design_makes_a_new_design_of_several(opened, fold
     assert session.document.name == "finger-several.toml"
     own = vertices(design, "finger")
     assert same_points(vertices(design, "finger-2"), own * [-1, 1, 1] - [0.02, 0, 0])
-    # What is of all bodies has moved along; the load of a place has not.
+    # Entries that concern all bodies have moved along; the load of a place has not.
     assert [load.kind for load in design.loads] == ["gravity"]
     pairs = [pair.of for pair in design.contact.pairs]
     assert pairs == [("finger", "ball"), ("finger-2", "ball")]

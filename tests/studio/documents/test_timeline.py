@@ -57,7 +57,7 @@ def lines(document: DesignDocument) -> dict[str, events.HistoryLine]:
     return {line.title: line for line in document.event().histories}
 
 
-def test_named_histories_say_what_follows_them(document: DesignDocument) -> None:
+def test_named_histories_list_their_users(document: DesignDocument) -> None:
     found = lines(document)
     ramp = found["ramp"]
     assert ramp.path == ["histories", "ramp"]
@@ -152,7 +152,7 @@ def test_histories_in_the_file_of_bodies_come_once_with_the_file(tmp_path: Path)
     assert users == ["Tendon flexor of left", "Tendon flexor of right"]
     assert "Gravity" not in found
     assert ramp.factors == [0.0, 1.0]
-    # What is constant in a file gets its history there.
+    # A constant entry of a file gets its history there.
     assert all(line.way != "none" for line in found.values())
 
 

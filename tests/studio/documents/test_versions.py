@@ -46,7 +46,7 @@ def boxed(make_studio, tmp_path):
     return make_studio(file), file
 
 
-def test_every_save_is_a_version_and_so_is_what_was_in_the_file_before(boxed):
+def test_every_save_is_a_version_and_so_is_the_earlier_file(boxed):
     studio, file = boxed
 
     async def scenario():
@@ -59,7 +59,7 @@ def test_every_save_is_a_version_and_so_is_what_was_in_the_file_before(boxed):
             await saved(page)  # nothing has changed since
             reasons = [each["reason"] for each in await listed(page)]
             assert reasons == ["saved", "saved", "in the file before"]
-            # Another program wrote the file: what it wrote is not lost.
+            # Another program wrote the file: its text is not lost.
             file.write_text(BOX.replace("40 mm", "99 mm"))
             await edited(page, "70 mm")
             await saved(page)

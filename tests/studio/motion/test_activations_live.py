@@ -26,7 +26,7 @@ def block(activation):
     )
 
 
-def test_time_does_not_run_for_what_grows_by_a_history():
+def test_time_does_not_run_for_growth_by_a_history():
     growing = block(Swelling(part="gel", value=0.1, history=RAMP))
     playback = Playback()
     playback.begin(StudioBody.of(growing, 1, 1))
@@ -37,7 +37,7 @@ def test_time_does_not_run_for_what_grows_by_a_history():
         page_of(growing)
 
 
-def test_time_runs_for_what_has_grown_and_for_fields():
+def test_time_runs_for_grown_bodies_and_for_fields():
     assert StudioBody.of(block(Swelling(part="gel", value=0.1)), 1, 1).not_live == ""
     sheet = Dielectric(part="gel", value=1e6, permittivity=2.8, normal=(0, 0, 1), history=RAMP)
     assert StudioBody.of(block(sheet), 1, 1).not_live == ""

@@ -1,4 +1,4 @@
-"""What is found without time has none, also after time has run."""
+"""States found without time have none, also after time has run."""
 
 import pytest
 
@@ -35,7 +35,7 @@ def test_motion_has_its_time_and_the_equilibrium_after_it_has_none(played):
     assert (shown.sentence, shown.time) == ("at rest", 0.0)
 
 
-def test_a_frame_of_before_and_what_is_played_on_have_their_time(played):
+def test_an_earlier_frame_and_the_motion_after_it_have_their_time(played):
     played.go_to_rest(simulate(played.body.setup))
     played.do(commands.Seek(seq=0, frame=2))
     assert stat(played).state == "past"

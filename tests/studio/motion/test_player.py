@@ -32,7 +32,7 @@ def names(struct):
 
 
 def sent(value):
-    """The same of what the core sent."""
+    """Event of the core in the form of the player."""
     inner = {
         name: sent(entry[0])
         for name, entry in value.items()
@@ -45,7 +45,7 @@ def test_events_have_the_names_of_the_protocol(body):
     player = scene_of(body).play()
     grab = commands.Grab(seq=1, id=2, vertex=3, target=(0.0, 0.0, 0.1))
     [stat] = json.loads(player.command(msgspec.json.encode(grab)))
-    # What solves, how far it is, and which states have no time, the player does not know.
+    # The player does not know the solver, its progress, and the states without time.
     found, inner = sent(stat)
     assert (found | {"solver", "progress", "untimed"}, inner) == names(events.Stat)
     assert sent(json.loads(player.plot())) == names(events.Plot)
@@ -87,7 +87,7 @@ def test_every_command_is_understood_with_all_it_may_say(body, command):
         assert player.plot().names[-1] == "vertex 5"
 
 
-def test_what_cannot_be_done_says_where_and_what(body):
+def test_impossible_requests_name_place_and_reason(body):
     player = Player(body)
     with pytest.raises(SimulationError, match="there are 1 loads") as refused:
         player.do(commands.Load(seq=1, index=7, factor=1.0))
@@ -104,7 +104,7 @@ def test_before_there_is_a_player_the_same_is_reported(body):
     assert without == (playback.stat(), playback.plot(), playback.frame, playback.state)
 
 
-def test_a_page_shows_first_what_it_is_given(body):
+def test_a_page_shows_the_given_state_first(body):
     """Positions beside the unloaded ones are packed; of another body they are refused."""
     rest = body.mesh.vertices
     scene = scene_of(body)

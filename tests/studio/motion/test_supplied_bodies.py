@@ -16,7 +16,7 @@ FINGER = Path(__file__).parents[3] / "examples" / "pulsed_finger.toml"
 
 
 class Listener:
-    """Keeps what a search finds."""
+    """Keeps the results of a search."""
 
     result = sentence = None
 

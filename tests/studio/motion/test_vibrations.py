@@ -45,7 +45,7 @@ async def opened(page, file):
 
 
 def swings_both_ways(ways):
-    """Whether what was drawn has been as far on one side as on the other, nearly."""
+    """Check if the drawn swing has been as far on one side as on the other, nearly."""
     if not ways:
         return False
     farthest = max(ways, key=np.linalg.norm).ravel()
@@ -53,7 +53,7 @@ def swings_both_ways(ways):
     return min(along) < -0.9 * max(along) and len(ways) > 60
 
 
-def test_modes_are_drawn_about_the_equilibrium_until_something_else_is_done(fresh_studio, tmp_path):
+def test_modes_are_drawn_about_the_equilibrium_until_another_action(fresh_studio, tmp_path):
     file = tmp_path / "beam.toml"
     file.write_text(BEAM)
 

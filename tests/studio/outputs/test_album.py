@@ -82,7 +82,7 @@ def number_of(result, length):
 
 @pytest.fixture
 def searches(monkeypatch):
-    """How many times the studio has looked for an equilibrium."""
+    """Number of searches for an equilibrium by the studio."""
     begun = []
     solve = rest.simulate
     monkeypatch.setattr(rest, "simulate", lambda *a, **k: begun.append(1) or solve(*a, **k))
@@ -117,7 +117,7 @@ def test_a_design_of_a_study_is_pictured_at_rest_and_to_scale(barred):
     assert scale[0] > 1.2 * scale[1]  # the shorter bar fills its picture as well
 
 
-def test_a_picture_is_drawn_once_and_shows_the_unloaded_shape_where_no_more_is_known(barred):
+def test_a_picture_is_drawn_once_unloaded_where_no_more_is_known(barred):
     studio, result = barred
     number = number_of(result, 0.05)
     folder = studio.session.runs / "bars"
@@ -131,7 +131,7 @@ def test_a_picture_is_drawn_once_and_shows_the_unloaded_shape_where_no_more_is_k
     assert at_rest.headers["x-voxsoft-state"] == "rest"
     assert at_rest.content != unloaded.content
     (kept,) = (folder / "thumbnails").glob("*-rest.png")
-    kept.write_bytes(unloaded.content)  # what is kept is what comes, from now on
+    kept.write_bytes(unloaded.content)  # the kept picture is sent from now on
     assert picture(studio, f"trial/bars/{number}").content == unloaded.content
 
 
@@ -146,7 +146,7 @@ def test_a_picture_is_drawn_once_and_shows_the_unloaded_shape_where_no_more_is_k
         ("", "not known"),
     ],
 )
-def test_what_there_is_no_picture_of_is_reported(barred, of, says):
+def test_missing_pictures_are_reported(barred, of, says):
     answer = picture(barred[0], of)
     assert answer.status_code == 422
     assert says in answer.json()["what"]
@@ -197,7 +197,7 @@ def test_a_design_of_a_study_opens_at_rest_without_being_solved_again(barred, se
     assert searches == []
 
 
-def test_one_that_was_solved_when_it_was_opened_is_not_solved_the_next_time(barred, searches):
+def test_a_body_solved_on_opening_is_not_solved_again(barred, searches):
     studio, result = barred
     number = number_of(result, 0.03)
     for file in (studio.session.runs / "bars" / "equilibria").iterdir():
@@ -318,9 +318,7 @@ def gripping(make_studio, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_gripper_of_a_study_opens_with_all_its_numbers_and_is_not_solved_again(
-    gripping, searches
-):
+def test_a_gripper_of_a_study_opens_with_its_numbers_unsolved(gripping, searches):
     studio, design = gripping
 
     async def scenario():

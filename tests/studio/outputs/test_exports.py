@@ -1,4 +1,4 @@
-"""Files of what is shown, read back by the programs they are for."""
+"""Files of the shown body, read back by the programs they are for."""
 
 import io
 import tomllib
@@ -75,7 +75,7 @@ def test_text_tables_voxels_pictures_and_folders(at_rest):
         ("stl", {"run": "never"}, "not in the list"),
     ],
 )
-def test_what_cannot_be_exported_is_reported(at_rest, format, options, words):
+def test_impossible_exports_are_reported(at_rest, format, options, words):
     answer = export(at_rest, format, **options)
     assert answer.status_code == 422
     assert words in f"{answer.json()['where']} {answer.json()['what']}"

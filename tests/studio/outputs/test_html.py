@@ -40,7 +40,7 @@ def notes_of(page):
             return json.loads(scene[at : at + length])
 
 
-def test_a_page_holds_its_scene_and_says_what_it_shows():
+def test_a_page_holds_its_scene_and_a_description():
     design = families.cylinder()
     page = design.show().text
     notes = notes_of(page)
@@ -101,13 +101,13 @@ def test_a_body_with_a_layer_has_a_page():
     (fabric,) = body["layers"]
     assert fabric["name"] == "fabric"
     assert fabric["stiffness"] == pytest.approx(9000.0)
-    # Two triangles on each of 20 x 6 faces, all among what is drawn.
+    # Two triangles on each of 20 x 6 faces, all among the drawn ones.
     assert len(fabric["triangles"]) == 3 * 2 * 20 * 6
     assert set(fabric["triangles"]) <= set(range(body["surface_vertices"]))
     assert fabric["center"] == pytest.approx([0.04, 0.012, 0.0])
 
 
-def test_what_cannot_be_shown_live_is_reported():
+def test_designs_that_cannot_move_live_are_reported():
     with pytest.raises(DesignError, match="nothing holds the body"):
         families.cylinder().with_values("clamps=[]").show()
 

@@ -1,4 +1,4 @@
-"""What is on the screen is what is kept, solved on and carried over, with loads and pulls."""
+"""The state on the screen is kept, solved on and carried over, with loads and pulls."""
 
 import json
 import threading
@@ -33,7 +33,7 @@ async def ready(page):
 
 
 async def solved(page):
-    """Solve for the equilibrium; gives what the page is told of it, and its frame."""
+    """Solve for the equilibrium; gives its event, and its frame."""
     await page.send("rest")
     _, frame = await page.shown(lambda s: s.state == "at-rest")
     reported = [event for event in page.log if event["t"] == "equilibrium"]
@@ -116,7 +116,7 @@ def test_another_material_leaves_loads_and_pulls_as_they_are(studio):
             assert [(g["id"], g["vertex"], g["target"]) for g in stat.grabs] == [
                 (2, pulled["vertex"], pulled["target"])
             ]
-            # A load that is written anew is what was written.
+            # A load that is written anew has the written value.
             before = stat.topology
             await page.send("edit", rev=page.rev, path=["loads", 0, "value"], value="3 kPa")
             stat = await page.until("stat", lambda s: s.topology > before and s.state == "paused")

@@ -42,7 +42,7 @@ sag = { minimize = "displacement", probe = "tip", axis = "z" }
 
 
 def asked(studio, name):
-    """What the server answers to a page that wants a picture of a body."""
+    """Answer of the server to a page that wants a picture of a body."""
     params = {"of": name, "token": studio.token}
     return httpx.get(f"{studio.origin}/still", params=params, timeout=60)
 
@@ -55,7 +55,7 @@ def read(content):
 
 
 def parts_of(content):
-    """The same, and what stands behind the frames: the objects around the body."""
+    """Parts of the message, with the objects around the body behind the frames."""
     points, triangles, edges = struct.unpack_from("<3I", content, 24)
     rest = np.frombuffer(content, "<f4", 3 * points, 64).reshape(-1, 3)
     at = 64 + 12 * points + 12 * triangles + 8 * edges + triangles
@@ -162,7 +162,7 @@ def test_the_view_is_left_alone(studio, study):
     run(scenario())
 
 
-def test_what_cannot_be_shown_is_reported(studio, study):
+def test_designs_that_cannot_be_shown_are_reported(studio, study):
     runs = studio.session.runs
     (runs / "begun").mkdir()
     (runs / "begun" / "design.toml").write_text(BAR)
@@ -257,7 +257,7 @@ def test_the_specimen_of_a_calibration_stands_where_its_stations_are(make_studio
     for at, (measured, simulated) in enumerate(
         zip(last["measured"], last["simulated"], strict=True)
     ):
-        # What was not measured is where the simulated station is: the line is the error.
+        # A missing measurement lies at the simulated station: the line is the error.
         assert measured[:2] == pytest.approx(simulated[:2])
         assert abs(measured[2] - simulated[2]) == pytest.approx(last["error"][at])
         near = np.linalg.norm(positions - simulated, axis=1).min()

@@ -44,7 +44,7 @@ def test_a_command_is_read_with_its_defaults():
         "[" * 100_000,
     ],
 )
-def test_what_is_no_command_is_refused_in_words(text):
+def test_invalid_commands_are_refused_in_words(text):
     with pytest.raises(ProtocolError, match="message: "):
         decode(text)
 
@@ -70,7 +70,7 @@ def test_numbers_that_are_not_finite_become_null():
     assert '"rows":[[null,1.0]]' in encode(row)
 
 
-def test_the_page_gets_what_a_calibration_fits_by_itself(tmp_path):
+def test_the_page_gets_the_default_constants_of_a_calibration(tmp_path):
     ranges = hello(tmp_path).fit_ranges
     assert {one.name: (one.low, one.high) for one in ranges["lattice"]} == {
         "edge": (1e3, 1e6),

@@ -1,4 +1,4 @@
-"""What waits for a tab, and in which order it is sent."""
+"""Queue of a tab, and the order in which it is sent."""
 
 import asyncio
 
@@ -9,7 +9,7 @@ from voxsoft.studio.protocol.tab import LONGEST_QUEUE, Tab
 
 
 class Wire:
-    """Keeps what is sent."""
+    """Keeps sent messages."""
 
     def __init__(self):
         self.sent = []

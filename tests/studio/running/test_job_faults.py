@@ -1,4 +1,4 @@
-"""What goes wrong around jobs is said in plain words, and costs nothing that was finished."""
+"""Faults around jobs are reported in plain words, and cost no finished work."""
 
 import asyncio
 import os
@@ -58,7 +58,7 @@ def test_a_worker_of_a_study_that_is_killed_costs_time_only(fresh_studio):
             done = await ended(page, job.id)
             trials = next(e for e in reversed(page.log) if e["t"] == "trials")["trials"]
         assert (done.state, done.done) == ("done", 8), done.message
-        # Where the wall is as thick as the radius there is no chamber; nothing failed.
+        # If the wall is as thick as the radius there is no chamber; nothing failed.
         assert {trial["status"] for trial in trials} == {"ok", "no-cavity"}
 
     run(scenario())

@@ -1,4 +1,4 @@
-"""Jobs in processes of their own: studies, calibrations, runs, and the list of what they left."""
+"""Jobs in processes of their own: studies, calibrations, runs, and the list of their folders."""
 
 import os
 import shutil

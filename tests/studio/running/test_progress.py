@@ -1,4 +1,4 @@
-"""A pause is said at once, with what is still being finished, and takes no time from the job."""
+"""A pause is reported at once, with the unfinished work, and takes no time from the job."""
 
 import multiprocessing
 import threading
@@ -12,7 +12,7 @@ from voxsoft.studio.running.progress import Progress
 
 
 class Report:
-    """What a job said."""
+    """Events of a job."""
 
     def __init__(self, kind):
         self.sent = []
@@ -84,7 +84,7 @@ def test_pauses_do_not_count_as_work(calibration, monkeypatch):
     reported = Report("calibrate")
     progress = reported.progress
     progress.pause()
-    now[0] += 2  # what was begun is being finished
+    now[0] += 2  # begun work is being finished
     work = threading.Thread(target=progress.at, args=(jobs.Progress(1, 3, "generations"),))
     work.start()
     while reported.sent[-1].state != "paused":
@@ -97,7 +97,7 @@ def test_pauses_do_not_count_as_work(calibration, monkeypatch):
     assert progress.elapsed == 7
 
 
-def test_what_is_counted_may_change_and_time_is_then_that_of_the_new_count():
+def test_a_new_unit_of_progress_has_a_time_of_its_own():
     run = Report("run")
     run.progress.at(jobs.Progress(0, 11, "equilibria"))
     run.progress.at(jobs.Progress(11, 11, "equilibria"))
@@ -105,5 +105,5 @@ def test_what_is_counted_may_change_and_time_is_then_that_of_the_new_count():
     run.progress.at(jobs.Progress(0, 100, "percent of a further run"))
     assert (run.sent[-1].of, run.sent[-1].left) == ("percent of a further run", None)
     run.progress.at(jobs.Progress(50, 100, "percent of a further run"))
-    # As long as the first half, and the equilibria before do not count.
+    # Equal to the time of the first half; the equilibria before do not count.
     assert 0.0 <= run.sent[-1].left < run.sent[-1].elapsed

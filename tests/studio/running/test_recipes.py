@@ -1,4 +1,4 @@
-"""What "Copy as Python" and "Copy the command" give does the job again, with the same answer."""
+""" "Copy as Python" and "Copy the command" repeat the job, with the same answer."""
 
 import json
 import shlex
@@ -42,14 +42,14 @@ def do(folder):
 
 
 def again(recipe, folder):
-    """Do the job again by its command, and give what it answers."""
+    """Do the job again by its command, and give its output."""
     voxsoft = [sys.executable, "-c", CLI, *shlex.split(recipe.command)[1:]]
     command = [*voxsoft, "--out", str(folder), "--json"]
     return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
 
 
 def script(recipe, folder):
-    """What the script prints."""
+    """Output of the script."""
     file = folder / "again.py"
     file.write_text(recipe.python)
     run = subprocess.run(
@@ -105,7 +105,7 @@ def test_a_run_is_done_again_with_the_same_rise(tmp_path):
     assert recipe.seed is None
 
 
-def test_the_design_of_a_state_that_was_kept_is_what_can_be_solved_again(tmp_path):
+def test_the_design_of_a_kept_state_can_be_solved_again(tmp_path):
     design = DesignSource(text=families.family_text("paper-cylinder"))
     write_job(with_copies(RunSpec(design=design, kept=True), tmp_path), tmp_path)
     recipe = recipe_of(tmp_path)

@@ -45,7 +45,7 @@ async def begin(page, **changes):
 
 
 async def shown(page, name):
-    """What the tab is told of a job of the past."""
+    """Events of a past job for the tab."""
     before = len(page.log)
     await page.send("job_show", id=name)
     await page.settled()

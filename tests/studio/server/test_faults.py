@@ -56,7 +56,7 @@ def test_an_invalid_design_is_reported_at_its_line(studio, change, words):
 
 
 @pytest.mark.parametrize(("change", "words"), NOT_SOLVABLE)
-def test_what_cannot_be_solved_is_shown_all_the_same(studio, change, words):
+def test_unsolvable_designs_are_shown_all_the_same(studio, change, words):
     async def scenario():
         async with studio.page() as page:
             before = await page.until("topology")
@@ -178,7 +178,7 @@ def test_two_tabs_edit_at_once_and_each_sees_all(studio):
                 both = await page.until(
                     "document", lambda d: '"20 mm"' in d.text and 'value = "10 mm",' in d.text
                 )
-            # The same value: the last wins.
+            # Two edits of one value: the last wins.
             await left.send("edit", rev=both.rev, path=RADIUS, value="15 mm")
             await left.until("document", lambda d: '"15 mm"' in d.text)
             await right.send("edit", rev=both.rev, path=RADIUS, value="22 mm")

@@ -39,7 +39,7 @@ def test_a_tab_is_shown_the_design_and_its_body(fresh_studio):
             hello = await page.until("hello")
             document = await page.until("document")
             body = await page.until("body")
-            # The shape may come before what is said of it.
+            # The shape may come before its report.
             topology = page.topology or await page.until("topology")
             _, frame = await page.shown(lambda s: s.state == "paused")
             smooth = page.smooth or await page.until("smooth")

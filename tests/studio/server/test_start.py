@@ -1,4 +1,4 @@
-"""What the start screen shows, when it opens by itself, and the files of before."""
+"""Content of the start screen, when it opens by itself, and the files of before."""
 
 import urllib.error
 import urllib.request
@@ -55,7 +55,7 @@ def test_it_stays_away_where_a_design_is_given_or_a_draft_was_left(make_studio, 
     assert run(fresh(given)) is False
     given.stop()
     bare = make_studio(None)
-    assert run(fresh(bare)) is True  # what was given was not changed
+    assert run(fresh(bare)) is True  # the given document was not changed
     bare.stop()
     edited = make_studio(file)
     assert run(fresh(edited, edit=True)) is False

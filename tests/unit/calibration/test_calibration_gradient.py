@@ -22,7 +22,7 @@ ARCS = (10e-3, 20e-3, 30e-3)
 
 
 def observed(material, scale=1.0):
-    """What would be measured on a beam of 40 mm, without noise."""
+    """Measurement of a beam of 40 mm, without noise."""
     design = families.beam(length="40 mm").with_values(f"parts.0.material={material}")
     quantities = ("x", "dz")
     blank = [[arc, 0.0] for arc in ARCS]
@@ -69,7 +69,7 @@ def test_a_modulus_comes_back_in_a_dozen_evaluations(material, name, truth, scal
         refine=False,
         identify=False,
     )
-    # Data without noise: what is left is the residual of the solutions, 1e-6.
+    # Data without noise: the residual of the solutions remains, 1e-6.
     assert found.parameters[name] == pytest.approx(truth, rel=1e-4)
     assert found.scale == pytest.approx(scale, rel=1e-4)
     assert found.settings["solver"] == "statics"

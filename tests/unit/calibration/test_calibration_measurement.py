@@ -1,4 +1,4 @@
-"""Measurements: what a table may hold, and what is said about a bad one."""
+"""Measurements: columns of a table, and messages about a bad one."""
 
 from pathlib import Path
 

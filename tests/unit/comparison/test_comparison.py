@@ -1,4 +1,4 @@
-"""What a comparison says of its runs, and the report made of it."""
+"""Results of a comparison's runs, and the report made of it."""
 
 import json
 import re
@@ -172,7 +172,7 @@ def test_scikit_fem_answers_beside_a_solver_that_cannot(monkeypatch):
 
 
 class Links(HTMLParser):
-    """What a page would fetch."""
+    """Links that a page would fetch."""
 
     def __init__(self):
         super().__init__()
@@ -220,7 +220,7 @@ def test_the_command_line_answers_with_one_object(tmp_path):
     assert refused.exit_code == 3
 
 
-def test_what_cancels_is_left_out():
+def test_canceling_terms_are_left_out():
     outer = vs.Box(size=(15 * mm, 15 * mm, 15 * mm))
     hole = vs.Box(size=(5 * mm, 5 * mm, 5 * mm), corner=(5 * mm, 5 * mm, 5 * mm))
     design = BAR.replace(

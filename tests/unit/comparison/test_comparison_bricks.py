@@ -43,7 +43,7 @@ def test_vertices_weights_and_forces_are_those_of_the_voxels(nodes, split):
 
 
 @pytest.mark.parametrize("split", [1, 2, 3])
-def test_what_is_held_does_not_depend_on_the_split(split):
+def test_held_vertices_do_not_depend_on_the_split(split):
     model = BrickModel.of(setup_of([vs.Gravity()]), split=split)
     held = model.fixed.all(axis=1)
     np.testing.assert_array_equal(held, model.nodes[:, 0] <= 5 * mm + 1e-9)
@@ -102,7 +102,7 @@ def test_the_deck_refuses_bricks_of_another_element():
         calculix_deck(BrickModel.of(setup_of([]), nodes=8))
 
 
-def test_printed_blocks_that_break_off_keep_what_is_whole():
+def test_printed_blocks_that_break_off_keep_complete_rows():
     head = " displacements (vx,vy,vz) for set {} and time  {}\n\n"
     rows = "         1  1.0E+00  0.0E+00  2.0E-01\n         2  1.0E+00 -1.0-100  2.0E-01\n"
     text = head.format("A", "0.5") + rows + "\n" + head.format("A", "1.0") + rows[:50]

@@ -124,7 +124,7 @@ def test_the_code_with_scikit_fem_refuses_contact():
         run_scikit_fem(BrickModel.of(Setup.of(slit_block()), nodes=27))
 
 
-def test_what_passed_through_is_named():
+def test_overlapping_bodies_are_named():
     setup = Setup.of(slit_block([PLATE]))
     rest = setup.mesh.vertices
     assert passed_through(setup, rest) == ""  # the plate comes down by 1 mm to the top, no deeper

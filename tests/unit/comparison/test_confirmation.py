@@ -1,4 +1,4 @@
-"""What is said of a study's ranking after its best designs were solved again."""
+"""Sentence about a study's ranking after its best designs were solved again."""
 
 import lattice_families as families
 import pytest
@@ -45,7 +45,7 @@ def found(*pairs, message=""):
         (([1, 1],), "too thin", "too few of the designs could be solved again to rank them"),
     ],
 )
-def test_the_sentence_says_what_became_of_the_ranking(pairs, message, sentence):
+def test_the_sentence_describes_the_new_ranking(pairs, message, sentence):
     confirmation = found(*pairs, message=message)
     assert confirmation.sentence == sentence
     assert confirmation.summary()["sentence"] == sentence

@@ -44,7 +44,7 @@ def test_regular_sizes_hold_every_order_from_a_half_on(order):
     assert found.basis == "regular sizes"
 
 
-def test_regular_sizes_do_not_hold_what_hardly_converges():
+def test_regular_sizes_do_not_bound_slow_convergence():
     values = [1.0 + 0.3 * size**0.3 for size in (2.0, 1.0)]
     found = discretization_error([2.0, 1.0], values, regular=True)
     assert abs(found.limit - 1.0) > found.error
@@ -57,7 +57,7 @@ def test_a_small_body_gets_finer_voxels(bars):
     assert bars.missing == ""
 
 
-def test_the_bar_of_a_beam_holds_what_three_sizes_come_to(bars):
+def test_the_bar_of_a_beam_holds_the_limit_of_three_sizes(bars):
     sizes = (5 * mm, 2.5 * mm, 1.25 * mm)
     runs = [vs.simulate(beam().replace(voxel_size=size)) for size in sizes]
     values = [float(run.probes["tip"][2]) for run in runs]
@@ -68,7 +68,7 @@ def test_the_bar_of_a_beam_holds_what_three_sizes_come_to(bars):
     assert bar.error < abs(bar.value - truth) * 2.0
 
 
-def test_what_symmetry_makes_zero_has_no_error(bars):
+def test_numbers_zero_by_symmetry_have_no_error(bars):
     sideways = bars.probes["tip"][1]
     assert (sideways.estimate, sideways.error) == (0.0, 0.0)
 
@@ -268,7 +268,7 @@ def test_an_estimate_that_cannot_be_is_not_known():
     assert not ErrorBar.within(-9e4, -1.0e5, 3e4, "pressure", pressure).unknown
 
 
-def test_a_chamber_that_shrinks_with_its_voxels_to_less_than_nothing_is_not_known():
+def test_a_chamber_extrapolated_below_zero_is_not_known():
     # One voxel of 2 mm, and one of 1 mm: extrapolated that is -6 mm³.
     block = vs.Box(size=(10 * mm,) * 3, corner=(0, 0, 0))
     room = vs.Box(size=(1.2 * mm,) * 3, corner=(4.9 * mm,) * 3)

@@ -25,7 +25,7 @@ SOUND = {
     "objectives": {"rise": {"maximize": "displacement", "probe": "top"}},
 }
 
-#: A mistake of each sort: where it is made, what is written there, and where it is told.
+#: A mistake of each sort: its place, its text, and the place of the message.
 MISTAKES = {
     "unit": (("voxel_size",), 5, "voxel_size"),
     "formula": (("loads", 0, "value"), "= presure", "loads[0].value"),

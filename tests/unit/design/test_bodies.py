@@ -1,4 +1,4 @@
-"""Several bodies in one design: what is read, gathered, refused and reported."""
+"""Several bodies in one design: reading, gathering, refusals and reports."""
 
 import json
 import shutil
@@ -95,7 +95,7 @@ def hand(folder, text="", **replaced):
     return load(file)
 
 
-def test_what_inner_designs_say_comes_along_under_the_name_of_the_body(folder):
+def test_entries_of_inner_designs_come_under_the_name_of_the_body(folder):
     whole = load(folder / "hand.toml").assembled
     assert [body.name for body in whole.bodies] == ["left", "right"]
     assert [body.voxel_size for body in whole.bodies] == [2 * mm, 1 * mm]
@@ -159,7 +159,7 @@ def test_a_link_does_not_lead_out_of_the_folder(folder, tmp_path_factory):
         hand(folder, design='design = "link.toml"')
 
 
-def test_what_is_wrong_in_an_inner_file_has_its_name(folder):
+def test_faults_of_an_inner_file_have_its_name(folder):
     (folder / "finger.toml").write_text(FINGER.replace('"soft"', '"sotf"', 1))
     with pytest.raises(DesignError, match=r'finger\.toml: parts\[0\]\.material.*"sotf".*"soft"'):
         load(folder / "hand.toml")
@@ -267,7 +267,7 @@ def test_overlap_at_rest_has_depth_and_place():
     assert vs.check(apart).valid
 
 
-def test_check_lists_each_body_and_what_is_left_out(folder):
+def test_check_lists_each_body_and_entries_left_out(folder):
     report = vs.check(load(folder / "hand.toml"))
     assert report.valid, report
     cells = 12 * 4 * 4 - 8 * 2 * 2, 20 * 8 * 8 - 12 * 4 * 4
@@ -288,7 +288,7 @@ def test_check_lists_each_body_and_what_is_left_out(folder):
     assert not hand(folder, say).assembled.left_out
 
 
-def test_what_is_wrong_with_an_inner_clamp_has_its_place(folder):
+def test_faults_of_an_inner_clamp_have_its_place(folder):
     (folder / "finger.toml").write_text(FINGER.replace("x = [0, 0]", 'x = ["-9 mm", "-8 mm"]', 1))
     errors = [f for f in vs.check(load(folder / "hand.toml")).findings if f.severity == "error"]
     assert errors[0].where == "bodies[0].design: clamps[0].region"
@@ -341,7 +341,7 @@ def test_a_clamp_along_one_axis_in_a_turned_body_is_refused(folder):
     assert [clamp.axes for clamp in whole.assembled.clamps] == ["xyz", "z"]
 
 
-def test_the_hash_covers_what_inner_files_say(folder):
+def test_the_hash_covers_inner_files(folder):
     before = load(folder / "hand.toml").hash
     assert load(folder / "hand.toml").hash == before
     (folder / "finger.toml").write_text(FINGER.replace("1 kPa", "2 kPa"))
@@ -350,7 +350,7 @@ def test_the_hash_covers_what_inner_files_say(folder):
     assert load(folder / "hand.toml").hash == before
 
 
-def test_what_is_saved_elsewhere_holds_its_inner_designs(folder, tmp_path_factory):
+def test_a_design_saved_elsewhere_holds_its_inner_designs(folder, tmp_path_factory):
     design, elsewhere = load(folder / "hand.toml"), tmp_path_factory.mktemp("elsewhere")
     design.save(folder / "copy.toml")
     assert load(folder / "copy.toml") == design
@@ -435,7 +435,7 @@ def test_the_studio_draws_all_bodies(folder):
     assert [part.name for part in event.parts] == ["left.body", "right.body"]
     assert [cavity.name for cavity in event.cavities] == [c.name for c in body.mesh.cavities]
     assert event.not_live
-    # Of a square face only its sides are drawn, also where it is turned: two triangles have four
+    # Only the sides of a square face are drawn, also where it is turned: two triangles have four
     # sides, each of two faces, and one diagonal.
     faces = len(body.mesh.triangles) / 2
     assert len(body.surface.outline.edges) == pytest.approx(2 * faces, abs=0.5)
@@ -454,7 +454,7 @@ def event_count(design):
         (Design.show, "exported pages"),
     ],
 )  # fmt: skip
-def test_what_knows_one_body_refuses_several(does, who):
+def test_uses_of_one_body_refuse_several(does, who):
     beam = families.beam(length="40 mm")
     one = Design(
         name="one",

@@ -48,7 +48,7 @@ def test_a_path_is_meant_from_the_folder_of_the_design(folder):
     assert inline.hash == design.hash
 
 
-def test_what_is_saved_goes_on_working(folder, monkeypatch):
+def test_a_saved_design_goes_on_working(folder, monkeypatch):
     design = vs.load(folder / "designs" / "beam.toml", assignments=[CHANGE])
     design.save(folder / "elsewhere" / "copy.toml")
     result = vs.simulate(design)

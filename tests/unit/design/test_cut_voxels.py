@@ -1,4 +1,4 @@
-"""Voxels that the surface cuts: fractions, moments, voids, and what is made of them."""
+"""Voxels that the surface cuts: fractions, moments, voids, and meshes of them."""
 
 import lattice_families as families
 import numpy as np
@@ -90,7 +90,7 @@ def test_volume_cavity_and_center_converge_with_second_order(shift):
     for size in (5, 2.5, 1.25):
         cut = CutVoxels.of(hollow_ball(10 * mm, 16 * mm, size * mm, tuple(center)))
         mesh = cut.mesh()
-        # What is given away stays in the sum, so nothing else is left than curvature.
+        # Material given away stays in the sum, so only curvature remains.
         solid, hole = (16**3 - 10**3) * 4e-9 / 3 * np.pi, 1e-6 * 4 / 3 * np.pi
         assert cut.lost == pytest.approx(0.0, abs=1e-12 * solid)
         cells = mesh.vertices[mesh.tets].mean(axis=1).reshape(-1, 5, 3).mean(axis=1)

@@ -407,7 +407,7 @@ FULL = {
 }
 
 
-def test_the_json_schema_takes_what_the_model_takes():
+def test_the_json_schema_agrees_with_the_model():
     schema = Design.json_schema()
     validator = jsonschema.Draft202012Validator(schema)
     for document in (CYLINDER, FULL, Design.from_document(CYLINDER).resolved):

@@ -61,7 +61,7 @@ def design(folder):
 
 
 def like(design):
-    """The same in Python, as a design with shapes that nobody asks for and a mesh beside it."""
+    """The design in Python, with shapes that nobody asks for and a mesh beside it."""
     box = vs.Box(size=(1, 1, 1))
     mesh = mesh_of(design)
     return Setup(
@@ -151,7 +151,7 @@ def test_the_content_of_the_file_is_part_of_the_hash(design, folder):
         ({"mesh": {"path": "none.msh", "unit": "mm"}}, "mesh.path", "No such file"),
     ],
 )
-def test_what_a_mesh_cannot_have_is_refused_by_its_cause(design, change, where, what):
+def test_entries_impossible_with_a_mesh_are_refused_with_the_cause(design, change, where, what):
     with pytest.raises(DesignError) as caught:
         design.replace(**change)
     first = caught.value.problems[0]

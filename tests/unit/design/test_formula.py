@@ -45,7 +45,7 @@ def test_arithmetic_carries_dimensions(case):
         ("= 1" + "+1" * LONGEST_FORMULA, [f"longer than {LONGEST_FORMULA}"]),
     ],
 )
-def test_wrong_formulas_say_what_is_wrong(text, words):
+def test_wrong_formulas_name_the_fault(text, words):
     with pytest.raises(FormulaError) as caught:
         value_of(text)
     for word in words:

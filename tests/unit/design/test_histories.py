@@ -22,7 +22,7 @@ def test_an_expression_is_followed_closely():
     charge = vs.History(expression="1 - exp(-t / 0.05)", duration="3 s")
     times = np.linspace(0.0, 3.0, 1001)
     found = np.array([charge.at(float(t)) for t in times])
-    # By construction: an eight-hundredth of the range.
+    # Bound by construction: an eight-hundredth of the range.
     assert np.abs(found - (1.0 - np.exp(-times / 0.05))).max() < 1.0 / 800.0
     assert 64 < len(charge.times) < 4097
     assert charge.at(100.0) == pytest.approx(1.0)
@@ -78,7 +78,7 @@ def test_loads_share_a_history_by_its_name(tmp_path):
     path = vs.follow(design, "time=0..1 s/3")
     rise = np.array(path.columns["rise"][1])
     assert rise[1] < 100 * min(rise[0], -1e-12)
-    # The document keeps the name, and what it stands for changes all that use it.
+    # The document keeps the name, and a change of its history changes all that use it.
     assert 'history = "breath"' in design.to_toml()
     quick = design.with_values('histories.breath.sine.period="0.5 s"')
     assert quick.loads[0].history.at(0.25) == pytest.approx(1.0)

@@ -37,7 +37,7 @@ def x(low, high):
 
 
 def large(design):
-    """Where large voxels begin along x, in voxels of 5 mm, each once."""
+    """Places along x at which large voxels begin, in voxels of 5 mm, each once."""
     setup = Setup.of(design)
     corners = setup.mesh.voxel_corners(setup.large_voxels[:, 0])
     places = setup.mesh.vertices[corners[:, 0], 0] / (5 * mm)
@@ -47,7 +47,7 @@ def large(design):
     return found.tolist()
 
 
-def test_what_the_region_or_the_part_names_is_small():
+def test_voxels_of_a_named_region_or_part_are_small():
     assert large(bar([x(9, 11)])) == [0, 3, 4, 5, 6, 7]
     assert large(bar([x(0, 0), x(40, 40)])) == [1, 2, 3, 4, 5, 6]
     assert large(bar([Refinement(part="right")])) == [0, 1, 2, 3]
@@ -190,7 +190,7 @@ def of_material(**changes):
         "wound",
     ],
 )
-def test_small_voxels_at_the_root_make_most_of_what_small_ones_everywhere_do(large_ones, changes):
+def test_refined_voxels_at_the_root_replace_uniformly_small_ones(large_ones, changes):
     found = {}
     for name, refine in (("none", []), ("root", [x(0, 5)]), ("all", [x(-1, 41)])):
         setup = Setup.of(block(**changes, refine=refine))

@@ -1,4 +1,4 @@
-"""Bodies mirrored, turned and moved: what their designs say goes along."""
+"""Bodies mirrored, turned and moved: the entries of their designs go along."""
 
 import numpy as np
 import pytest
@@ -81,7 +81,7 @@ def frame(body):
 
 
 def order(vertices, among):
-    """Where each of some vertices is among others, which are the same but for their order."""
+    """Indices of some vertices among others, which are the same but for their order."""
     keys = {tuple(np.rint(at / 1e-9).astype(int)): i for i, at in enumerate(among)}
     return np.array([keys[tuple(np.rint(at / 1e-9).astype(int))] for at in vertices])
 
@@ -172,7 +172,7 @@ def test_bodies_are_copied_in_mirrors_and_around_axes():
             order(mesh.vertices @ there.matrix.T + there.shift, other.vertices)
 
 
-def test_what_cannot_be_mirrored_is_refused_by_name(tmp_path):
+def test_entries_that_cannot_be_mirrored_are_refused_by_name(tmp_path):
     with pytest.raises(DesignError, match="mirror: is for the design of a body"):
         Body(name="pad", parts=[Part(shape="a", material="dragon-skin-10")], mirror="x")
     (tmp_path / "hook.toml").write_text(hook().to_toml())

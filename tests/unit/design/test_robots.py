@@ -48,7 +48,7 @@ def test_a_robot_comes_to_rest_without_a_warning(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_robot_has_a_picture_that_leaves_out_what_is_around_it(name):
+def test_a_robot_has_a_picture_without_background(name):
     with Image.open(BytesIO(robots.robot_picture(name))) as picture:
         assert picture.format == "WEBP"
         assert picture.size == (480, 320)
@@ -103,7 +103,7 @@ def test_answers_lead_to_a_design_that_comes_to_rest_without_a_warning(start):
     assert result.warnings == ()
 
 
-def test_what_is_not_there_is_named_with_what_is():
+def test_a_missing_name_is_reported_with_known_ones():
     with pytest.raises(DesignError, match="bellows"):
         robots.robot("bellow")
     with pytest.raises(DesignError, match="tendon-trunk-bend"):

@@ -10,7 +10,7 @@ from voxsoft.design.discretization.rooms import ROOM_TETS, room_parts
 from voxsoft.geometry import tet_volumes
 
 CORNERS = np.array([[c >> 2 & 1, c >> 1 & 1, c & 1] for c in range(8)], dtype=float)
-# Somewhere in the voxel, and beyond it as what a neighbor gave.
+# Means within the voxel, and beyond it where a neighbor's material lies.
 MEANS = np.array([[0.2, -0.5, 0.1, -0.05, 0.0, -0.2], [1.4, 0.3, -0.9, -0.3, -1.2, 0.4]])
 PARTS = np.array([0.4, -0.15])
 

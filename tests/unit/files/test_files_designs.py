@@ -76,7 +76,7 @@ def test_broken_files_are_refused_in_plain_words(content, words, tmp_path):
         assert word in str(caught.value)
 
 
-def test_an_empty_file_lists_what_is_missing(tmp_path):
+def test_an_empty_file_lists_missing_entries(tmp_path):
     path = tmp_path / "empty.toml"
     path.write_bytes(b"")
     with pytest.raises(DesignError) as caught:
@@ -155,7 +155,7 @@ def test_written_toml_reads_back_equal(document):
     assert tomllib.loads(write_toml(document)) == document
 
 
-def test_what_toml_cannot_hold_is_refused():
+def test_values_that_toml_cannot_hold_are_refused():
     with pytest.raises(DesignError, match="no form in a TOML file"):
         write_toml({"a": None})
     assert math.isnan(tomllib.loads(write_toml({"a": math.nan}))["a"])

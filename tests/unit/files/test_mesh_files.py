@@ -1,4 +1,4 @@
-"""Mesh files: every format keeps what it can, and bad files are named."""
+"""Mesh files: every format keeps all that it can hold, and bad files are named."""
 
 import errno
 
@@ -63,7 +63,7 @@ def test_parts_regions_and_cavities_are_kept(tmp_path, suffix):
 
 
 def test_the_cavities_of_a_file_keep_their_order(tmp_path):
-    # Not largest first: a file's numbers are what its loads refer to.
+    # Not largest first: the loads of a file refer to its numbers.
     mesh = two_chambers()
     swapped = Mesh(
         *(getattr(mesh, name) for name in ("vertices", "tets", "edges", "triangles")),
@@ -201,7 +201,7 @@ def test_flat_tets_of_a_file_are_named_with_the_file(tmp_path):
         ("missing/mesh.vtu", {}, "cannot be written: No such file"),
     ],
 )
-def test_what_cannot_be_written_is_named(tmp_path, name, arguments, match):
+def test_values_that_cannot_be_written_are_named(tmp_path, name, arguments, match):
     with pytest.raises(FileError, match=match):
         write_mesh(tmp_path / name, two_chambers(), **arguments)
     assert list(tmp_path.iterdir()) == []

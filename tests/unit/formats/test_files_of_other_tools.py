@@ -18,9 +18,9 @@ from voxsoft.shapes.surface_files import read_surface
 
 FOLDER = Path(__file__).parents[2] / "data" / "files"
 TABLE = tomllib.loads((FOLDER / "manifest.toml").read_text(encoding="utf-8"))["file"]
-#: Of files with text of 16 digits and sums of some tens of tetrahedra; the table has 4 decimals.
+#: Rounding of text of 16 digits and sums of some tens of tetrahedra; the table has 4 decimals.
 ROUNDING = 1e-4
-#: Of a volume of three coordinates of 24 bits each, as STL and PLY have them.
+#: Rounding of a volume of three coordinates of 24 bits each, as STL and PLY have them.
 SINGLE = 3 * 2.0**-24
 
 

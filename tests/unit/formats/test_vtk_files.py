@@ -177,7 +177,7 @@ def test_labels_of_an_image_are_parts_with_their_volumes():
 
 
 def test_offsets_into_text_of_base64_are_letters(tmp_path):
-    # As ParaView may break the lines of what is appended.
+    # ParaView may break the lines of appended data so.
     text = (FOLDER / "vtk-appended-base64.vtu").read_text()
     head, appended, foot = re.split(r"(?<=_)([A-Za-z0-9+/=]{100,})", text)
     broken = "\n".join(appended[at : at + 60] for at in range(0, len(appended), 60))

@@ -1,4 +1,4 @@
-"""Fits of coupons: known constants come back, and what cannot be known is said."""
+"""Fits of coupons: known constants come back, and unknown ones are reported."""
 
 from pathlib import Path
 
@@ -214,7 +214,7 @@ def test_models_that_were_not_fitted_say_why():
         fit.of("neo-hooke")
 
 
-def test_a_card_says_what_it_is_worth(rtv615):
+def test_a_card_states_its_quality(rtv615):
     card = fit_coupons([rtv615], models=["yeoh-3"]).card("rtv615", source="a test")
     assert card.source == "a test"
     assert "between" in card.calibration["young_interval"]

@@ -1,4 +1,4 @@
-"""Tables of testing machines: what is understood, what is refused, and how it is said."""
+"""Tables of testing machines: accepted forms, refused ones, and messages."""
 
 from pathlib import Path
 
@@ -47,7 +47,7 @@ def scaled(values, factor):
 )
 def test_names_and_units_are_understood(heads, strains, stresses):
     curve = read_curve(table(heads, [strains, stresses]), area=18e-6, length=33e-3)
-    # What float division leaves.
+    # Rounding error of float division.
     np.testing.assert_allclose(curve.strain, STRAINS, atol=1e-12)
     np.testing.assert_allclose(curve.stress, STRESSES, rtol=1e-12)
 

@@ -1,4 +1,4 @@
-"""The cards that come with VoxSoft: each says what it is, where from, and what it is worth."""
+"""The cards that come with VoxSoft: each states its title, its source, and its quality."""
 
 from pathlib import Path
 
@@ -41,7 +41,7 @@ def test_only_names_that_say_so_are_lattices():
 
 
 @pytest.mark.parametrize("card", CARDS, ids=lambda card: card.name)
-def test_a_card_says_where_it_comes_from_and_what_it_is_worth(card):
+def test_a_card_states_its_source_and_quality(card):
     assert len(card.source) > 40
     assert len(card.caution) > 40
     assert card.title

@@ -1,4 +1,4 @@
-"""Hyperelastic models: constants, what the core takes, what is refused, where they are stable."""
+"""Hyperelastic models: constants, values for the core, refusals, ranges of stability."""
 
 from functools import partial
 
@@ -63,7 +63,7 @@ def test_a_design_holds_the_model(material, tmp_path):
     ],
     ids=lambda value: value.model if hasattr(value, "model") else "",
 )
-def test_what_the_core_takes(material, core):
+def test_constants_for_the_core(material, core):
     expected = core(bulk=material.bulk, density=1070.0)
     assert material.core == expected
     viscous = material.replace(prony=[{"g": 0.25, "tau": "2 s"}])

@@ -1,4 +1,4 @@
-"""Softening fitted to cyclic coupons: known constants come back, and what is not known."""
+"""Softening fitted to cyclic coupons: known constants come back, and unknown ones are reported."""
 
 from itertools import pairwise
 
@@ -74,7 +74,7 @@ def test_cycles_give_the_curve_and_the_card(tmp_path):
     assert summary["constants"]["r"]["value"] == pytest.approx(soft.r)
 
 
-def test_what_is_no_cycle_is_refused():
+def test_tables_without_a_cycle_are_refused():
     up = np.linspace(0.0, 1.0, 30)
     with pytest.raises(MeasurementError, match="the strain never falls"):
         Cycles(up, 40e3 * up)

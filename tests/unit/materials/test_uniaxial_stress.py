@@ -23,7 +23,7 @@ from voxsoft.shapes import Box
 from voxsoft.units import mm
 
 STRETCHES = np.array([0.7, 0.9, 1.1, 1.5, 2.0])
-#: Nearly incompressible: what is left of the volume's change is a part μ/K of the stress.
+#: Nearly incompressible: the rest of the volume's change is a part μ/K of the stress.
 RUBBERS = [
     NeoHookean(young="60 kPa", poisson=0.4999),
     MooneyRivlin(c10="8 kPa", c01="2 kPa", poisson=0.4999),
@@ -54,7 +54,7 @@ def test_the_slope_at_rest_is_youngs_modulus() -> None:
     ids=lambda material: material.model,
 )
 def test_a_solved_bar_has_that_stress(material: Lattice | NeoHookean) -> None:
-    """Ends that are held let no strain be even near them: the middle of a long bar is what counts.
+    """Ends that are held let no strain be even near them: the middle of a long bar counts.
 
     The bar is pulled by a force, and its stretch is that between two cross sections.
     """

@@ -1,4 +1,4 @@
-"""What coupons of some modes leave open in others: true there, gone once these are tested."""
+"""Uncertainty left by coupons in untested modes: true there, gone once these are tested."""
 
 from functools import cache
 
@@ -64,7 +64,7 @@ def test_the_warning_vanishes_once_the_other_modes_are_tested():
     assert alone.summary()["untested"][0]["high"] == equibiaxial.high
     both = fitted("treloar", "uniaxial", "equibiaxial")
     assert [each.mode for each in both.untested] == ["planar"]
-    # Planar tension lies between the two: what is left open there is less than a tenth.
+    # Planar tension lies between the two: the range left open there is less than a tenth.
     assert not any("stress at stretch" in warning for warning in both.warnings)
     assert fitted("treloar", "uniaxial", "equibiaxial", "planar").untested == ()
 

@@ -41,7 +41,7 @@ def test_a_name_that_is_no_metric_is_refused(pressed):
         pressed.metric("roundness")
 
 
-#: Those of contact and tendons have no value where a design has none.
+#: Metrics of contact and tendons have no value where a design has none.
 WITHOUT_CONTACT = sorted(
     name for name in BUILT_IN if not {"object", "tendon"} & METRICS[name].needs
 )

@@ -131,7 +131,7 @@ if __name__ == "__main__":
 """
 
 
-def test_threads_know_what_was_typed_into_a_session(tmp_path):
+def test_threads_know_shapes_typed_into_a_session(tmp_path):
     @vs.metric(kind="length")
     def here(state):
         return 1.0
@@ -173,7 +173,7 @@ def test_a_study_is_not_resumed_with_another_metric_of_the_same_name(tmp_path):
         ({"name": "n\0"}, lambda state: 1.0, "control character"),
     ],
 )
-def test_what_cannot_be_registered(options, function, words):
+def test_invalid_metrics_cannot_be_registered(options, function, words):
     with pytest.raises(DesignError, match=words):
         vs.metric(**options)(function)
     assert "n" not in METRICS
@@ -187,7 +187,7 @@ def test_what_cannot_be_registered(options, function, words):
         (lambda state: {}["left"], "metric n: failed: KeyError: 'left'"),
     ],
 )
-def test_what_a_metric_must_not_return(pressed, function, words):
+def test_invalid_values_of_a_metric_are_refused(pressed, function, words):
     vs.metric(name="n")(function)
     with pytest.raises(SimulationError, match=words):
         pressed.metric("n")

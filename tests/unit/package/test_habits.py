@@ -1,4 +1,4 @@
-"""What people do without thinking: print, ask for help, press Tab, pass arrays and quantities."""
+"""Habits of people: print, ask for help, press Tab, pass arrays and quantities."""
 
 import inspect
 import pydoc
@@ -24,7 +24,7 @@ BEAM = families.beam(length="40 mm")
 
 @pytest.fixture(scope="module")
 def shown(tmp_path_factory):
-    """What a user prints."""
+    """Objects that a user prints."""
     study = vs.Study(
         families.cylinder(),
         {"wall": ["10 mm", "15 mm"]},
@@ -48,7 +48,7 @@ def shown(tmp_path_factory):
     }
 
 
-def test_what_is_printed_is_short(shown):
+def test_printed_objects_are_short(shown):
     for name, each in shown.items():
         assert len(repr(each)) < 200, name
         assert "\n" not in repr(each), name
@@ -69,7 +69,7 @@ def test_notebooks_show_the_same(shown):
         assert shown[name]._repr_html_().startswith("<pre>")
 
 
-def test_records_print_what_is_not_a_default():
+def test_records_print_entries_that_are_no_defaults():
     assert repr(vs.Sphere(0.01)) == "Sphere(radius=0.01)" == str(vs.Sphere(0.01))
     assert repr(vs.Pressure(value=1e3)) == "Pressure(value=1000.0)"
     assert repr(vs.NeoHookean(young=6e4)) == "NeoHookean(young=60000.0)"
@@ -107,7 +107,7 @@ def test_help_does_not_spell_pydantic_out():
             assert word not in text
 
 
-def test_tab_offers_what_is_of_use():
+def test_tab_offers_useful_names():
     offered = {name for name in dir(vs.Sphere(1)) if not name.startswith("_")}
     assert {"radius", "center", "kind", "translate", "replace", "bounds"} <= offered
     assert not {name for name in offered if name.startswith(("model_", "parse_"))}
@@ -115,7 +115,7 @@ def test_tab_offers_what_is_of_use():
     assert {"loads", "replace", "save"} <= set(dir(BEAM))
 
 
-def test_shapes_take_what_they_must_have_by_position():
+def test_shapes_take_required_fields_by_position():
     assert vs.Sphere(10 * mm) == vs.Sphere(radius=0.01)
     assert vs.Cylinder(5 * mm, "20 mm") == vs.Cylinder(radius=0.005, height=0.02)
     assert vs.Gyroid(0.01, 0.001) == vs.Gyroid(period=0.01, thickness=0.001)

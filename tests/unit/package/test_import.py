@@ -6,7 +6,7 @@ from importlib.metadata import version
 
 import pytest
 
-#: What takes long to load, and is loaded by the names that need it.
+#: Modules that take long to load, and are loaded by the names that need them.
 HEAVY = {"numpy", "scipy", "pydantic", "optuna", "matplotlib", "pandas", "voxsoft._core"}
 
 
@@ -23,7 +23,7 @@ def test_import_loads_nothing_heavy():
 
 
 @pytest.mark.parametrize("name", ["Design", "__version__"])
-def test_a_name_brings_what_it_needs(name):
+def test_a_name_loads_its_module(name):
     modules = loaded_by(f"import voxsoft; voxsoft.{name}")
     assert ("pydantic" in modules) == (name == "Design")
 

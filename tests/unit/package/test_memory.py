@@ -1,4 +1,4 @@
-"""The guard before large bodies knows what containers, schedulers and shells allow."""
+"""The guard before large bodies knows the limits of containers, schedulers and shells."""
 
 import subprocess
 import sys
@@ -74,7 +74,7 @@ def test_the_least_of_machine_groups_and_process_counts(monkeypatch):
     assert 0 < _memory._read() <= machine + GB
 
 
-def test_what_is_large_is_not_judged_by_an_old_answer(monkeypatch):
+def test_large_requests_are_not_judged_by_an_old_answer(monkeypatch):
     before = memory_limit()
     monkeypatch.setattr(_memory, "_read", lambda: 0)
     monkeypatch.setattr(_memory._Reading, "time", float("inf"))
@@ -112,7 +112,7 @@ material = "m"
         ("run", "0.05 mm", "a grid of"),
     ],
 )
-def test_what_the_shell_does_not_allow_is_refused_in_words(tmp_path, verb, voxel, words):
+def test_commands_that_the_shell_forbids_are_refused_in_words(tmp_path, verb, voxel, words):
     design = tmp_path / "box.toml"
     design.write_text(BOX.replace("VOXEL", voxel))
     program = f"{sys.executable} -c 'from voxsoft.cli import main; main()'"

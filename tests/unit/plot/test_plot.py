@@ -1,4 +1,4 @@
-"""Figures: they show what they are given, with units, and say what they cannot show."""
+"""Figures: they show the given data, with units, and report impossible ones."""
 
 import io
 
@@ -151,7 +151,7 @@ def test_parts_have_colors_of_their_own():
         ({"frame": 0}, "is for a result"),
     ],
 )
-def test_what_cannot_be_drawn_is_reported(result, options, words):
+def test_designs_that_cannot_be_drawn_are_reported(result, options, words):
     with pytest.raises(MeshError, match=words):
         plot_body(result.mesh, **options)
 

@@ -35,7 +35,7 @@ def around(result):
 
 
 def gray(image):
-    """How many pixels of a picture are gray: neither of the body's colors nor white."""
+    """Number of gray pixels of a picture: neither of the body's colors nor white."""
     image = image.astype(int)
     colorless = np.ptp(image, axis=-1) <= 2
     return int((colorless & (image[..., 0] > 120) & (image[..., 0] < 240)).sum())
@@ -51,7 +51,7 @@ def test_an_object_is_gray_beside_the_body_and_hidden_behind_it(beside):
     assert np.array_equal(hidden, without)
 
 
-def test_a_body_shows_through_what_is_in_front_of_it(beside):
+def test_a_body_shows_through_objects_in_front_of_it(beside):
     free = replace(beside, design=beside.design.replace(objects=[]), objects={})
     with_post, without = (body_image(each, view=FRONT).astype(int) for each in (beside, free))
     assert with_post.shape == without.shape  # both hold the body alone
@@ -80,13 +80,13 @@ def test_objects_are_where_the_result_has_them(result):
 
 
 @pytest.mark.slow
-def test_what_draws_pressure_leaves_objects_out_unless_they_are_asked_for(result):
+def test_pressure_pictures_leave_objects_out_by_default(result):
     def gray_of(*args, **options):
         return gray(np.asarray(255 * plot_body(result, *args, **options).axes[0].images[0]._A))
 
     drawn = gray_of()
     assert drawn > 10_000
-    assert gray_of(objects=False) < 0.3 * drawn  # what is left is the undeformed body
+    assert gray_of(objects=False) < 0.3 * drawn  # the undeformed body remains
     assert gray_of("contact_pressure") < 0.3 * drawn
     assert gray_of("contact_pressure", objects=True) > 10_000
 
@@ -118,7 +118,7 @@ def test_a_section_cuts_objects_where_it_cuts_the_body(result):
     assert plot_body(result, section="y").axes
 
 
-def test_a_floor_is_under_what_stands_on_it_and_no_farther_away_than_objects_are(beside):
+def test_a_floor_is_drawn_below_bodies_and_within_the_range_of_objects(beside):
     def under(z):
         design = beside.design.replace(floor=vs.design.Floor(z=z))
         return Surroundings.of(design, beside.objects)
@@ -144,7 +144,7 @@ def test_a_mesh_is_drawn_with_the_surroundings_that_are_given(beside):
     assert gray(drawn(objects=surroundings)) > gray(drawn()) + 5_000
 
 
-def test_a_picture_without_a_background_holds_objects_that_the_body_shows_through(beside):
+def test_a_transparent_picture_holds_see_through_objects(beside):
     alone = cutout(beside.mesh, view=FRONT, pixels=100).pixels
     both = cutout(beside.mesh, view=FRONT, pixels=100, around=around(beside)).pixels
     assert alone.shape == both.shape  # the post stands before the block, seen from there

@@ -1,4 +1,4 @@
-"""The depth buffer: what is in front is seen, and light and colors follow the surface."""
+"""The depth buffer: things in front are seen, and light and colors follow the surface."""
 
 import warnings
 

@@ -60,7 +60,7 @@ def test_an_unknown_key_is_matched_with_the_keys_of_its_own_table():
     assert found == ErrorDetail("shapes.a.centre", "is not known here", 'did you mean "center"?')
 
 
-def test_an_unknown_kind_lists_what_there_is():
+def test_an_unknown_kind_lists_known_ones():
     (found,) = problems(shapes={"a": {"kind": "bal", "radius": "1 mm"}})
     assert found == ErrorDetail("shapes.a.kind", '"bal" is not known', 'did you mean "ball"?')
     (found,) = problems(shapes={"a": {"radius": "1 mm"}})

@@ -1,4 +1,4 @@
-"""The paper's genetic algorithm: what it keeps, how it picks, and that it finds an optimum."""
+"""The paper's genetic algorithm: its elite, its selection, and that it finds an optimum."""
 
 import numpy as np
 import pytest
@@ -147,6 +147,6 @@ def test_settings_outside_their_range_are_named(settings, name):
         Genetic(**settings)
 
 
-def test_best_before_any_fitness_says_what_to_do():
+def test_best_before_any_fitness_gives_a_remedy():
     with pytest.raises(StudyError, match=r"tell\(fitness\)"):
         _ = Genetic(genes=1).best

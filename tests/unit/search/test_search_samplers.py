@@ -66,7 +66,7 @@ def test_samplers_for_several_objectives_take_two(name):
 
 
 @pytest.mark.parametrize("name", ["genetic", "nsga-ii", "tpe"])
-def test_constraints_keep_the_search_out_of_what_they_forbid(name):
+def test_constraints_keep_the_search_feasible(name):
     def at_most_half(trial):
         return [trial.params["x"] - 0.15]
 
@@ -161,7 +161,7 @@ def test_a_new_sampler_goes_on_from_the_stored_trials():
     assert [t.params for t in genetic_study(storage).trials] == [t.params for t in whole.trials]
 
 
-def test_room_counts_what_can_be_asked_before_answers_are_due():
+def test_room_counts_candidates_that_need_no_answers():
     study = genetic_study()
     assert study.sampler.room(study) == 6
     pending = [study.ask(SPACE) for _ in range(6)]

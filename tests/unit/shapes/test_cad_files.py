@@ -1,4 +1,4 @@
-"""CAD models are refused with what to do, wherever they are opened."""
+"""CAD models are refused with a remedy, wherever they are opened."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Shells of triangle surfaces: turned, doubled, nested, and what is words of them."""
+"""Shells of triangle surfaces: turned, doubled, nested, and messages about them."""
 
 import json
 

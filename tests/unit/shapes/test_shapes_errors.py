@@ -1,4 +1,4 @@
-"""Wrong input: the error says where, what and what to try."""
+"""Wrong input: the error gives the place, the fault and a remedy."""
 
 import subprocess
 import sys
@@ -62,7 +62,7 @@ def test_sizes_that_do_not_fit_are_refused_when_the_shape_is_built(shape, messag
         shape.build()
 
 
-def test_an_unknown_name_lists_what_there_is():
+def test_an_unknown_name_lists_known_ones():
     with pytest.raises(ShapeError, match=r'"cavty" is not a shape.*did you mean "cavity"'):
         Union(of=["cavty"]).build({"cavity": Sphere(radius=1)})
 

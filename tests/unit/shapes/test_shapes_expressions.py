@@ -34,7 +34,7 @@ WRITTEN = [
 
 
 @pytest.mark.parametrize(("shape", "expected"), WRITTEN, ids=lambda v: getattr(v, "text", ""))
-def test_python_operators_mean_what_they_mean_for_arrays(shape, expected):
+def test_operators_of_functions_act_as_on_arrays(shape, expected):
     np.testing.assert_allclose(shape.evaluate(POINTS), expected, rtol=1e-13, atol=1e-14)
 
 

@@ -32,7 +32,7 @@ def iwp(x, y, z):
 
 
 WAVES = {Gyroid: gyroid, SchwarzP: schwarz_p, SchwarzD: schwarz_d, Neovius: neovius, IWP: iwp}
-#: By places (n, 3) in periods.
+#: Values by places (n, 3) in periods.
 FUNCTIONS = {kind: lambda p, g=g: g(*(2 * np.pi * p).T) for kind, g in WAVES.items()}
 SURFACES = pytest.mark.parametrize("surface", WAVES, ids=lambda kind: kind.__name__)
 STRUTS = pytest.mark.parametrize("struts", [Cubic, Bcc, Fcc, Octet], ids=lambda kind: kind.__name__)

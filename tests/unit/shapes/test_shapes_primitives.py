@@ -157,7 +157,7 @@ def test_a_box_fills_its_cells_exactly():
     assert voxels.origin == (0.0, 0.0, 0.0)
 
 
-def test_the_lattice_passes_through_the_origin_of_coordinates_unless_the_body_is_whole_elsewhere():
+def test_the_grid_passes_through_the_origin_unless_the_body_fits_elsewhere():
     box = Box(size=(0.01, 0.01, 0.011), corner=(0.003, -0.012, 0))
     voxels = voxelize(box, 0.005)
     assert voxels.origin == pytest.approx((0.003, -0.012, 0))

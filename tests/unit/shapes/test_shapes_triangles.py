@@ -110,7 +110,7 @@ def test_cells_with_curved_edges_are_taken_by_their_corners(tmp_path):
     assert tet.state()[:2] == (0, ())
 
 
-def test_an_open_surface_is_named_with_its_hole_and_what_to_do(tmp_path):
+def test_an_open_surface_is_reported_with_its_hole_and_a_remedy(tmp_path):
     sheet = np.array([[i, j, 0.0] for i in range(4) for j in range(4)]) * 10
     faces = [
         [a, a + 4, a + 5] if half else [a, a + 5, a + 1]
@@ -187,7 +187,7 @@ def test_a_file_that_cannot_be_read_is_an_error(tmp_path, content, suffix, capsy
         assert noise not in printed
 
 
-def test_a_damaged_stl_and_vtu_say_what_is_wrong(tmp_path):
+def test_damaged_stl_and_vtu_files_name_the_fault(tmp_path):
     stl, vtu = tmp_path / "part.stl", tmp_path / "part.vtu"
     stl.write_bytes(np.random.default_rng(0).bytes(1000))
     with pytest.raises(ShapeError, match='neither begins with "solid"'):

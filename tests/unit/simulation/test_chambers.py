@@ -59,7 +59,7 @@ def indices(**given):
 
 
 def test_a_named_chamber_stays_the_same_while_another_outgrows_it():
-    """By index the tip went the other way: "the largest now" is the right one from 8 mm on."""
+    """An index sent the tip the other way: "the largest now" is the right one from 8 mm on."""
     named = [vs.simulate(two().with_parameters(w=w)) for w in ("4 mm", "6 mm", "8 mm")]
     tips = [result.probes["tip"][0] for result in named]
     assert min(tips) > 0.0
@@ -143,7 +143,7 @@ def test_an_index_of_chambers_that_are_alike_is_doubtful():
 
 
 def test_twins_are_counted_by_place():
-    """Of equal volumes the one whose first voxel comes first: lower x, then y, then z."""
+    """The first of equal volumes is that whose first voxel is first: lower x, then y, then z."""
     mesh = Setup.of(by_index()).mesh
     centers = [center_of(cavity, mesh) for cavity in mesh.cavities]
     assert mesh.cavities[0].volume == mesh.cavities[1].volume

@@ -1,4 +1,4 @@
-"""What a check finds has a subject, and a place on the body where it is."""
+"""Findings of a check have a subject, and a place on the body."""
 
 import numpy as np
 import pytest
@@ -69,7 +69,7 @@ def test_a_thin_wall_and_a_leak_are_where_they_are():
         ("clamps[0].region.z=['1 m', 'inf']", "clamps[0].region", (None, None, 1.0)),
     ],
 )
-def test_what_touches_nothing_is_named_and_shown_where_it_was_sought(change, where, at):
+def test_a_pair_without_contact_is_named_with_the_searched_place(change, where, at):
     design = families.cylinder().with_values(change)
     (finding,) = [one for one in check(design).findings if "touches nothing" in one.what]
     assert finding.where == where

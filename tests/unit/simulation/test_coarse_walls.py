@@ -32,7 +32,7 @@ def found(design):
     ("side", "wall", "size"),
     [(22.5, 3.75, 2.5), (20, 3.0, 2.0), (10, 3.8, 2.0), (12, 1.3, 1.0), (20, 4.0, 2.0)],
 )
-def test_what_voxels_cannot_hold_is_named_with_what_is_solved(side, wall, size):
+def test_shapes_lost_on_voxels_are_named_with_the_solved_ones(side, wall, size):
     design = hollow(side, wall, size)
     voxels = vs.voxels_of(design)
     (cavity,), (thinnest,) = voxels.cavities, voxels.cavity_walls
@@ -55,7 +55,7 @@ def test_the_voxel_size_that_is_offered_holds_the_walls():
     assert found(hollow(15, 3.75, 1.875)) == []
 
 
-def test_cut_voxels_and_walls_that_are_inclined_or_round_are_left_to_volumes():
+def test_cut_voxels_and_oblique_or_round_walls_are_left_to_volumes():
     assert found(hollow(22.5, 3.75, 2.5, fill="fraction")) == []
     tube = Cylinder(radius=20 * MM, height=60 * MM) - Cylinder(
         radius=10.6 * MM, height=40 * MM, base=(0, 0, 10 * MM)

@@ -1,4 +1,4 @@
-"""What `check` says a run takes: the iterations are held against runs, the clock is not asked."""
+"""Cost of a run as `check` estimates it: the iterations are held against runs, not the clock."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What results say of voxels inside out and of strains past the tests, and where."""
+"""Warnings of results about voxels inside out and strains past the tests, with places."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ from voxsoft.simulation.checks.tested_range import beyond_tests
 from voxsoft.simulation.derivatives.loaded_state import LoadedState
 from voxsoft.simulation.results.fields import fields_of
 
-#: What makes the PneuNet the lattice that the studio's template once was.
+#: Changes that make the PneuNet the lattice that the studio's template once was.
 AS_LATTICE = (
     'materials.firm={model="lattice", edge="200 kPa", bulk="1 MPa"}',
     "parts.1.material=ecoflex-00-30-lattice",
@@ -133,7 +133,7 @@ def test_pressing_counts_where_it_was_tested():
     assert "to 0.7" in warning.what
 
 
-def test_the_command_line_says_stress_stretch_and_what_is_wrong(tmp_path):
+def test_the_command_line_prints_stress_stretch_and_faults(tmp_path):
     file = tmp_path / "pneunet.toml"
     file.write_text(pneunet("5 kPa").to_toml(), encoding="utf-8")
     reported = CliRunner().invoke(

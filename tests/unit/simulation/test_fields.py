@@ -146,7 +146,7 @@ def test_cards_and_new_fits_tell_how_far_they_were_tested():
     assert tested.smallest is None
 
 
-def test_what_was_tested_does_not_change_the_identity_of_a_design():
+def test_tested_ranges_do_not_change_the_identity_of_a_design():
     one, other = (
         families.beam().with_values(
             f'parts.0.material={{model="neo-hookean", young="60 kPa"{more}}}'

@@ -40,7 +40,7 @@ def block(*clamps, material=SOFT, **changes):
         ([vs.Clamp(region=CORNER), vs.Clamp(region=LOW, axes="z")], "turn about z"),
     ],
 )
-def test_what_clamps_leave_free_is_named(clamps, words):
+def test_motions_that_clamps_leave_free_are_named(clamps, words):
     design = block(*clamps)
     assert free_motion(Setup.of(design)) == words
     found = [each for each in check(design).findings if each.where == "clamps"]
@@ -53,7 +53,7 @@ def test_a_plane_of_symmetry_holds_too():
     assert free_motion(Setup.of(block(held, symmetry=[{"plane": "y", "at": "5 mm"}]))) == ""
 
 
-def test_a_run_names_what_is_free_and_not_another_control():
+def test_a_run_names_free_motions_and_not_another_control():
     result = vs.simulate(block(vs.Clamp(region=LOW, axes="z")))
     assert result.status == "not-at-rest"
     assert "free to move along x and y and to turn about z" in result.message
@@ -65,7 +65,7 @@ def test_motion_over_time_may_be_free():
     assert not [each for each in check(design).findings if each.where == "clamps"]
 
 
-def test_equilibria_of_what_relaxes_say_that_creep_is_left_out():
+def test_equilibria_of_relaxing_rubber_report_that_creep_is_left_out():
     design = block(vs.Clamp(region=LOW), material=RELAXING)
     words = "relaxes over 100 s"
     assert any(words in each.what for each in check(design).findings)
@@ -75,7 +75,7 @@ def test_equilibria_of_what_relaxes_say_that_creep_is_left_out():
     assert all(any(words in each.what for each in found.warnings) for found in over.results)
 
 
-def test_motion_of_what_relaxes_has_no_such_warning():
+def test_motion_of_relaxing_rubber_has_no_such_warning():
     design = block(vs.Clamp(region=LOW), material=RELAXING).replace(solver={"end_time": "1 ms"})
     for found in (check(design).findings, vs.simulate(design).warnings):
         assert not any("relaxes" in each.what for each in found)

@@ -1,4 +1,4 @@
-"""Layers: which faces they take, which chambers they close, and what cannot be one."""
+"""Layers: their faces, the chambers they close, and invalid ones."""
 
 import numpy as np
 import pytest
@@ -155,7 +155,7 @@ def test_chambers_that_layers_close_are_compared_with_no_shape():
     assert not [each for each in result.warnings if "in voxels" in each.what]
 
 
-def test_the_halves_of_a_chamber_that_a_film_divides_are_compared_with_no_shape():
+def test_halves_of_a_chamber_divided_by_a_film_have_no_shape_to_compare():
     chamber = vs.Box(size=(6 * mm, 6 * mm, 4 * mm), corner=(4 * mm, 2 * mm, 2 * mm))
     design = block(vs.Box(size=SIZE) - chamber, [film(plane(2, 4 * mm), seal=True)])
     volumes = volumes_of(design, Setup.of(design).mesh)
@@ -186,7 +186,7 @@ def test_a_layer_that_holds_no_face(region, what):
         ({"seal": True}, "seal: a layer that closes openings must lie in a plane"),
     ],
 )
-def test_what_cannot_be_a_layer(changes, what):
+def test_invalid_layers_are_refused(changes, what):
     with pytest.raises(DesignError, match=what):
         film(vs.Region(x=("-inf", "inf")), **changes)
 
@@ -207,7 +207,7 @@ def test_every_way_leads_to_the_rest_of_statics(material, way):
     def sag(result):
         return -(result.positions - result.mesh.vertices)[:, 2].min()
 
-    # What the issue of the solvers allows; the layer makes ten times that, or it would not be seen.
+    # Tolerance of the solvers; the layer makes ten times that, or it would not be seen.
     assert sag(moved) == pytest.approx(sag(still), rel=1e-3)
     assert sag(bare) > 1.01 * sag(still)
 

@@ -137,11 +137,11 @@ def test_friction_makes_a_loop_and_none_makes_no_loop():
         assert path.status == "ok", path.message
         touches = [result.contacts[0] for result in path.results]
         shares[friction] = np.array([-touch.friction[0] / touch.pressure for touch in touches])
-    assert np.abs(shares[0.0]).max() < 1e-3  # what Newton's method leaves
-    # What slides carries friction times pressure, one way and the other.
+    assert np.abs(shares[0.0]).max() < 1e-3  # residual of Newton's method
+    # A sliding body carries friction times pressure, one way and the other.
     assert shares[0.4][4] == pytest.approx(0.4, rel=0.01)
     assert shares[0.4][-1] == pytest.approx(-0.4, rel=0.01)
-    # Where it was without friction at first, it is held back on the way back: a loop.
+    # The body, first without friction, is held back on the way back: a loop.
     assert path.values[8] == pytest.approx(0.0, abs=1e-12)
     assert shares[0.4][0] == pytest.approx(0.0, abs=1e-3)
     assert shares[0.4][8] < -0.3
@@ -167,7 +167,7 @@ def test_a_symmetric_body_follows_its_path_as_a_part():
     assert len(path.results[0].positions) == len(alone.positions)
 
 
-def test_a_path_that_is_lost_keeps_what_it_has():
+def test_a_lost_path_keeps_its_states():
     pressed = beam(
         loads=[vs.Force(region=vs.Region(x=("40 mm", "40 mm")), value=("-1 mN", 0, 0))],
         solver={"method": "statics"},
@@ -198,7 +198,7 @@ def test_error_bars_go_along():
         ("loads[7].value=0..1 kPa/3", "loads"),
     ],
 )
-def test_what_is_no_path_is_refused(over, words):
+def test_invalid_paths_are_refused(over, words):
     with pytest.raises(vs.VoxSoftError) as caught:
         vs.follow(beam(), over)
     assert words in str(caught.value)

@@ -24,7 +24,7 @@ def setup_of(*loads):
 
 
 class Sum(LoadReceiver):
-    """The resultant of dead loads, as a receiver that knows only what it must."""
+    """The resultant of dead loads, as a receiver that knows only the necessary."""
 
     def __init__(self, mesh):
         super().__init__(mesh)
@@ -87,7 +87,7 @@ def test_a_reading_needs_no_mesh():
     assert read(vs.Pressure(value=1.0, cavity="left")).label == "pressure in chamber left"
 
 
-def test_what_catches_nothing_says_where():
+def test_empty_regions_name_their_place():
     setup = setup_of()
     beside = vs.Region(x=(50 * mm, 60 * mm))
     for load in (vs.Force(region=beside, value=(0, 0, 1)), vs.Traction(region=beside, value=1.0)):

@@ -75,7 +75,7 @@ def test_a_sector_begins_there_too(coarse):
 
 
 @pytest.mark.slow
-def test_a_small_voxel_without_a_large_one_around_it_has_no_pressure_to_begin_with():
+def test_a_small_voxel_outside_large_ones_has_no_first_pressure():
     """All its corners are those of other large voxels: a sheet that is thin for both sizes."""
     sheet = vs.Box(size=(20 * mm, 17.5 * mm, 20 * mm)) & vs.Gyroid(
         period=17.963 * mm, thickness=5.623 * mm
@@ -103,7 +103,7 @@ def test_a_small_voxel_without_a_large_one_around_it_has_no_pressure_to_begin_wi
 
 @pytest.mark.slow
 def test_others_begin_at_rest(coarse):
-    """Cut voxels that do not fill the large ones, and what touches."""
+    """Cut voxels that do not fill the large ones, and their contacts."""
     ball = vs.simulate(BALL)
     assert nested(ball, Setup.of(BALL, refine=2)) is None
     again = vs.simulate(BALL, refine=2, coarser=ball)

@@ -1,4 +1,4 @@
-"""Both splits of the faces of voxels: what pressure pushes and what cavities enclose."""
+"""Both splits of the faces of voxels: effect of pressure, and volumes of cavities."""
 
 import itertools
 
@@ -45,7 +45,7 @@ def pressure_forces(setup, positions):
     return setup.problem.net_forces(positions) - setup.problem.elastic(positions)[1]
 
 
-def test_each_split_encloses_the_same_at_rest_and_the_mean_what_is_below_bilinear_faces():
+def test_splits_enclose_one_volume_at_rest_and_bilinear_faces_on_the_mean():
     setup = Setup.of(shell(fill="binary"))
     (cavity,) = setup.mesh.cavities
     for triangles, _ in cavity.splits:
@@ -56,7 +56,7 @@ def test_each_split_encloses_the_same_at_rest_and_the_mean_what_is_below_bilinea
 
 
 def _air(mesh, positions):
-    """By the divergence theorem over the bilinear faces of the cavity, at 2 x 2 points of each."""
+    """Divergence theorem over the bilinear faces of the cavity, at 2 x 2 points of each."""
     grid = {tuple(key): i for i, key in enumerate(np.rint(mesh.vertices / SIZE).astype(int))}
     total = 0.0
     weights = np.array([[1 - s, 1 + s] for s in (-1 / np.sqrt(3), 1 / np.sqrt(3))]) / 2
@@ -131,7 +131,7 @@ def test_an_open_surface_shares_whole_faces_evenly_and_no_others():
 
 @pytest.mark.parametrize(("inside", "is_split"), [(SPRINGS, False), (RUBBER, True)])
 def test_springs_keep_the_triangles_that_are_their_surface(inside, is_split):
-    """Of a shell of two materials, the one beside the air decides."""
+    """The material beside the air decides in a shell of two materials."""
     outside = SPRINGS if is_split else RUBBER
     design = shell().replace(
         parts=[

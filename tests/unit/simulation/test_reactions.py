@@ -54,7 +54,7 @@ def test_a_bar_pulls_at_both_of_its_clamps():
     assert found["jaw"][0] == pytest.approx(PULL, rel=5 * STRETCH)
     assert found["wall"][0] == pytest.approx(-PULL, rel=5 * STRETCH)
     assert abs(found["clamps[1]"][1]) < 1e-6 * PULL
-    # All of them cancel, which is what the reaction of all supports is.
+    # All of them cancel: their sum is the reaction of all supports.
     assert np.abs(result.reaction).max() < 1e-6 * PULL
 
 
@@ -106,7 +106,7 @@ def test_of_a_half_that_is_solved_the_whole_is_reported():
         ({"clamp": "jaw", "region": {"x": [0, 0]}}, "region: stands beside clamp"),
     ],
 )
-def test_what_no_support_has_is_refused(target, words):
+def test_components_without_a_support_are_refused(target, words):
     with pytest.raises(DesignError) as refused:
         Setup.of(bar(objectives={"pull": {"maximize": "reaction", **target}}))
     assert words in str(refused.value)
@@ -133,7 +133,7 @@ def test_an_object_and_the_clamps_carry_the_body_together():
     of_wall = result.metric("reaction", clamp="wall", axis="z")
     weight = result.mass * 9.81
     assert of_plate > 0.0 < of_wall
-    # What bonds may leave of their own forces is a thousandth.
+    # Forces that bonds may leave of their own are a thousandth.
     assert of_plate + of_wall == pytest.approx(weight, rel=1e-3)
 
 

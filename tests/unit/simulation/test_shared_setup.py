@@ -12,7 +12,7 @@ from voxsoft.design.contact import Contact
 from voxsoft.simulation import Setup
 
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*.toml"))
-#: What the quick test takes: tendons, and a body of a lattice.
+#: Design of the quick test: tendons, and a body of a lattice.
 QUICK = ("beam", "tendon_finger")
 TOP = vs.Region(z=("10 mm", "10 mm"))
 #: A block that is pressed on a floor and pushed along it.
@@ -46,7 +46,7 @@ def coarsened(path, times):
 
 
 def in_threads(work, count=2):
-    """What each of some threads found that begin at the same time."""
+    """Results of some threads that begin at the same time."""
     found, ready = [None] * count, threading.Barrier(count)
 
     def run(number):
@@ -111,7 +111,7 @@ def test_derivatives_and_modes_of_a_result_are_found_in_threads_too():
         assert found == slope
 
 
-def test_a_progress_may_solve_what_it_watches():
+def test_a_progress_may_solve_the_watched_design():
     setup = Setup.of(RUBBED)
     alone, within = vs.simulate(setup), []
 
@@ -129,7 +129,7 @@ def test_a_solution_leaves_its_problem_as_it_was():
     before = setup.problem.net_forces(setup.mesh.vertices)
     answer = _core.equilibrium(setup.problem, tolerance=1e-8)
     assert np.array_equal(setup.problem.net_forces(setup.mesh.vertices), before)
-    # Multipliers that the answer remembers hold what is pressed.
+    # Multipliers that the answer remembers hold the pressed body.
     there = answer.problem.net_forces(answer.positions)
     free = ~np.any(answer.reactions != 0.0, axis=1)
     assert np.abs(there[free]).max() < 1e-6 * np.abs(answer.reactions).max()

@@ -1,4 +1,4 @@
-"""Many candidates at a time: what goes through lanes, what does not, and what is refused."""
+"""Many candidates at a time: designs that go through lanes, others, and refusals."""
 
 import lattice_families as families
 import numpy as np
@@ -50,7 +50,7 @@ def test_two_lists_are_taken_in_pairs():
         {"solver": families.beam().solver.replace(damping="critical")},
     ],
 )
-def test_what_lanes_do_not_know_is_solved_alone(changes):
+def test_designs_unknown_to_lanes_are_solved_alone(changes):
     design = short_beam(**changes)
     found = simulate_many(design, [SOFT, STIFF])
     assert [candidate.way for candidate in found] == ["alone", "alone"]

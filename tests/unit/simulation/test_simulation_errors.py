@@ -1,4 +1,4 @@
-"""What cannot be simulated says so: where, what, and what to try."""
+"""Designs that cannot be simulated give place, reason and remedy."""
 
 import sys
 

@@ -244,7 +244,7 @@ def pulses_of_the_example(capsys, monkeypatch):
 @pytest.mark.slow
 def test_the_example_tells_of_five_pulses(capsys, monkeypatch):
     bends = [float(row[1]) for row in pulses_of_the_example(capsys, monkeypatch)]
-    # All pulses after the first begin alike, up to what is left of the one before.
+    # All pulses after the first begin alike, up to the rest of the one before.
     assert bends[1:] == pytest.approx([bends[1]] * 4, rel=0.02)
     assert bends[1] > 4.0
 

@@ -103,7 +103,7 @@ def test_the_rest_under_commands_is_the_equilibrium_of_statics(name):
         assert contact.force[2] < -1e-3
 
 
-def test_a_free_object_lies_where_statics_finds_it_and_presses_with_its_weight():
+def test_a_free_object_lies_as_in_statics_and_presses_with_its_weight():
     seen = run_to_rest(vs.Simulator(FREE), {})
     [contact] = seen.contacts
     assert abs(contact.force[2]) == pytest.approx(2e-3 * 9.81, rel=1e-3)
@@ -137,7 +137,7 @@ def test_a_syringe_in_motion_reaches_the_pressure_of_its_equilibrium():
     assert seen.result.supplies[0].pressure == chamber.pressure
 
 
-def test_rubber_that_was_pulled_farther_rests_where_the_path_there_and_back_ends():
+def test_softened_rubber_rests_at_the_end_of_its_path():
     simulator = vs.Simulator(DESIGNS["softening"])
     first = run_to_rest(simulator, {"force": (0.0, 0.0, 0.01)}).probes["tip"][2]
     run_to_rest(simulator, {"force": (0.0, 0.0, 0.04)})
@@ -158,7 +158,7 @@ def prony(design):
     return design.replace(parts=[part.replace(material=relaxing) for part in design.parts])
 
 
-def test_rubber_that_relaxes_rests_where_elastic_rubber_does_and_gets_there_later():
+def test_relaxing_rubber_rests_as_elastic_rubber_but_later():
     def heights(design):
         simulator = vs.Simulator(design, damping=0.0)
         loads = {"force": (0.0, 0.0, 0.005)}

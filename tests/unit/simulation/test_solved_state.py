@@ -1,4 +1,4 @@
-"""What a solver found is stored beside positions, and read back to the last bit."""
+"""The state of a solver is stored beside positions, and read back to the last bit."""
 
 import dataclasses
 import json
@@ -26,7 +26,7 @@ BALL = Object(
 
 
 def same(a, b):
-    """Whether two values are alike to the last bit, whatever they are made of."""
+    """Check if two values are alike to the last bit, of any type."""
     if isinstance(a, np.ndarray):
         return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=True)
     if dataclasses.is_dataclass(a):
@@ -91,7 +91,7 @@ def test_a_result_is_read_back_to_the_last_bit(make):
     assert found.summary() == result.summary()
 
 
-def test_what_is_given_by_positions_is_measured_anew_and_not_stored():
+def test_states_given_by_positions_are_measured_anew_and_not_stored():
     assert is_given_by_positions(families.beam())
 
 
@@ -107,14 +107,14 @@ def test_poses_of_objects_are_read_without_the_rest(state):
     assert stored.objects == result.objects
 
 
-def test_what_is_of_another_version_is_not_taken(state):
+def test_results_of_another_version_are_not_taken(state):
     setup, result, stored = state
     old = replace(stored, text=json.dumps(json.loads(stored.text) | {"voxsoft": "0.0.1"}))
     with pytest.raises(SimulationError, match="another version"):
         old.result(setup, result.positions)
 
 
-def test_what_is_of_another_mesh_is_not_taken(state):
+def test_results_of_another_mesh_are_not_taken(state):
     _, _, stored = state
     finer = Setup.of(gripped().replace(voxel_size=3 * mm))
     with pytest.raises(SimulationError, match="another mesh"):
@@ -131,7 +131,7 @@ def test_what_is_of_another_mesh_is_not_taken(state):
         lambda s: replace(s, arrays=s.arrays[:1]),
     ],
 )
-def test_what_is_damaged_is_refused_with_a_way_out(state, change):
+def test_damaged_files_are_refused_with_a_remedy(state, change):
     setup, result, stored = state
     with pytest.raises(SimulationError, match="solve the design again"):
         change(stored).result(setup, result.positions)

@@ -68,7 +68,7 @@ def box(material):
 
 
 def used(result, name, value):
-    """Whether a result says that it used a setting."""
+    """Check if a result says that it used a setting."""
     times = result.recording.times
     match name:
         case "frames":
@@ -141,12 +141,12 @@ REFUSALS = [
 
 
 @pytest.mark.parametrize(("settings", "words"), REFUSALS)
-def test_a_refusal_says_what_the_setting_belongs_to_and_what_to_write(settings, words):
+def test_a_refusal_names_the_user_of_the_setting_and_a_remedy(settings, words):
     with pytest.raises(SimulationError, match=words):
         vs.simulate(box("lattice"), **settings)
 
 
-def test_check_finds_what_a_run_refuses():
+def test_check_finds_all_refusals_of_a_run():
     design = box("rubber").with_values("solver.volume_ratio=2")
     report = vs.check(design)
     assert not report.valid
@@ -201,20 +201,20 @@ def test_a_setup_is_not_refined_afterwards():
     assert vs.simulate(Setup.of(box("rubber"), refine=2), refine=2).solver["refine"] == 2
 
 
-def test_a_calibration_refuses_what_it_does_not_use():
+def test_a_calibration_refuses_unused_settings():
     beam = families.beam().with_values("solver.end_time=1 s", LATTICE)
     seen = Measurement(quantities=["dz"], values=[[-0.03]], arcs=[0.04])
     with pytest.raises(SimulationError, match="end_time: is not used by calibrations"):
         vs.calibrate(Experiment(beam, seen), parameters={"edge": ("5 kPa", "50 kPa")})
 
 
-def test_a_comparison_says_what_it_does_not_use():
+def test_a_comparison_reports_unused_settings():
     design = box("rubber").with_values("solver.control=arc-length", "solver.method=statics")
     found = vs.compare(design, solvers=["statics"], outside="none", voxel_sizes=[], splits=[1])
     assert [warning.where for warning in found.warnings] == ["solver.control"]
 
 
-def test_the_reference_says_which_key_is_used_by_what():
+def test_the_reference_names_the_users_of_each_key():
     text = REFERENCE.read_text(encoding="utf-8").split("| key | used by |")[1].split("\n\n")[0]
     rows = re.findall(r"^\| (`.*?) \| (.*?) \|$", text, re.MULTILINE)
     keys = {key for names, _ in rows for key in re.findall(r"`(\w+)`", names)}

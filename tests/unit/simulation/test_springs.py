@@ -57,7 +57,7 @@ def test_a_bar_and_a_spring_share_the_stretch_in_series():
         (vs.Lattice(edge=YOUNG, bulk=100 * kPa), {"method": "dynamics", "time_step": 0.01}),
     ],
 )
-def test_the_clamp_holds_what_the_spring_pulls(material, settings):
+def test_the_clamp_holds_the_force_of_the_spring(material, settings):
     away, stiffness, length = (30 * mm, 20 * mm, 2 * mm), 1.0, 10 * mm
     pulled = bar([tie(anchor=away, length=length, stiffness=stiffness)], material=material)
     thick = vs.Part(shape=vs.Box(size=(LENGTH, 4 * mm, 4 * mm)), material=pulled.parts[0].material)

@@ -1,4 +1,4 @@
-"""Supplies as a design says them: what is read, what is refused and where."""
+"""Supplies of a design: reading, and refusals with their places."""
 
 import json
 
@@ -64,7 +64,7 @@ SYRINGE = VolumeSupply(chamber="inside", value="20 uL")
     ],
     ids=lambda supply: supply.kind,
 )
-def test_what_is_written_is_what_was_read(supply):
+def test_written_files_equal_those_read(supply):
     design = cube(supply)
     again = vs.Design.from_document(design.document)
     assert again == design
@@ -126,7 +126,7 @@ def refusal(error, make):
         ("volume", {"value": "5 mL", "chamber": "outside"}, 'no chamber "outside"'),
     ],
 )
-def test_what_no_supply_can_be_is_refused_with_its_place(kind, entries, expected):
+def test_invalid_supplies_are_refused_with_their_place(kind, entries, expected):
     message = refusal(
         DesignError, lambda: cube({"chamber": "inside", "kind": kind, "line_volume": 0} | entries)
     )
@@ -184,7 +184,7 @@ def test_who_does_not_know_supplies_says_so():
     )
 
 
-def test_results_and_metrics_tell_what_supplies_do():
+def test_results_and_metrics_report_supplies():
     found = simulate(cube(SYRINGE.replace(name="syringe")))
     (chamber,) = found.supplies
     assert chamber.name == "syringe"
@@ -200,7 +200,7 @@ def test_results_and_metrics_tell_what_supplies_do():
 
 
 def test_a_gas_spring_is_no_pressure_load():
-    """What is locked in pushes back when a body swings; modes do not know of it yet."""
+    """Sealed gas pushes back when a body swings; modes do not know of it yet."""
     with pytest.raises(SimulationError, match="supplies: are not known to modes"):
         vs.modes(simulate(cube(SYRINGE)))
 
@@ -241,7 +241,7 @@ def test_the_command_line_tells_them_too(tmp_path, monkeypatch):
     assert set(printed) >= {"volume", "mass", "flow", "work", "energy", "efficiency"}
 
 
-def test_what_leaves_the_laws_is_reported_with_its_place():
+def test_states_outside_the_laws_are_reported_with_their_place():
     """A syringe that draws water below its vapor pressure, and a thin tube with a strong source."""
     drawn = simulate(cube(VolumeSupply(chamber="inside", value="-60 uL", fluid="water")))
     assert drawn.supplies[0].pressure < -101 * kPa

@@ -1,4 +1,4 @@
-"""Tendons: balance, slack, friction with memory, where they may run, and what is refused."""
+"""Tendons: balance, slack, friction with memory, possible paths, and refusals."""
 
 import numpy as np
 import pytest
@@ -61,7 +61,7 @@ def test_a_tension_along_the_axis_compresses_the_bar():
 
 
 @pytest.mark.parametrize("drive", ["shortening", "length"])
-def test_what_is_drawn_in_stretches_in_series_with_the_bar(drive):
+def test_a_shortened_tendon_stretches_in_series_with_the_bar(drive):
     drawn, stiffness = 1e-3 * mm, 0.5 * OF_BAR * LENGTH
     own = LENGTH + 1 * mm
     value = drawn if drive == "shortening" else own - drawn
@@ -96,7 +96,7 @@ def test_a_line_that_is_too_long_is_slack_until_the_bar_reaches_it():
     [{"method": "statics"}, {"method": "dynamics", "time_step": 0.005, "tolerance": 1e-5}],
 )
 @pytest.mark.parametrize("drive", [{"tension": 0.02}, {"shortening": 1 * mm}])
-def test_the_clamp_holds_what_the_motor_pulls(settings, drive):
+def test_the_clamp_holds_the_force_of_the_motor(settings, drive):
     motor = (-10 * mm, 0, 20 * mm)
     through = [{"fixed": motor}, {"fixed": (30 * mm, 2 * mm, 10 * mm)}, AXIS[1]]
     design = bar([along(through=through, **drive)], poisson=0.3)
@@ -114,7 +114,7 @@ def test_the_clamp_holds_what_the_motor_pulls(settings, drive):
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_a_body_that_moves_live_has_the_same_rest(drive, friction):
     high = [(0, 2 * mm, 3 * mm), (LENGTH + 1 * mm, 2 * mm, 3 * mm)]
-    # Pulled slowly: what swings past its rest slides back there, and comes to another one.
+    # Pulled slowly: a bar that swings past its rest slides back there, and comes to another one.
     slowly = {"time": [0, 0.5], "factor": [0, 1]}
     tendon = along(through=high, friction=friction, history=slowly, **drive)
     design = bar([tendon], poisson=0.3)
@@ -389,7 +389,7 @@ def test_the_gradient_by_routing_is_that_of_differences(changes, name):
     target = {"rise": vs.Objective(maximize="displacement", probe="end", axis="z")}
     found = gradient(simulate(design), target, name)["rise"][name]
     value = number_of(design, name)
-    # Of fourth order; steps so small that no bend becomes straight on the way.
+    # Differences of fourth order; steps so small that no bend becomes straight on the way.
     step = 2e-3 * mm if "through" in name else 1e-3 * value
     low, less, more, high = (
         simulate(with_number(design, name, value + many * step)).probes["end"][2]

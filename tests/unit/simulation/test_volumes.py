@@ -49,7 +49,7 @@ def test_described_volumes_are_those_of_the_shapes(fill: str):
         assert abs(part.difference) < 0.005
 
 
-def test_turned_boxes_and_what_the_first_part_takes():
+def test_turned_boxes_and_the_share_of_the_first_part():
     box = vs.Box(size=(0.03, 0.02, 0.01)).rotate(0.7, (1, 2, 3))
     ball = vs.Sphere(radius=0.008)
     body = design("1 mm", ball & box, box)
@@ -57,7 +57,7 @@ def test_turned_boxes_and_what_the_first_part_takes():
     assert first.described + second.described == pytest.approx(0.03 * 0.02 * 0.01, rel=1e-3)
 
 
-def test_a_quick_look_is_within_a_fifth_of_what_is_doubtful():
+def test_a_quick_look_is_within_a_fifth_of_the_doubt():
     for shape in (tube(0.02, 0.01, 0.06), tube(0.015, 0.011, 0.04), vs.Sphere(radius=0.02)):
         body = design("2.5 mm", shape)
         quick = volumes_of(body, mesh_of(body), points=QUICK)

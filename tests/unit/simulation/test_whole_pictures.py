@@ -43,7 +43,7 @@ def result():
 
 
 def is_whole(points, widest=None):
-    """Whether points are on both sides of both planes, as far away on each."""
+    """Check if points are on both sides of both planes, as far away on each."""
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     least = HALF if widest is None else widest
     return np.allclose(low, -high, atol=1e-6) and (high >= least - 1e-6).all()
@@ -105,7 +105,7 @@ def test_the_page_and_bodies_beside_it_show_the_whole(result):
     event = body.event()
     assert is_whole(np.array(event.bounds))
     assert [plane.axis for plane in event.planes] == [0, 1]
-    # What an exported page plays is all of the body too.
+    # An exported page plays all of the body too.
     assert len(body.played.masses) >= len(result.mesh.vertices)
     still = Still(Setup(QUARTER, result.mesh), result.positions, poses=result.objects).packed()
     count = np.frombuffer(still, "<u4", 1, 24)[0]

@@ -1,4 +1,4 @@
-"""Workspaces: where a place can be over a grid of what drives it."""
+"""Workspaces: positions of a place over a grid of its drives."""
 
 import csv
 import json
@@ -98,7 +98,7 @@ def test_the_command_writes_its_table_and_its_picture(design, tmp_path):
         (None, ["loads[0].value"], "no key with a range"),
     ],
 )
-def test_what_is_no_workspace_is_refused(design, probe, drives, words):
+def test_invalid_workspaces_are_refused(design, probe, drives, words):
     loaded = vs.load(design)
     with pytest.raises(SimulationError, match=words):
         vs.workspace(loaded, probe or next(iter(loaded.probes)), drives)

@@ -41,7 +41,7 @@ def run(study):
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
-    """The folder of a study, and what was found: tests read it."""
+    """The folder of a study, and its result: tests read it."""
     folder = tmp_path_factory.mktemp("study")
     return folder, run(study_in(folder))
 
@@ -92,7 +92,7 @@ def test_another_path_is_another_study(stored):
         run(study_in(folder, over="loads[0].value=0..1 kPa/4"))
 
 
-def test_what_cannot_be_followed_is_refused_before_the_first_trial(tmp_path):
+def test_invalid_paths_are_refused_before_the_first_trial(tmp_path):
     with pytest.raises(SimulationError, match="no key with a range"):
         study_in(tmp_path, over="pressure")
     with pytest.raises(StudyError, match="beside an evaluate"):

@@ -1,4 +1,4 @@
-"""Studies on families that cost nothing: what is asked, stored, shared, ranked and refused."""
+"""Studies on families that cost nothing: suggestions, storage, sharing, ranking and refusals."""
 
 import concurrent.futures
 import signal
@@ -220,7 +220,7 @@ def test_a_progress_hook_that_raises_stops_without_a_loss(make, threads):
     assert len(study.grid(executor=threads).trials) == 110
 
 
-def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(make, threads):
+def test_ctrl_c_keeps_finished_trials_and_names_the_way_on(make, threads):
     study = make()
 
     def press(event):
@@ -233,7 +233,7 @@ def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(make, threads):
     assert len(study.grid(executor=threads).trials) == 110
 
 
-def test_ctrl_c_stores_what_had_finished_and_was_not_looked_at(make, threads, monkeypatch):
+def test_ctrl_c_stores_finished_trials_not_yet_read(make, threads, monkeypatch):
     def interrupted(futures, *_):
         concurrent.futures.wait(futures)
         raise KeyboardInterrupt
@@ -312,7 +312,7 @@ def test_trials_of_others_are_not_touched(make):
         make(storage=storage)
 
 
-def test_what_an_interrupted_run_left_is_taken_up_first(make, threads):
+def test_trials_of_an_interrupted_run_are_taken_up_first(make, threads):
     study = make()
     with study._storage.open(write=True) as stored:
         _, parameters = stored.ask(study._distributions)
@@ -360,7 +360,7 @@ def test_a_table_that_cannot_be_written_names_the_file(make, threads, tmp_path):
         result.to_csv(tmp_path / "missing" / "trials.csv")
 
 
-def test_scatter_and_history_hold_what_plots_need(make, threads):
+def test_scatter_and_history_hold_the_data_of_plots(make, threads):
     result = make().grid(executor=threads)
     points, values = result.scatter()
     assert points.shape == (110, 2)

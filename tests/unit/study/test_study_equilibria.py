@@ -1,4 +1,4 @@
-"""What a study keeps of the states of its designs, beside its trials."""
+"""States that a study keeps of its designs, beside its trials."""
 
 import os
 import tomllib
@@ -38,14 +38,14 @@ sag = { minimize = "displacement", probe = "tip", axis = "z" }
 """
 
 
-#: Closed on its ball, and not yet lifted far: what is kept of it does not depend on the way.
+#: Closed on its ball, and not yet lifted far: the kept state does not depend on the way.
 CLOSED = Design.from_document(tomllib.loads(GRIPPER.replace("0.15 s", "0.08 s")))
 SQUEEZE = 0.4e-3
 
 
 @pytest.fixture(scope="module")
 def closed():
-    """What a trial finds."""
+    """Results of a trial."""
     return simulate(CLOSED.with_parameters(squeeze=SQUEEZE))
 
 
@@ -84,7 +84,7 @@ def test_a_study_keeps_all_that_was_found_of_a_design_with_contact(tmp_path, clo
     np.testing.assert_array_equal(result.contact_field.pressure, closed.contact_field.pressure)
 
 
-def test_what_is_stored_is_a_small_part_of_a_motion(tmp_path):
+def test_stored_states_are_a_small_part_of_a_motion(tmp_path):
     result = simulate(CLOSED, frames=True, record_interval=0.01)
     Equilibria(tmp_path).keep("a", Equilibrium.of(result))
     (file,) = tmp_path.iterdir()
@@ -118,7 +118,7 @@ def test_a_damaged_file_is_as_none(tmp_path, rested, content):
 
 
 @pytest.mark.parametrize("missing", ["state", "arrays", "array0", "positions"])
-def test_a_file_without_a_part_of_what_was_found_gives_no_result(tmp_path, missing):
+def test_an_incomplete_file_gives_no_result(tmp_path, missing):
     result = simulate(pressed())
     known = Equilibria(tmp_path)
     known.keep("a", Equilibrium.of(result))
@@ -126,7 +126,7 @@ def test_a_file_without_a_part_of_what_was_found_gives_no_result(tmp_path, missi
         left = {name: content[name] for name in content.files if name != missing}
     np.savez(tmp_path / "a.npz", **left)
     found = known.find("a", result.mesh)
-    # Without what else was found, its positions are no result of a design with contact.
+    # Without the other results, its positions are no result of a design with contact.
     assert found is None or found.result(Setup.of(result.design)) is None
 
 

@@ -1,4 +1,4 @@
-"""Studies along gradients: the optimum on a constraint, resumption, and what is refused."""
+"""Studies along gradients: the optimum on a constraint, resumption, and refusals."""
 
 from concurrent.futures import ThreadPoolExecutor
 
@@ -57,7 +57,7 @@ def test_logarithmic_ranges_have_their_own_slopes(tmp_path):
     assert result.best.metrics["sag"] == pytest.approx(4e-3, rel=1e-4)
 
 
-def test_what_has_no_gradient_is_refused_before_any_trial(tmp_path):
+def test_goals_without_a_gradient_are_refused_before_any_trial(tmp_path):
     cylinder = families.cylinder()
     stepped = Study(cylinder, folder=tmp_path / "a")
     with pytest.raises(StudyError, match=r"changes the shape.*fraction"):

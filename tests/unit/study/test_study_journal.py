@@ -1,4 +1,4 @@
-"""The journal of a study: what survives a kill, a torn line, a full disk, a second writer."""
+"""The journal of a study after a kill, a torn line, a full disk, a second writer."""
 
 import os
 
@@ -27,7 +27,7 @@ def read(path):
         return [line["number"] for line in journal.read_logs(0)]
 
 
-def test_what_was_written_is_read_back_from_any_number_on(path):
+def test_written_events_are_read_back_from_any_number_on(path):
     write(path, 1, 2)
     write(path, 3)
     assert read(path) == [1, 2, 3]

@@ -1,4 +1,4 @@
-"""The space of a study: what a user may type, and what is refused."""
+"""The space of a study: forms that a user may type, and refusals."""
 
 import lattice_families as families
 import pytest

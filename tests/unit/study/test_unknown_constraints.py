@@ -42,9 +42,7 @@ def evaluate(design: Design) -> Outcome:
 
 @pytest.mark.parametrize("sampler", ["tpe", "nsga-ii", "nsga-iii", "genetic", "random"])
 @pytest.mark.parametrize("order", [("safety", "light"), ("light", "safety")])
-def test_searches_go_on_with_what_is_not_known(
-    sampler: str, order: tuple[str, ...], tmp_path: Path
-):
+def test_searches_go_on_with_unknown_values(sampler: str, order: tuple[str, ...], tmp_path: Path):
     study = Study(
         families.sphere(),
         WALLS,
@@ -65,12 +63,12 @@ def test_searches_go_on_with_what_is_not_known(
         assert result.best.metrics["safety"] == -1.0
 
 
-#: Of the same kind as those that are quick, and as those of tests/unit/study/test_study_unknown.py.
+#: Same kind as the quick ones, and as those of tests/unit/study/test_study_unknown.py.
 SLOWER = [pytest.param(name, marks=pytest.mark.slow) for name in ("tpe", "nsga-ii", "nsga-iii")]
 
 
 @pytest.mark.parametrize("sampler", ["cma-es", "genetic", *SLOWER])
-def test_samplers_learn_to_stay_out_of_what_cannot_be_solved(sampler: str):
+def test_samplers_learn_to_avoid_unsolvable_designs(sampler: str):
     # One design in five can be solved. Random search has at most 0.2 + 3 sqrt(0.2 0.8 / 50) = 0.37
     # of the last 50, once in a thousand.
     assert shares(sampler, seed=0)[1] > 0.37

@@ -1,4 +1,4 @@
-"""Units: what text means, what is refused, and that writing and reading agree."""
+"""Units: meaning of text, refusals, and that writing and reading agree."""
 
 import contextlib
 import math

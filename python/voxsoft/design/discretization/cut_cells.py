@@ -25,7 +25,7 @@ Ints = NDArray[np.intp]
 _SLAB = 2**26
 _CHUNK = 4096
 
-#: What :func:`measures_of` gives for a full cell.
+#: Result of :func:`measures_of` for a full cell.
 WHOLE: Final[Floats] = np.array([1.0, 0.0, 0.0, 0.0, 1 / 3, 1 / 3, 1 / 3, 0.0, 0.0, 0.0])
 
 # A cell that is full or empty up to rounding is full or empty.
@@ -34,14 +34,14 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class CutCells:
-    """How full the cells of a grid are.
+    """Filled parts of the cells of a grid.
 
     Attributes
     ----------
     low
         The lowest cell of the grid counted from the phase, (3,).
     phase
-        Where the grid lies: a corner of a cell [m].
+        Place of the grid: a corner of a cell [m].
     size
         Edge of a cell [m].
     filled
@@ -140,8 +140,8 @@ def built_parts(design: Design) -> list[_core.Shape]:
 def measures_of(design: Design, cells: Ints, size: float, phase: Triple) -> Floats:
     """Return integrals over the material of some cells, (k, 10).
 
-    Those of 1, ξ, η, ζ, ξ², η², ζ², ηζ, ζξ, ξη, in volumes of a cell. The coordinates count from
-    the center of a cell in halves of its edge. A full cell gives :data:`WHOLE`.
+    The integrands are 1, ξ, η, ζ, ξ², η², ζ², ηζ, ζξ, ξη, in volumes of a cell. The coordinates
+    count from the center of a cell in halves of its edge. A full cell gives :data:`WHOLE`.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def measures_of(design: Design, cells: Ints, size: float, phase: Triple) -> Floa
     size
         Edge of a cell [m].
     phase
-        Where the grid lies: a corner of a cell [m].
+        Place of the grid: a corner of a cell [m].
     """
     found = np.zeros((len(cells), len(WHOLE)))
     for start in range(0, len(cells), _CHUNK):
@@ -174,7 +174,7 @@ def integrals(filled: Floats, normals: Floats) -> Floats:
     Parameters
     ----------
     filled, normals
-        Of each small cube, as :func:`voxsoft.shapes.fractions.fill` gives them.
+        Values of each small cube, from :func:`voxsoft.shapes.fractions.fill`.
     """
     lengths = np.linalg.norm(normals, axis=-1, keepdims=True)
     unit = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
@@ -213,7 +213,7 @@ def _whole(filled: Floats) -> Floats:
 def _state(
     shape: Shape, design: Design, size: float, corner: Floats, counts: Ints
 ) -> NDArray[np.uint8]:
-    """Of each cell: 0 no small cube has its center inside, 2 all have, 1 some have."""
+    """Classify each cell: 0 no small cube has its center inside, 2 all have, 1 some have."""
     n = SUBCELLS
     state = np.zeros(counts, dtype=np.uint8)
     step = max(1, _SLAB // int(counts[1] * counts[2] * n**3))

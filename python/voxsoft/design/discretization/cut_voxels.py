@@ -40,7 +40,7 @@ Void = tuple[Ints, Floats]
 
 @dataclass(frozen=True, eq=False)
 class _Topology:
-    """What stays while fractions vary: which cells are voxels, and where the rest belongs.
+    """Part that stays while fractions vary: the cells that are voxels, and receivers of the rest.
 
     `places` are the cells near the surface on the grid at `phase`, (k, 3). `voxel` is the number
     of each as a voxel, -1 for the others; `whole` is the number of voxels. `donors`, `receivers`
@@ -74,8 +74,8 @@ class CutVoxels:
         The material of each, counted in C order, (n,), in volumes of a cell. It may exceed 1:
         a cell less full gives its material to the voxels at its faces.
     moments
-        Where the material of each voxel is, (n, 9): see :attr:`voxsoft.Mesh.moments`. What a
-        neighbor gave lies outside the voxel, and counts there.
+        Position of the material of each voxel, (n, 9): see :attr:`voxsoft.Mesh.moments`. Material
+        that a neighbor gave lies outside the voxel, and counts there.
     voids
         For each cavity the voxels (their numbers, and parts of the tetrahedra of
         :data:`~voxsoft.design.discretization.rooms.ROOM_TETS`) by which it is larger than the
@@ -130,13 +130,14 @@ class CutVoxels:
     def resampled(self, design: Design) -> Self:
         """Return the same voxels with the fractions of another design: its parameters changed.
 
-        As the set of voxels is kept, and so is who takes whose material, fractions and voids
-        depend continuously on the parameters: differences of them are the derivative of a shape.
+        The set of voxels is kept, and so is the receiver of each cell's material. So fractions and
+        voids depend continuously on the parameters: differences of them are the derivative of a
+        shape.
 
         Parameters
         ----------
         design
-            The same design with slightly other parameters; its surface must stay in the cells near
+            A design with slightly other parameters; its surface must stay in the cells near
             the surface of this one.
 
         Raises
@@ -293,7 +294,7 @@ def _spread(design: Design, t: _Topology) -> tuple[Floats, Floats, tuple[Void, .
         into = t.region[t.donors] == cavity
         np.add.at(over, takers[into], given_to[into])
         numbers = np.flatnonzero((room[:, 0] > 0.0) | (over[:, 0] > 0.0))
-        # What a voxel holds of its neighbors lies beyond its own space, and has a gradient there.
+        # Material that a voxel holds of its neighbors lies outside it, and has a gradient there.
         parts = _parts(room[numbers]) - _parts(over[numbers])
         voids.append((numbers, parts))
     return fractions, moments, tuple(voids), lost

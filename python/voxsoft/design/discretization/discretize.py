@@ -65,7 +65,7 @@ class Filled:
         Its cells; of full ones those before they are refined. Of several bodies those of the first.
         None where the body is the mesh of a file.
     count
-        How many voxels the mesh will have; five tetrahedra of a file count as one.
+        Number of voxels that the mesh will have; five tetrahedra of a file count as one.
     lost
         Volume of the material that found no voxel [m³].
     mesh
@@ -140,7 +140,7 @@ def _filled_bodies(design: Design, refine: int) -> Filled:
 
 
 def _numbers(design: Design, body: str) -> NDArray[np.uint8]:
-    """What the parts of a body, counted from 1, are called among all."""
+    """Map the parts of a body, counted from 1, to their numbers among all."""
     own = [index + 1 for index, part in enumerate(design.parts) if part.body == body]
     return np.array([0, *own], dtype=np.uint8)
 

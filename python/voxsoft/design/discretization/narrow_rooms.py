@@ -34,14 +34,14 @@ def with_narrow_rooms(design: Design, cells: CutCells, active: Marks) -> Marks:
     design
         The design.
     cells
-        How full its cells are.
+        Filled parts of its cells.
     active
-        Which of them are full enough to be voxels.
+        Cells full enough to be voxels.
 
     Returns
     -------
     ndarray of bool
-        The same without those cells.
+        The mask `active` without those cells.
     """
     from scipy.ndimage import find_objects, label
 
@@ -64,7 +64,7 @@ def with_narrow_rooms(design: Design, cells: CutCells, active: Marks) -> Marks:
 
 
 def _is_closed(design: Design, cells: CutCells, room: Marks, start: Ints) -> bool:
-    """Whether the void of some cells is one, and ends near them."""
+    """Check if the void of some cells is one, and ends near them."""
     from scipy.ndimage import binary_dilation, label
 
     near = binary_dilation(room, np.ones((3, 3, 3), dtype=bool), _AROUND)
@@ -72,7 +72,7 @@ def _is_closed(design: Design, cells: CutCells, room: Marks, start: Ints) -> boo
     found, _, _ = filled_parts(design, places + start + cells.low, cells.size, cells.phase)
     void = np.zeros((*room.shape, *[SUBCELLS] * 3), dtype=bool)
     void[tuple(places.T)] = (found < 0.5).reshape(-1, *[SUBCELLS] * 3)
-    # What lies farther away counts as void, so that a void that goes on there is joined with it.
+    # Cells farther away count as void, so that a void that goes on there is joined with it.
     void[~near] = True
     fine = np.pad(_fine(void), 1, constant_values=True)
     voids, _ = label(fine)

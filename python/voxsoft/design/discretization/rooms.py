@@ -36,8 +36,8 @@ def room_parts(parts: Floats, means: Floats) -> Floats:
     Parameters
     ----------
     parts
-        The volume of each room in volumes of a voxel, (k,); negative for what a voxel holds beyond
-        its own space.
+        The volume of each room in volumes of a voxel, (k,); negative for material beyond the
+        voxel's own space.
     means
         The means of ξ, η, ζ, ηζ, ζξ, ξη over it, (k, 6), counted from the center of the voxel in
         halves of its edge.

@@ -13,7 +13,7 @@ from voxsoft.design.document.resolution import Document
 from voxsoft.errors import DesignError
 from voxsoft.records import closest, steps_of
 
-#: A key, in which quoted names may hold "=", and what it is set to.
+#: A key, in which quoted names may hold "=", and the value it is set to.
 _ASSIGNMENT: Final = re.compile(r"""((?:[^="']|"[^"]*"|'[^']*')+)=(.*)""", re.DOTALL)
 
 

@@ -1,4 +1,4 @@
-"""From what a user typed to the document that a file holds."""
+"""Conversion of a user's input to the document that a file holds."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from voxsoft.materials import is_card_path
 #: Keys and indices that lead to a value.
 Steps = tuple[str | int, ...]
 
-#: What a user may type in Python in place of the names in a file.
+#: Names that a user may type in Python in place of the names in a file.
 _WRITTEN: Final = {"schema_": "schema", "young_modulus": "young"}
 #: Entries that may hold such names.
 _HOLDERS: Final = frozenset({"materials", "parts", "bodies"})
@@ -28,9 +28,9 @@ def plain_document(
     Parameters
     ----------
     source
-        What the design was made of: for a Python call, a mix of models, SI floats and dicts.
+        Source of the design: for a Python call, a mix of models, SI floats and dicts.
     dumped
-        The same as plain data with values in place of formulas.
+        The source as plain data with values in place of formulas.
     typed
         Keys of the source that were typed in Python; the others are as a file holds them.
 
@@ -61,7 +61,7 @@ def _put(document: Any, path: tuple[str | int, ...], formula: str) -> None:  # n
 
 
 def written_path(path: tuple[str | int, ...]) -> tuple[str | int, ...]:
-    """Return the path under which a file holds what was typed at one in Python.
+    """Return the path in a file of an entry typed at a path in Python.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def with_absolute_paths(document: Mapping[str, Any], folder: Path) -> Document:
 
 
 def is_mesh(key: object, table: Mapping[str, Any]) -> bool:
-    """Whether a table under a key names the file of a mesh: as a shape, or as the body."""
+    """Check if a table under a key names the file of a mesh: as a shape, or as the body."""
     named = table.get("kind") == "mesh" or (key == "mesh" and "kind" not in table)
     return named and isinstance(table.get("path"), str)
 
@@ -147,7 +147,7 @@ def _cards(document: Mapping[str, Any], steps: Steps) -> Iterator[tuple[Steps, s
 
 
 def _tables(document: Mapping[str, Any], key: str) -> Iterator[tuple[Steps, Mapping[str, Any]]]:
-    """The tables of a list in a document; what else may stand there is passed over."""
+    """The tables of a list in a document; other entries are passed over."""
     entries = document.get(key)
     for index, entry in enumerate(entries if isinstance(entries, (list, tuple)) else ()):
         if isinstance(entry, Mapping):

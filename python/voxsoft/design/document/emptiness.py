@@ -1,4 +1,4 @@
-"""Subtracted shapes that vanish: what a formula leaves of a cavity when the wall fills it.
+"""Subtracted shapes that vanish: a formula leaves nothing of a cavity when the wall fills it.
 
 A design family reaches sizes where nothing is left to subtract: a wall as thick as the radius,
 two caps as high as the body. Such a design is valid; it has no cavity. The rule:
@@ -24,7 +24,7 @@ from voxsoft.shapes import AnyShape
 from voxsoft.units import Quantity, UnitOf
 
 _OPERANDS: Final = "of"
-_NOTHING_LEFT: Final = 1e-12  # m: what rounding leaves of a size that is zero
+_NOTHING_LEFT: Final = 1e-12  # m: rounding error of a size that is zero
 
 
 def without_empty_shapes(document: Mapping[str, Any]) -> tuple[Document, tuple[str, ...]]:
@@ -99,7 +99,7 @@ def _sized(value: Any) -> Any:  # noqa: ANN401
 
 
 class _Pruning:
-    """Follows names from subtracted operands; remembers what became of each."""
+    """Follows names from subtracted operands; remembers the outcome of each."""
 
     def __init__(self, shapes: Mapping[str, Any]) -> None:
         self._shapes = shapes
@@ -153,7 +153,7 @@ class _Pruning:
 
 
 def _has_vanished(table: Mapping[str, Any]) -> bool:
-    """Whether a formula makes one of the sizes of a shape zero or negative."""
+    """Check if a formula makes one of the sizes of a shape zero or negative."""
     kind = table.get("kind")
     if not isinstance(kind, str):
         return False

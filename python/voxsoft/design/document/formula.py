@@ -42,7 +42,7 @@ _NUMBER: Final = Dimension()
 
 
 def is_formula(value: object) -> bool:
-    """Whether a value of a document is a formula: text that starts with ``=``.
+    """Check if a value of a document is a formula: text that starts with ``=``.
 
     Examples
     --------
@@ -194,12 +194,12 @@ class _Reader:
 
     @property
     def _calls(self) -> bool:
-        """Whether a function stands here, which a unit may share its name with."""
+        """Check if a function stands here, since a unit may have the same name."""
         return self._token in _FUNCTIONS and self._after == "("
 
     @property
     def _goes_on_as_unit(self) -> bool:
-        """Whether what follows a sign belongs to the unit before it: only units of daily use do."""
+        """Check if the text after a sign belongs to the unit before it; only everyday units do."""
         return self._after in COMMON_UNITS and not self._is_parameter(self._after)
 
     @property

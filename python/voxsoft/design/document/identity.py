@@ -11,13 +11,13 @@ from typing import Any, Final
 from voxsoft.design.document.documents import is_mesh
 from voxsoft.units import round_significant
 
-# Words about the design, ways to vary it, and what a study asks of it: the answer of a
+# Words about the design, ways to vary it, and goals of a study: the answer of a
 # simulation depends on none of them. Probes stay in, because results are recorded at them.
 NOT_PHYSICS: Final = frozenset(
     {"schema", "name", "description", "parameters", "objectives", "constraints"}
 )
 
-# What is said about the constants of a material, beside them.
+# Remarks about the constants of a material, beside them.
 _ABOUT_CONSTANTS: Final = frozenset({"tested_stretch"})
 
 
@@ -59,7 +59,7 @@ def _canonical(value: object, key: str = "") -> object:
 
 
 def _content(path: str) -> str:
-    """Stand in for a mesh file: what it holds counts, not where it lies."""
+    """Stand in for a mesh file: its content counts, not its place."""
     try:
         with Path(path).open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()

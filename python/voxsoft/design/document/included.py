@@ -37,7 +37,7 @@ def inner_design(
     values
         New values of its parameters.
     from_file
-        Whether numbers in a table need their units.
+        True if numbers in a table need their units.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def refuse_outside(document: Mapping[str, Any], folder: Path) -> None:
 
 
 def is_outside(path: str, folder: Path) -> bool:
-    """Whether a path, as seen from a folder, leads out of it, also by a link."""
+    """Check if a path, as seen from a folder, leads out of it, also by a link."""
     return not Path(folder, path).resolve().is_relative_to(folder.resolve())
 
 
@@ -152,7 +152,7 @@ def _text(path: Path) -> str:
 def _at(
     error: VoxSoftError, key: str, name: str, known: Mapping[str, object] | None = None
 ) -> DesignError:
-    """The same problems at a key of the body; those of a value at that value."""
+    """Move problems to a key of the body; those of a value to that value."""
     problems = []
     for problem in error.problems:
         steps = [str(step) for step in steps_of(problem.where)]

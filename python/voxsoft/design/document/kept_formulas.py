@@ -9,14 +9,14 @@ from voxsoft.design.document.formula import is_formula
 from voxsoft.design.document.resolution import formulas
 from voxsoft.records import Record
 
-#: By the identity of a record: the record, and what it was written as.
+#: Records by their identity, each with the text or table it was written as.
 _Pieces = dict[int, tuple[Record, Any]]
 
 
 def with_kept_formulas(
     entries: Mapping[str, Any], source: Mapping[str, Any], changes: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Put formulas back into what replaces entries of a design.
+    """Put formulas back into the new entries of a design.
 
     In ``design.replace(clamps=[*design.clamps, press])`` the old clamps are records, which hold
     values; those of them that were written with formulas of parameters go on with these.
@@ -26,7 +26,7 @@ def with_kept_formulas(
     entries
         The design's values by key.
     source
-        What they were made of, formulas among it.
+        Source of these values, with formulas.
     changes
         New values by key; they are not changed.
     """
@@ -40,7 +40,7 @@ def with_kept_formulas(
 
 
 def _collect(value: object, piece: object, pieces: _Pieces) -> bool:
-    """Pair records with what they were written as; False where the two are not alike.
+    """Pair records with their source; False where the two are not alike.
 
     They differ where a subtracted shape was left out because it is empty.
     """

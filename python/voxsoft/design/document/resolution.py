@@ -1,6 +1,6 @@
 """From a design document with formulas to one with values only.
 
-A document is what a TOML file holds: nested dicts and lists. :func:`resolve` replaces every
+A document is the content of a TOML file: nested dicts and lists. :func:`resolve` replaces every
 formula by its value with dimension (:class:`~voxsoft.units.Quantity`), so that the typed models
 can still tell a length from an area.
 """
@@ -60,16 +60,16 @@ def resolve(document: Mapping[str, Any]) -> Document:
 
 @dataclass
 class Resolution:
-    """A document with values in place of formulas, and what is wrong with these.
+    """A document with values in place of formulas, and the problems of these.
 
     Attributes
     ----------
     document
         The values; :data:`UNREAD` stands for a formula that has none.
     problems
-        What is wrong, each once.
+        Problems, each once.
     reported
-        Paths of what is wrong.
+        Paths with problems.
     """
 
     document: Document
@@ -87,7 +87,7 @@ class Resolution:
 
 
 def is_inner_design(path: Path) -> bool:
-    """Whether a path of a document leads to a design within it, which has names of its own.
+    """Check if a path of a document leads to a design within it, which has names of its own.
 
     Examples
     --------
@@ -210,7 +210,7 @@ class _Parameters:
         return Quantity(quantity.value, _dimension_beside(declared, quantity.value, where))
 
     def _formula(self, text: str, where: str) -> Quantity:
-        """Evaluate the formula of a parameter; what is wrong with it is said of it alone."""
+        """Evaluate the formula of a parameter; its problems are reported for it alone."""
         try:
             return evaluate(text, self)
         except FormulaError as error:

@@ -151,12 +151,12 @@ def finger(**parameters: float | str) -> Design:
 
 
 def paper_beam(**parameters: float | str) -> Design:
-    """Return the paper's cantilever, of its lattice: what the paper's calibration fits.
+    """Return the paper's cantilever, of its lattice: the beam of the paper's calibration.
 
     Parameters
     ----------
     **parameters
-        As of :func:`beam`.
+        Parameters of :func:`beam`.
 
     Examples
     --------

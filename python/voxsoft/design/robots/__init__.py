@@ -16,11 +16,11 @@ from voxsoft.design import families
 from voxsoft.errors import DesignError
 from voxsoft.records import closest
 
-#: What moves a robot.
+#: Drive of a robot.
 Drive = Literal["pressure", "tendon", "magnet", "heat"]
-#: What it looks like.
+#: Form of a robot.
 Form = Literal["finger", "bellows", "trunk", "cylinder"]
-#: What it is to do.
+#: Task of a robot.
 Task = Literal["bend", "extend", "grip", "lift"]
 
 
@@ -33,9 +33,9 @@ class Robot:
     name
         Name of its file; also that of the example.
     title
-        What to call it.
+        Title on the start screen.
     sentence
-        What it is made of and does.
+        Its build and its motion.
     """
 
     name: str
@@ -61,7 +61,7 @@ ROBOTS: Final = (
 
 @dataclass(frozen=True)
 class Start:
-    """Where three answers lead: a robot with values of its parameters.
+    """A robot, with values of its parameters, for three answers.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class Start:
     robot
         Name of the robot to begin with.
     sentence
-        What to expect of it.
+        Expected behavior.
     parameters
         Values that differ from those of the robot.
     """

@@ -177,7 +177,7 @@ def follow(
         Values in SI units or with their unit, in the order in which they are reached; a path there
         and back may show a loop.
     progress
-        As for :func:`voxsoft.simulate`.
+        See :func:`voxsoft.simulate`.
     step
         Called after each equilibrium with the path so far.
     earlier

@@ -190,7 +190,7 @@ def workspace(
         tensions, or parameters of them. The last changes fastest, each equilibrium beginning at
         the one before it, so let the smoothest be the last.
     progress
-        As for :func:`voxsoft.simulate`.
+        See :func:`voxsoft.simulate`.
     line
         Called after each line of the grid with the workspace so far.
     **settings

@@ -151,7 +151,7 @@ def method_of(design: Design, solver: Solver) -> Method:
     Parameters
     ----------
     design, solver
-        As for :func:`kind_of`; :func:`check_solver` refuses settings that are not used.
+        See :func:`kind_of`; :func:`check_solver` refuses settings that are not used.
 
     Examples
     --------
@@ -215,7 +215,7 @@ def check_solver(
     Parameters
     ----------
     design, solver, extra
-        As for :func:`unused_settings`; without a solver, that of the design.
+        See :func:`unused_settings`; without a solver, that of the design.
 
     Raises
     ------

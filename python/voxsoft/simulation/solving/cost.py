@@ -177,7 +177,7 @@ def newton_iterations(design: Design, mesh: Mesh, wall: float | None, mass: floa
     Parameters
     ----------
     design, mesh, wall, mass
-        As for :func:`cost_of`.
+        See :func:`cost_of`.
     """
     method = method_of(design, design.solver)
     motion = _motion(design, mesh, wall, mass)

@@ -1,1 +1,1 @@
-"""What the page shows of a body: surfaces, objects, tendons, places, and what is known of it."""
+"""Bodies on the page: surfaces, objects, tendons, places, and numbers of their state."""

@@ -62,15 +62,15 @@ class StudioBody:
     rev
         Revision of the document that it was made of.
     setup, surface
-        What was made of the design.
+        The mesh of the design for the solver, and its drawn surface.
     voxels
-        Those of each body by its name; of a design without bodies, by an empty one.
+        Voxels of each body by its name; of a design without bodies, by an empty one.
     lost
         Volume of the material that found no voxel [m³].
     refusal
-        What keeps it from being solved, or None.
+        Reason why it cannot be solved, or None.
     seconds
-        How long it took to make.
+        Time that its making took.
     """
 
     topology: int
@@ -84,7 +84,7 @@ class StudioBody:
 
     @classmethod
     def of(cls, design: Design, rev: int, topology: int) -> StudioBody:
-        """Mesh a design; what only keeps it from being solved does not keep it from being shown.
+        """Mesh a design; a design that only cannot be solved is shown all the same.
 
         Raises
         ------
@@ -110,7 +110,7 @@ class StudioBody:
 
     @property
     def voxel_count(self) -> int:
-        """Of all bodies; 0 where the body is the mesh of a file."""
+        """Number of voxels of all bodies; 0 where the body is the mesh of a file."""
         return sum(voxels.count for voxels in self.voxels.values())
 
     @property
@@ -136,7 +136,7 @@ class StudioBody:
 
     @cached_property
     def bonds(self) -> list[events.BodyBond]:
-        """Where surfaces are bonded."""
+        """Marks of bonded surfaces."""
         return bonds_of(self.setup)
 
     @property
@@ -146,14 +146,14 @@ class StudioBody:
 
     @property
     def played(self) -> _core.Problem:
-        """The problem as it moves live: with what it touches, where that is found then."""
+        """The problem as it moves live: with its contact, where that is found live."""
         setup = self.setup
         if setup.design.refine:
             setup = Setup(evenly_small(setup.design, setup.design.solver.refine), self.mesh)
         return setup.problem if touches_live(setup) else setup.problem_alone
 
     def under(self, factors: Sequence[float]) -> Setup:
-        """The same body with each load, and each tendon after them, so many times as large."""
+        """Return the body with each load, and each tendon after them, scaled by a factor."""
         if all(factor == 1.0 for factor in factors):
             return self.setup
         design = self.setup.design
@@ -164,7 +164,7 @@ class StudioBody:
         return Setup(design.replace(loads=loads, tendons=tendons), self.mesh)
 
     def report(self) -> CheckReport:
-        """What the checks report of it; slower than the mesh itself."""
+        """Report of the checks; slower than the mesh itself."""
         setup = self.setup
         return examine(setup.design, self.voxels, self.mesh, self.lost, setup)
 
@@ -254,9 +254,9 @@ def filled_within_memory(design: Design) -> Filled:
 
 
 def _refuse_far_too_large(design: Design) -> None:
-    """Refuse what a look with larger voxels shows to be far too large, before it takes memory.
+    """Refuse a far too large design, seen with larger voxels, before it takes memory.
 
-    Thin walls may be lost to such a look, and others counted too thick by a voxel: what is within
+    Thin walls may be lost to such a look, and others counted too thick by a voxel: a design within
     a factor of four is counted in full.
     """
     cells = 0
@@ -349,7 +349,7 @@ def _body_place(setup: Setup, surface: Surface, end: Probe | Point, where: str) 
     place = setup.place(end, where)
     center = setup.position(place)
     vertices = surface.index_of(place.vertices[place.weights > 1e-9])
-    if len(vertices) == 0:  # inside the body, where nothing is drawn: it goes with what is near
+    if len(vertices) == 0:  # inside the body: it goes with the nearest drawn vertices
         drawn = setup.mesh.vertices[surface.vertices]
         vertices = np.array([np.linalg.norm(drawn - center, axis=1).argmin()], dtype=np.uint32)
     return events.BodyPlace(center=_point(center), vertices=vertices.tolist())
@@ -381,7 +381,7 @@ def _factor(unit: str, kind: str) -> float:
 
 
 def _place(setup: Setup, index: int) -> tuple[Triple, Triple]:
-    """Where a load is drawn, and which way it points."""
+    """Position and direction in which a load is drawn."""
     try:
         load = setup.load(index)
     except VoxSoftError:  # said among the findings

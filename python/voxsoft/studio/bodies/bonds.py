@@ -1,4 +1,4 @@
-"""Where surfaces are bonded, as the page marks it on the unloaded body."""
+"""Bonds between surfaces, as the page marks them on the unloaded body."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from voxsoft.simulation import Setup
 from voxsoft.simulation.setup.distance import Surface, distances_to
 from voxsoft.studio.protocol import events
 
-#: How far before a triangle it is looked for what it looks at, in reaches of a bond.
+#: Start of the search for the facing surface before a triangle, in reaches of a bond.
 _AHEAD: Final = 0.1
 #: Points of a bond that are drawn.
 _SHOWN_POINTS: Final = 400
@@ -24,12 +24,12 @@ def bonds_of(setup: Setup) -> list[events.BodyBond]:
     Parameters
     ----------
     setup
-        Of a design with or without contact.
+        Setup of a design with or without contact.
 
     Returns
     -------
     list
-        One entry for each bond; none where what touches is in something, a finding of the check.
+        One entry for each bond; none where surfaces are in each other, a finding of the check.
     """
     touching = setup.touching
     if touching is None or not touching.bonds:

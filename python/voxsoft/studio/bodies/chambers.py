@@ -1,4 +1,4 @@
-"""What supplies did over time, as the page draws it."""
+"""State of supplies over time, as the page draws it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the page is told of an equilibrium: its numbers, and what is doubtful about it."""
+"""Event of an equilibrium for the page: its numbers, and its doubtful points."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ class Measurement(threading.Thread):
     result
         Gives the result.
     report
-        Called with what the page gets; not at all where the state cannot be measured.
+        Called with the event for the page; not at all where the state cannot be measured.
     topology, frame
-        Which body it is of, and the frame that shows it.
+        Number of its body, and the frame that shows it.
     is_shown
-        Whether that frame still is: error bars of what is gone are not looked for.
+        Returns True while that frame is shown: error bars are not looked for afterwards.
     finer
-        Whether error bars are looked for on voxels half as large, whatever the design asks for.
+        True to look for error bars on voxels half as large, whatever the design asks for.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class Measurement(threading.Thread):
 
 
 def with_error(result: Result, error: Literal["finer"]) -> Result:
-    """The same result of a design that asks for its error on such voxels."""
+    """Copy a result with a design that asks for its error on such voxels."""
     solver = result.design.solver.replace(error=error)
     return replace(result, design=result.design.replace(solver=solver))
 
@@ -93,8 +93,8 @@ def equilibrium_of(
     if bars is not None:
         source = f"{bars.sentence[:1].upper()}{bars.sentence[1:]}."
     else:
-        source = "" if off else "Error bars: being looked for on other voxels."
-    # What the design already asks for would only be looked for again.
+        source = "" if off else "Error bars are computed on other voxels."
+    # Error bars of the design's own kind would only be looked for again.
     tried = result.design.solver.error == "finer"
     can_solve = result.status == "ok" and result.mesh.voxel_size is not None
     bars = bars or ErrorBars.none("", "")
@@ -153,13 +153,13 @@ def equilibrium_of(
 
 def _force_in_words(force: Force) -> str:
     size = float(np.linalg.norm(force))
-    # What is below a billionth of the whole is rounding.
+    # A component below a billionth of the whole is rounding.
     parts = (0.0 if abs(each) <= 1e-9 * size else rounded(each) for each in force)
     return f"({', '.join(format_quantity(each, 'force') for each in parts)})"
 
 
 def _missing(result: Result) -> str:
-    """What of a state that was stored is not there, in a sentence; empty where all is."""
+    """Missing parts of a stored state, in a sentence; empty where all are there."""
     filmed = is_filmed(result.design) and result.solver["way"] == "dynamics"
     if not filmed or len(result.recording.frames) > 0:
         return ""

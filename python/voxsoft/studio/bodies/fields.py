@@ -1,4 +1,4 @@
-"""What a body can be colored by, as the core says, and what contact adds.
+"""Fields that color a body: those of the core, and those that contact adds.
 
 A page without a server needs no more than the first.
 """
@@ -41,7 +41,7 @@ def contact_values(number: int, found: ContactField | None) -> NDArray[np.float6
     """A field of contact at each vertex of the mesh, (n,); None for a field of the core.
 
     Zero where contact is not known. Where nothing is near, the gap is the largest that there is:
-    pictures have no color for what is infinite.
+    pictures have no color for infinite values.
     """
     name = _NAMES.get(number)
     if name is None:

@@ -21,7 +21,7 @@ from voxsoft.studio.bodies.objects import packed
 from voxsoft.studio.protocol import events
 from voxsoft.studio.protocol.tab import Tab
 
-#: What is shown of a shape without end beyond the body, in lengths of its longest side.
+#: Shown margin of a shape without end beyond the body, in lengths of its longest side.
 AROUND: Final = 0.1
 #: Half the side of that room where there is no body, in voxels.
 ALONE: Final = 10
@@ -41,7 +41,7 @@ class GhostTracer(threading.Thread):
     Parameters
     ----------
     send
-        Called with a tab and what it asked for.
+        Called with a tab and the ghosts it asked for.
     """
 
     def __init__(self, send: Callable[[Tab, events.Event], None]) -> None:
@@ -53,7 +53,7 @@ class GhostTracer(threading.Thread):
         self._kept = Kept()
 
     def ask(self, tab: Tab, design: Design | None, rev: int, names: Sequence[str]) -> None:
-        """Ask for shapes of a design by their names; what else the tab asked for is dropped."""
+        """Ask for shapes of a design by their names; earlier requests of the tab are dropped."""
         with self._changed:
             self._requests[tab] = _Request(design, rev, tuple(names))
             self._changed.notify()
@@ -107,14 +107,14 @@ def ghost_of(design: Design, name: str, kept: Kept | None = None) -> events.Ghos
     design
         The design.
     name
-        Of :attr:`Design.shapes`.
+        Name in :attr:`Design.shapes`.
     kept
         Surfaces that are known already.
 
     Returns
     -------
     events.Ghost
-        Where there is no surface, it says why.
+        The ghost, or the reason why there is no surface.
 
     Examples
     --------
@@ -196,7 +196,7 @@ def _room(design: Design, bodies: Sequence[str | None]) -> tuple[Triple, Triple]
 
 
 def _identity(shape: Shape, design: Design) -> Hashable:
-    """All that decides a shape: what it is made of, and when its files were changed."""
+    """All that decides a shape: its fields, and the times of change of its files."""
     parts = tuple(shape.every(design.shapes))
     files = [Path(each.path) for each in parts if isinstance(each, TriangleMesh)]
     return parts, tuple(file.stat().st_mtime_ns for file in files if file.is_file())

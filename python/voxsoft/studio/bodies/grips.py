@@ -1,4 +1,4 @@
-"""Whether free objects are held, in a sentence: by what, with what grip, and by what margin."""
+"""Grip on free objects, in a sentence: held or not, by which bodies, with which margin."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from voxsoft.units import format_quantity
 
 Verdict = Literal["held", "slips", "touched", "lost"]
 
-#: What goes up by less than this part of its own height was not lifted: it only rolls or tilts.
+#: An object that rises less than this part of its height was not lifted: it rolls or tilts.
 _LIFTED: Final = 0.1
 #: The part of the pressure under which surfaces slip from which on more slips than sticks.
 _MOSTLY: Final = 0.5
@@ -29,7 +29,7 @@ def grips_of(result: Result) -> list[events.Grip]:
     Parameters
     ----------
     result
-        Of a design with or without objects.
+        Result of a design with or without objects.
 
     Returns
     -------
@@ -97,7 +97,7 @@ def _slipping(contacts: Sequence[ContactState]) -> float:
 
 
 def _rise(result: Result, name: str) -> float:
-    """How far an object went up since the first recorded instant [m]."""
+    """Rise of an object since the first recorded instant [m]."""
     recorded = result.recording.objects.get(name)
     if recorded is None or len(recorded[0]) == 0:
         return 0.0

@@ -33,7 +33,7 @@ class Mesher(threading.Thread):
     done
         Called with each body.
     examined
-        Called with a body, what the checks report of it, and its smooth surface if it has one,
+        Called with a body, the report of its checks, and its smooth surface if it has one,
         unless a newer request came meanwhile.
     failed
         Called with the revision of a design that could not be meshed, and the reason.

@@ -1,4 +1,4 @@
-"""Rigid objects as the page draws them, and what a solution knows of each of its frames."""
+"""Rigid objects as the page draws them, and the moments of a solution's frames."""
 
 from __future__ import annotations
 
@@ -50,17 +50,17 @@ def not_live(setup: Setup) -> str:
 
 
 def touches_live(setup: Setup) -> bool:
-    """Whether what the body touches is found while time runs."""
+    """Check if contact of the body is found while time runs."""
     return has_contact(setup.design) and not not_live(setup)
 
 
 def is_filmed(design: Design) -> bool:
-    """Whether what is solved of a design has moments that the page is told of."""
+    """Check if a solution of a design has moments for the page."""
     return has_contact(design) or has_supplies(design)
 
 
 def film_of(result: Result) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Times and positions of what was recorded before the state that a result ends in."""
+    """Times and positions recorded before the state that a result ends in."""
     times, frames = result.recording.times, result.recording.frames
     before = len(frames) - int(len(frames) > 0 and times[-1] >= result.time)
     return times[:before], frames[:before]
@@ -96,7 +96,7 @@ def surroundings_of(design: Design, poses: Mapping[str, Pose]) -> Surroundings:
 
 
 def poses_in(moment: events.Moment | None, design: Design) -> dict[str, Pose]:
-    """Where the objects of a design are at a moment, by name; empty where that is not known."""
+    """Poses of the objects of a design at a moment, by name; empty where they are unknown."""
     if moment is None:
         return {}
     return {

@@ -1,4 +1,4 @@
-"""Where a body at some positions is in itself, as the page is told of it."""
+"""Event of a body that is in itself at some positions, for the page."""
 
 from __future__ import annotations
 

@@ -17,28 +17,28 @@ from voxsoft.studio.bodies.body import StudioBody
 from voxsoft.study import equilibria
 from voxsoft.study.equilibria import Equilibria, Equilibrium, checksum
 
-#: Where the studio keeps those that it solved for, in its own folder.
+#: Folder of the equilibria that the studio solved for, in its own folder.
 FOLDER: Final = "equilibria"
-#: What a run leaves of its body.
+#: File in which a run leaves its body.
 RESULT: Final = "result.vtu"
 
 
 class Known(Protocol):
-    """Where equilibria are stored."""
+    """A store of equilibria."""
 
     def find(self, design_hash: str, mesh: Mesh) -> Equilibrium | None:
-        """Where the body of a mesh is at rest under the loads of its design, if that is known."""
+        """Find the equilibrium of a mesh under the loads of its design, if it is known."""
         ...
 
 
 class RunState:
-    """What a run left in its folder: the state of the one design that it is about."""
+    """State that a run left in its folder, of its one design."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
 
     def find(self, design_hash: str, mesh: Mesh) -> Equilibrium | None:
-        """Where the body is, if the run left that for this mesh."""
+        """Return the state, if the run left that for this mesh."""
         try:
             rest, positions = run_positions(self._folder)
         except VoxSoftError:
@@ -57,7 +57,7 @@ def known_equilibrium(body: StudioBody, places: Sequence[Known]) -> Result | Non
     body
         The body, without a hand on it.
     places
-        Where to look, one after the other.
+        Stores to search, one after the other.
     """
     if body.refusal is not None:
         return None
@@ -68,13 +68,13 @@ def known_equilibrium(body: StudioBody, places: Sequence[Known]) -> Result | Non
             result = None if found is None else found.result(body.setup)
             if result is not None:
                 return result
-    except VoxSoftError:  # it is solved, which says what is wrong
+    except VoxSoftError:  # it is solved again, and the solver reports the problem
         return None
     return None
 
 
 def stored_in(folder: Path) -> list[Known]:
-    """Where a study keeps the equilibria of its designs."""
+    """Store in which a study keeps the equilibria of its designs."""
     return [Equilibria(folder / equilibria.FOLDER)]
 
 

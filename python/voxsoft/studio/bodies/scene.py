@@ -1,4 +1,4 @@
-"""What the core's player is given of a body: its problem, its surface, its loads and probes."""
+"""Scene for the core's player: the problem of a body, its surface, its loads and probes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from voxsoft.studio.bodies.objects import touches_live
 from voxsoft.studio.bodies.probes import Probe, placed_probes
 from voxsoft.studio.protocol.message import Triple
 
-#: Residual at which a body counts as at rest: small beside what a picture shows.
+#: Residual at which a body counts as at rest: small beside the resolution of a picture.
 TOLERANCE: Final = 1e-4
 
 
@@ -27,7 +27,7 @@ def scene_of(body: StudioBody, probes: Sequence[Probe] | None = None) -> _core.S
     body
         The body; it must be one that can be solved.
     probes
-        What is plotted; default: the probes of the design.
+        Plotted probes; default: the probes of the design.
 
     Raises
     ------

@@ -22,7 +22,7 @@ def pack_smooth(design: Design, voxels: Mapping[str, Voxels], topology: int) -> 
     design
         The design.
     voxels
-        Those of each body by its name; of a design without bodies, by an empty one.
+        Voxels of each body by its name; of a design without bodies, by an empty one.
     topology
         The number of the picture that it belongs to.
 

@@ -1,4 +1,4 @@
-"""The surface of a body as the page draws it, and what each triangle of it belongs to."""
+"""The surface of a body as the page draws it, and the owner of each of its triangles."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ MOST_TETS: Final = 20_000
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """What is drawn of a mesh.
+    """Drawn surface of a mesh.
 
     Attributes
     ----------
     outline
         Its vertices, triangles and edges of voxels, as the core packs them.
     vertices
-        Which vertices of the mesh are drawn, (n,), in ascending order.
+        Vertices of the mesh that are drawn, (n,), in ascending order.
     tags
         For each triangle of the mesh its part from 0, or its cavity with the bit :data:`CAVITY`.
     """

@@ -1,4 +1,4 @@
-"""What the page shows of tendons: a line through the body, and a slider that pulls it."""
+"""Tendons on the page: a line through the body, and a slider that pulls it."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def pulled(setup: Setup, factors: Sequence[float]) -> tuple[Tendon, ...]:
 
 
 def tendon_attachments(setup: Setup, surface: Surface) -> list[events.BodyAttachment]:
-    """A line for each tendon, through points that go with what is drawn beside them."""
+    """A line for each tendon, through points that follow the drawn vertices beside them."""
     found = []
     first = len(setup.design.loads)
     for number, tendon in enumerate(tendons_of(setup)):
@@ -84,7 +84,7 @@ def _place(setup: Setup, surface: Surface, tendon: ResolvedTendon, at: int) -> e
     place, center = tendon.places[at], tendon.points[at]
     carried = np.array(place.get("vertices", ()), dtype=np.uint32)
     vertices = surface.index_of(carried)
-    if len(carried) and not len(vertices):  # inside: it goes with what is drawn around it
+    if len(carried) and not len(vertices):  # inside: it goes with the drawn vertices around it
         drawn = setup.mesh.vertices[surface.vertices]
         distance = np.linalg.norm(drawn - center, axis=1)
         vertices = np.argsort(distance)[:_NEIGHBORS].astype(np.uint32)

@@ -20,7 +20,7 @@ from voxsoft.errors import DesignError
 from voxsoft.studio.protocol import commands
 from voxsoft.studio.protocol.message import Triple
 
-#: Where a text is changed: keys and indices from the top, and what comes there; None removes it.
+#: Place of a change, by keys and indices from the top, and the new value; None removes it.
 Change = tuple[list[str | int], Any]
 Way = commands.Beside | commands.InMirror | commands.Around
 Table = Mapping[str, Any]
@@ -29,13 +29,13 @@ Table = Mapping[str, Any]
 _LISTS: Final = ("parts", "layers", "springs", "clamps", "loads")
 #: Tables whose entries may be.
 _TABLES: Final = ("chambers", "probes")
-#: What holds directions or places of the frame of the design.
+#: Keys of directions or places in the frame of the design.
 _DIRECTED: Final = ("motion", "anchor", "axes")
 
 
 @dataclass
 class Copying:
-    """Changes that copy something, and what of it stays as it is.
+    """Changes that copy something, and the entries that stay as they are.
 
     Attributes
     ----------
@@ -77,9 +77,9 @@ def copied(source: Table, design: Design, name: str, way: Way) -> Copying:
     source, design
         The document with its formulas, and the design that it is.
     name
-        Of the body or object.
+        Name of the body or object.
     way
-        Where the copies go.
+        Direction of the copies.
 
     Raises
     ------
@@ -234,7 +234,7 @@ def _posed(written: Table, body: Body, isometry: Isometry, way: Way, number: int
 
 
 def _same_axis(body: Body, way: commands.Around) -> float | None:
-    """Whether a body is turned about the same axis already: 1 or -1 for its sense, or None."""
+    """Sense, 1 or -1, in which a body is turned about the same axis already, or None."""
     turn = body.rotation
     if turn is None:
         return None
@@ -270,7 +270,7 @@ def _plus(written: Any, value: float, by: float) -> Any:  # noqa: ANN401 - as a 
 
 
 def _minus(from_: float, written: Any, value: float) -> Any:  # noqa: ANN401
-    """A place minus what is written."""
+    """Subtract a written value from a place."""
     if not is_formula(written):
         return length(from_ - value)
     inner = written.lstrip().removeprefix("=").strip()
@@ -306,7 +306,7 @@ def _si(written: Any) -> float:  # noqa: ANN401
 
 
 def _motion(written: Table, motion: Motion, isometry: Isometry) -> dict[str, Any]:
-    """A motion in the frame of the design, for a copy; what does not change stays a formula."""
+    """A motion in the frame of the design, for a copy; unchanged values stay formulas."""
     image = isometry.motion(motion)
     table = copy.deepcopy(dict(written))
     for keys, before, after, write in (
@@ -335,7 +335,7 @@ def _number(value: float) -> float | int:
 
 
 def _copy_entries(found: Copying, source: Table, name: str, new: str, way: Way) -> None:
-    """Copy what the design says of a body beside it: its parts, clamps, loads, probes."""
+    """Copy the entries that a design has for a body beside it: its parts, clamps, loads, probes."""
     counts: dict[str, int] = {}
     for path, _ in found.changes:
         if path[0] in _LISTS:
@@ -359,7 +359,7 @@ def _copy_entries(found: Copying, source: Table, name: str, new: str, way: Way) 
 
 
 def _is_directed(entry: Table, way: Way) -> bool:
-    """Whether an entry holds directions or places that a copy would need to turn or move."""
+    """Check if an entry holds directions or places that a copy would need to turn or move."""
     if "anchor" in entry:
         return True
     if isinstance(way, commands.Beside):
@@ -375,7 +375,7 @@ def _mentions(value: Any, name: str) -> bool:  # noqa: ANN401
 
 
 def _renamed(value: Any, name: str, new: str) -> Any:  # noqa: ANN401
-    """The same with another body."""
+    """Replace the name of a body."""
     if isinstance(value, list):
         return [_renamed(each, name, new) for each in value]
     if not isinstance(value, Mapping):

@@ -23,38 +23,38 @@ from voxsoft.units import KINDS, format_quantity, parse
 
 #: Changes of the same place that follow each other within this time are undone together [s].
 ONE_CHANGE: Final = 1.0
-#: How many changes can be undone.
+#: Number of changes that can be undone.
 LONGEST_HISTORY: Final = 500
-#: How much text the history may hold [characters].
+#: Largest text of the history [characters].
 LARGEST_HISTORY: Final = 50_000_000
-#: How many documents before it undo can lead back to.
+#: Number of documents before it to which undo can lead back.
 MOST_DOCUMENTS: Final = 20
 
 
 @dataclass
 class DesignDocument:
-    """One text, what it means, and how it came to be.
+    """One text, its meaning, and its history.
 
     Attributes
     ----------
     text
         The text as it stands, good or not.
     name
-        What to call it: the file's name.
+        Name of the document: the file's name.
     path
         The file, or None for a document that was never saved.
     folder
-        Where relative paths of meshes begin.
+        Base of relative paths of meshes.
     rev
         Grows with each change.
     design
-        That of the last text that was good, or None if there was none.
+        Design of the last text that was good, or None if there was none.
     diagnostics
-        What is wrong with the text as it stands.
+        Problems of the text as it stands.
     saved
         The text that its file holds, or None where there is no file.
     restored
-        Whether the text comes from a draft: nobody knows what was changed in it.
+        True if the text comes from a draft: nobody knows its changes.
     before, after
         Documents that were open before this one, with changes that were not saved, and after it:
         undo and redo lead there at the ends of this one's own changes.
@@ -99,24 +99,24 @@ class DesignDocument:
 
     @property
     def valid(self) -> bool:
-        """Whether the text as it stands is a design."""
+        """True if the text as it stands is a design."""
         return not any(each.severity == "error" for each in self.diagnostics)
 
     @property
     def dirty(self) -> bool:
-        """Whether the text differs from what was saved last."""
+        """True if the text differs from the one saved last."""
         return self.text != self.saved
 
     @property
     def edited(self) -> bool:
-        """Whether the text differs from what was opened or saved last."""
+        """True if the text differs from the one opened or saved last."""
         if self.saved is None:
             return self.restored or self.text != self._opened
         return self.dirty
 
     @property
     def title(self) -> str:
-        """What to call it: its file, or the name that was given to the design since."""
+        """Title: its file, or the name that was given to the design since."""
         name = None if self.design is None else self.design.name
         if self.path is not None or name is None or name == self._first_name:
             return self.name
@@ -135,7 +135,7 @@ class DesignDocument:
         text
             The text, good or not.
         place
-            What was changed; changes of one place that follow each other are undone together.
+            Place of the change; changes of one place that follow each other are undone together.
         now
             The time of the change [s].
 
@@ -222,7 +222,7 @@ class DesignDocument:
         return target
 
     def target(self, path: Path) -> Path:
-        """Where a path leads that is written from the folder of the document."""
+        """Resolve a path that is written from the folder of the document."""
         return (self.folder / path).absolute()
 
     def event(self) -> events.Document:

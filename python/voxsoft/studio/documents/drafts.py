@@ -83,7 +83,7 @@ class Drafts:
         self._write()
 
     def _write_quietly(self) -> None:
-        # The next change tries again, and the end of the studio says what is wrong.
+        # The next change tries again, and the end of the studio reports the problem.
         with suppress(VoxSoftError):
             self._write()
 

@@ -1,4 +1,4 @@
-"""Whether smaller voxels can be had, and at what cost: what the page says of how fine a mesh is."""
+"""Fineness of a mesh on the page: whether smaller voxels are possible, and their cost."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _DIVIDED: Final = re.compile(r"=\s*\((?P<whole>.*)\)/(?P<by>\d+)")
 
 
 def fineness_of(shown: Shown, document: DesignDocument) -> events.Fineness:
-    """Say what voxels half as large would cost what is shown, and which changes make them.
+    """Estimate the cost of voxels half as large for the shown body, and the changes that make them.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def fineness_of(shown: Shown, document: DesignDocument) -> events.Fineness:
     design, source = document.design, document.source
     if design is None or source is None or not document.valid or shown.body.rev != document.rev:
         what = "is not the one that is shown"
-        raise DesignError("design", what, "wait for its body, or fix what the editor underlines")
+        raise DesignError("design", what, "wait for its body, or fix the underlined errors")
     result = shown.measured()
     voxels = Setup(result.design, result.mesh).elements
     half = cost_on_voxels(voxels, result.seconds, 0.5)

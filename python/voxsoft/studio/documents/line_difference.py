@@ -1,4 +1,4 @@
-"""Where two texts differ, line by line, with some lines around each change."""
+"""Differences of two texts, line by line, with some lines around each change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the page shows of materials: the cards, and those of the design that is open."""
+"""Materials on the page: the cards, and those of the design that is open."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ _DOUBLE: Final = 2.0
 
 
 def young_of(material: Material) -> float | None:
-    """Young's modulus at small strain in Pa, or None of what does not deform."""
+    """Young's modulus at small strain in Pa, or None of a rigid material."""
     return None if isinstance(material, Rigid) else float(material.young(_USUAL_VOXEL))
 
 
 def materials_of(document: DesignDocument) -> events.Materials:
-    """All cards, the design's own materials, and what is special about mixing its kinds."""
+    """All cards, the design's own materials, and a note on mixing its kinds."""
     design = document.design
     own = [] if design is None else _own(design)
     mixed = "" if design is None else mixture_of(design)
@@ -50,7 +50,7 @@ def materials_of(document: DesignDocument) -> events.Materials:
 
 
 def mixture_of(design: Design) -> str:
-    """What a design of spring lattices and rubber does otherwise than one of either; "" for others.
+    """Describe the effects of mixing spring lattices and rubber in a design; "" for other designs.
 
     Examples
     --------

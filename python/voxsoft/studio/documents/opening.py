@@ -1,4 +1,4 @@
-"""Documents from what a user opens: files, run folders, trials, and files dropped on the page."""
+"""Documents from files, run folders, trials, and files dropped on the page."""
 
 from __future__ import annotations
 
@@ -71,8 +71,8 @@ def started_document(name: str, home: Path) -> DesignDocument:
 def document_at(path: Path, home: Path) -> DesignDocument:
     """A design file, or the design of a run folder as a new document.
 
-    Only what has the name of a design file is read, as only such a file is ever saved: the page
-    shows the text of what it opens, and is no way to look at other files.
+    Only a file with the name of a design file is read, as only such a file is ever saved: the page
+    shows the text of an opened file, and is no way to look at other files.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def uploaded_document(file: Path, home: Path) -> DesignDocument:
     Raises
     ------
     VoxSoftError
-        It is not what its name says, or holds no shape.
+        Its content does not match its name, or holds no shape.
     """
     if file.suffix == ".toml":
         opened = DesignDocument.of_file(file)
@@ -150,7 +150,7 @@ def with_parameters_of(trial: Trial, text: str, source: PlainDocument, design: D
     trial
         The trial.
     text, source, design
-        The design file, what is written in it, and what that means.
+        The design file, its text, and the design in it.
 
     Raises
     ------

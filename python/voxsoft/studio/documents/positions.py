@@ -39,7 +39,7 @@ def span_of(text: str, path: Sequence[str | int]) -> Span:
     Returns
     -------
     Span
-        Of the innermost key that is found; the first line where none is.
+        Span of the innermost key that is found; the first line where none is.
 
     Examples
     --------
@@ -49,7 +49,7 @@ def span_of(text: str, path: Sequence[str | int]) -> Span:
     lines = text.splitlines() or [""]
     depth = next((n for n in range(len(path), 0, -1) if _starts_a_line(text, path[:n])), 0)
     if depth == 0:
-        # A shape names itself before what is wrong with it: "difference.voxel_size".
+        # A shape names itself before its faulty entry: "difference.voxel_size".
         return span_of(text, path[1:]) if len(path) > 1 else _whole(lines, 1)
     number = line_of(text, path[:depth]) or 1
     line = lines[number - 1]
@@ -94,7 +94,7 @@ def _diagnostic(problem: ErrorDetail, text: str) -> Diagnostic:
 
 
 def _starts_a_line(text: str, path: Sequence[str | int]) -> bool:
-    """Whether the last step of a path has a line of its own, and not only what is around it."""
+    """Check if the last step of a path has a line of its own, and not only the tables around it."""
     line = line_of(text, path)
     return line is not None and (len(path) == 1 or line != line_of(text, path[:-1]))
 

@@ -17,7 +17,7 @@ from voxsoft.studio.protocol import events
 
 #: Name of the file.
 RECENT: Final = "recent.json"
-#: How many files are remembered.
+#: Number of files that are remembered.
 MOST: Final = 12
 
 
@@ -53,7 +53,7 @@ class RecentFiles:
         self._noted = self._read()
 
     def note(self, path: Path) -> None:
-        """Put a file first. What cannot be written is remembered until the studio ends."""
+        """Put a file first. A list that cannot be written is remembered until the studio ends."""
         when = datetime.now(UTC).isoformat(timespec="seconds")
         others = [each for each in self._noted if each.path != str(path)]
         self._noted = [_Noted(str(path), when), *others][:MOST]
@@ -63,7 +63,7 @@ class RecentFiles:
             write_atomically(self._file, msgspec.json.encode(self._noted))
 
     def is_first(self, path: Path) -> bool:
-        """Whether a file is the one that was noted last."""
+        """Check if a file is the one that was noted last."""
         return bool(self._noted) and self._noted[0].path == str(path)
 
     def files(self) -> list[events.RecentFile]:

@@ -25,7 +25,7 @@ from voxsoft.studio.protocol import events
 
 #: Files of a folder that are looked at.
 _MOST_FILES: Final = 500
-#: What of a design is that of all bodies, and not of one.
+#: Entries of a design that concern all bodies, and not one.
 _OF_ALL: Final = ("floor", "objects", "contact", "objectives", "constraints", "solver")
 #: Keys of entries that name a chamber or a probe.
 _NAMES: Final = ("cavity", "probe")
@@ -71,7 +71,7 @@ def changed_text(text: str, changes: Collection[Change]) -> str:
 def several_of(document: DesignDocument) -> tuple[DesignDocument, str]:
     """Make a new document whose one body is the design of a document; and the name of that body.
 
-    What is of all bodies moves along: floor, gravity, objects, contact, goals, the solver.
+    Entries that concern all bodies move along: floor, gravity, objects, contact, goals, the solver.
     Parameters stay in step with those of the design.
 
     Raises
@@ -81,7 +81,7 @@ def several_of(document: DesignDocument) -> tuple[DesignDocument, str]:
     """
     source, design = document.source, document.design
     if source is None or design is None or not document.valid:
-        raise DesignError("design", "is not valid", "fix what the editor underlines")
+        raise DesignError("design", "is not valid", "fix the underlined errors")
     if document.path is None or document.dirty:
         what = "is not saved, and its bodies name its file"
         raise DesignError("design", what, "save it first (Ctrl+S), then try again")
@@ -158,7 +158,7 @@ def added(document: DesignDocument, file: str, beyond: float) -> tuple[list[Chan
     file
         The path of the design's file, from the folder of the document.
     beyond
-        Where along x the body begins [m].
+        Position along x at which the body begins [m].
 
     Raises
     ------
@@ -230,7 +230,7 @@ def _body_name(stem: str, taken: Collection[str]) -> str:
 
 
 def _lowest(design: Design) -> float:
-    """Where along x a design begins [m]."""
+    """Position along x at which a design begins [m]."""
     whole = design.assembled
     corners: list[float] = []
     for name in whole.body_names:

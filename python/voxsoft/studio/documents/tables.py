@@ -1,4 +1,4 @@
-"""Measured tables as they are dropped on the page: what their columns hold, and in which unit."""
+"""Measured tables dropped on the page: content of their columns, with units."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from voxsoft.calibration.table import ARC, UNITS
 from voxsoft.errors import MeasurementError, VoxSoftError
 from voxsoft.studio.protocol import commands, events
 
-#: What a column may hold, as the page offers it; "" is nothing that is read.
+#: Possible contents of a column, as the page offers them; "" is a column that is not read.
 CHOICES: Final = ("", "arc", "probe", *QUANTITIES, "material", "note")
 _LABELS: Final = ("probe", "material", "note")
 #: Cells of a column that are shown.
@@ -23,7 +23,7 @@ _NAMED: Final = re.compile(rf"(?P<quantity>{ARC}|arc|s|d?[xyz])[ _\[(]*(?P<unit>
 
 
 def guessed_columns(text: str) -> list[commands.ColumnMap]:
-    r"""Guess what the columns of a table hold from their names.
+    r"""Guess the contents of the columns of a table from their names.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def measured(
     Returns
     -------
     event
-        What the page is told.
+        Event for the page.
     measurement
         None where the table cannot be used as it is; the event says why.
     """

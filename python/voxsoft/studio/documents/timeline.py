@@ -1,4 +1,4 @@
-"""The histories of a design as the page draws them: lines over time, and what follows each."""
+"""Histories of a design as the page draws them: lines over time, and entries that use them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from voxsoft.simulation.loads import readings
 from voxsoft.studio.protocol import events
 from voxsoft.units import format_quantity
 
-#: What has histories, in the order of the page, and what one of each is called.
+#: Sections with histories, in the order of the page, each with the name of one entry.
 _SECTIONS: Final = {
     "loads": "load",
     "supplies": "supply",
@@ -26,7 +26,7 @@ _SECTIONS: Final = {
     "objects": "object",
     "bodies": "body",
 }
-#: Of a curve so many points are drawn at most; those that can be dragged are all sent.
+#: Largest number of drawn points of a curve; those that can be dragged are all sent.
 _DRAWN: Final = 2_000
 #: Keys under which an entry says how much it is.
 _AMOUNTS: Final = (
@@ -61,7 +61,7 @@ def timeline_of(
         The design, and the document that it was read from. Histories of the designs of bodies come
         last: those of a file once, however many bodies are made of it.
     included
-        Whether it is that of a body: its objects, and loads on everything, are left out.
+        True if it is that of a body: its objects, and loads on everything, are left out.
     """
     places = [
         place for place in _places(design, source) if not (included and _left_out(design, place))
@@ -85,7 +85,7 @@ def timeline_of(
 
 
 def _left_out(design: Design, place: _Place) -> bool:
-    """Whether a place of a design is without use where the design is that of a body."""
+    """Check if a place of a design is without use where the design is that of a body."""
     section, index = place.path[:2]
     if section == "loads":  # those that act on everything are the outer design's
         fields = type(design.loads[int(index)]).model_fields
@@ -108,7 +108,7 @@ def _of_bodies(design: Design) -> list[events.HistoryLine]:
                 events.HistoryUse(title=f"{use.title} of {body.name}", amount=use.amount)
                 for use in line.used_by
             ]
-            # What stands in a table of the document is changed there.
+            # An entry in a table of the document is changed there.
             line.path = ["bodies", index, "design", *line.path]
             line.lives = line.lives or file
             where = (file, *line.path[3:]) if is_file else tuple(line.path)
@@ -140,7 +140,7 @@ def _line(
 
 
 def _way(history: History, written: Source) -> tuple[events.HistoryWay, str]:
-    """How a history is written, and its text where it is no list of points."""
+    """Form in which a history is written, and its text where it is no list of points."""
     if "table" in written:
         column = f", column {written['column']}" if "column" in written else ""
         return "table", f"table {written['table']}{column}"
@@ -202,7 +202,7 @@ def _title(design: Design, section: str, single: str, index: int) -> str:
 
 
 def _amount(design: Design, section: str, index: int, path: Path, source: Source) -> str:
-    """What a factor of 1 is, in words; "" where that is no number of the text."""
+    """Value of a factor of 1, in words; "" where that is no number of the text."""
     if section == "loads":
         reading = readings(design)[index]
         return format_quantity(float(f"{reading.size:.4g}"), reading.quantity)

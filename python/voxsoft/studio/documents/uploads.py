@@ -26,7 +26,7 @@ from voxsoft.shapes.mesh_bodies import sizes_in_units
 from voxsoft.units import format_quantity, parse
 from voxsoft.voxels import Voxels
 
-#: What the files of an archive may take together when unpacked [bytes].
+#: Largest size of all unpacked files of an archive [bytes].
 LARGEST_ARCHIVE: Final = 512 * 1024 * 1024
 #: Files in an archive.
 MOST_FILES: Final = 2_000

@@ -20,7 +20,7 @@ from voxsoft.studio.protocol import events
 
 #: Name of the folder in the studio's own.
 FOLDER: Final = "versions"
-#: How many versions of one file are kept, and of how many files.
+#: Number of versions kept of one file, and of files.
 MOST: Final = 50
 MOST_FILES: Final = 200
 #: Texts above this are not kept [characters].
@@ -90,7 +90,7 @@ class Versions:
         Returns
         -------
         bool
-            Whether it was kept. What cannot be written keeps nobody from working on.
+            True if it was kept. A failure to write does not interrupt the work.
         """
         if not text.strip() or len(text) > LARGEST:
             return False

@@ -1,4 +1,4 @@
-"""What is drawn of one body: packed topologies and frames."""
+"""Drawing of one body: packed topologies and frames."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from voxsoft.studio.protocol.message import Triple
 from voxsoft.studio.protocol.wire import FrameFlag
 
 _STILL: Final = FrameFlag.PAUSED
-#: As the core flags its own frames.
+#: Flags of frames as the core sets them.
 _FLAGS: Final = {
     "playing": FrameFlag(0),
     "at-rest": FrameFlag.PAUSED | FrameFlag.AT_REST,
@@ -28,7 +28,7 @@ _FLAGS: Final = {
 
 
 class Canvas:
-    """Packs what tabs see of a body.
+    """Packs topologies and frames of a body for the tabs.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Canvas:
         seq: int = 0,
         contact: ContactField | None = None,
     ) -> bytes:
-        """What a player looks at as the page reads it; without one, the body as it was made.
+        """The present state of a player as the page reads it; without one, the body as it was made.
 
         Fields of contact are those of `contact`, and zero without one.
         """
@@ -63,8 +63,8 @@ class Canvas:
             return player.packed(field, seq, None if mode == "surface" else self._display(mode))
         rest, topology, seq = body.mesh.vertices, body.topology, seq & 0xFFFF_FFFF
         if body.refusal is not None or field == DISPLACEMENT:
-            # Nothing moves what cannot be solved, and the core holds no such problem. And a shape
-            # that has only just come is shown before the core gets ready for its fields.
+            # Nothing moves a body that cannot be solved, and the core holds no such problem.
+            # And a new shape is shown before the core gets ready for its fields.
             outline = self._outline(mode)
             return outline.pack_frame(rest, topology=topology, field=field, seq=seq, flags=_STILL)
         return self._display(mode).pack_frame(
@@ -111,11 +111,11 @@ class Canvas:
         )
 
     def positions(self, player: Player | None) -> NDArray[np.float64]:
-        """Where the vertices of the mesh are [m]."""
+        """Positions of the vertices of the mesh [m]."""
         return self._body.mesh.vertices if player is None else player.positions()
 
     def picked(self, shown: int) -> events.Picked:
-        """Where a vertex of the surface is on a body that has no fields."""
+        """Position of a vertex of the surface on a body that has no fields."""
         x, y, z = self._body.mesh.vertices[self._body.surface.vertices[shown]].tolist()
         at: Triple = (x, y, z)
         values = [

@@ -1,4 +1,4 @@
-"""The thread that moves the body in real time: it does what is asked, and frames meanwhile."""
+"""The thread that moves the body in real time: it executes commands, and frames meanwhile."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ _BESIDE = (
 
 
 class Engine(threading.Thread):
-    """Owns the stage; what other threads ask is done on its own thread, one thing at a time.
+    """Owns the stage; requests of other threads run on its own thread, one at a time.
 
     Parameters
     ----------
     bus
-        Where events and frames go.
+        Bus of events and frames.
     solved
         Called with each equilibrium that is found under the loads of the design.
     """
@@ -45,7 +45,7 @@ class Engine(threading.Thread):
         self._stage = Stage(bus, self._inbox.put, solved)
 
     def run(self) -> None:
-        """Do what is asked, and move the body meanwhile, until the end."""
+        """Execute requests, and move the body meanwhile, until the end."""
         while True:
             try:
                 playback = self._stage.playback
@@ -73,7 +73,7 @@ class Engine(threading.Thread):
         self._inbox.put(lambda: self._stage.stay(sentence))
 
     def publish_report(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
-        """Pass on what the checks report of a body, if it is still the one that is shown."""
+        """Pass on the report of the checks of a body, if it is still the one that is shown."""
         self._inbox.put(lambda: self._stage.publish_report(body, report, smooth))
 
     def forget(self) -> None:
@@ -81,7 +81,7 @@ class Engine(threading.Thread):
         self._inbox.put(self._stage.forget)
 
     def send_snapshot(self, tab: Tab) -> None:
-        """Show a new tab what there is."""
+        """Show the present state to a new tab."""
         self._inbox.put(lambda: self._stage.send_snapshot(tab))
 
     def repaint(self, tab: Tab) -> None:
@@ -89,7 +89,7 @@ class Engine(threading.Thread):
         self._inbox.put(lambda: self._stage.pictures.paint(tab))
 
     def execute(self, command: commands.Command, tab: Tab) -> None:
-        """Do what a command asks; what cannot be done is told to its tab."""
+        """Execute a command; a failure is reported to its tab."""
 
         def task() -> None:
             try:
@@ -105,7 +105,7 @@ class Engine(threading.Thread):
         self._inbox.put(task)
 
     def shown(self, name: str, text: str, seconds: float = 30.0) -> Shown:
-        """What is shown now, for an export; it is taken between two frames.
+        """Return the shown state, for an export; it is taken between two frames.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""The commands about time and pictures, and what each does on the stage."""
+"""The commands about time and pictures, and the action of each on the stage."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from voxsoft.studio.protocol.tab import Tab
 
 @singledispatch
 def execute(command: commands.Command, stage: Stage, tab: Tab) -> None:
-    """Do what a command of a tab asks.
+    """Execute a command of a tab.
 
     Raises
     ------

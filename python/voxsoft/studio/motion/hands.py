@@ -1,4 +1,4 @@
-"""What hands have done to a body: loads that were changed and springs that pull.
+"""Changes made to a body by hand: changed loads and springs that pull.
 
 Another revision of the design makes another body; hands stay where they were.
 """
@@ -27,7 +27,7 @@ class _Load:
 
 @dataclass(frozen=True)
 class _Pull:
-    """A spring: its number, where on the unloaded body it pulls, toward what, and how hard."""
+    """A spring: its number, its place on the unloaded body, its target, and its stiffness."""
 
     number: int
     at: NDArray[np.float64]
@@ -44,7 +44,7 @@ class Hands:
 
     @classmethod
     def on(cls, body: StudioBody, stat: events.Stat) -> Hands:
-        """See what hands have done to a body that is played."""
+        """Read the changes made by hand to a body that is played."""
         rest = body.mesh.vertices[body.surface.vertices]
         pairs = zip(body.loads, stat.loads, strict=True)
         return cls(
@@ -61,7 +61,7 @@ class Hands:
 
     @property
     def idle(self) -> bool:
-        """Whether they have done nothing."""
+        """True if nothing was changed by hand."""
         return not self.pulls and not any(self.loads)
 
     def lay_on(self, body: StudioBody, player: Player) -> None:

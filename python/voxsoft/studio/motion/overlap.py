@@ -1,4 +1,4 @@
-"""What the page is told while the shown body is in itself: how deep, and where it is now."""
+"""Events of a shown body that is in itself: depth and present place."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ SHARE: Final = 0.05
 
 
 class OverlapWatch:
-    """Looks over what is played back, and tells the tabs where it is in itself.
+    """Checks the shown body for overlap with itself, and reports it to the tabs.
 
     Parameters
     ----------
     playback
-        What is shown.
+        The shown body.
     bus
-        Where events go.
+        Bus of events.
     """
 
     def __init__(self, playback: Playback, bus: EventBus) -> None:
@@ -34,7 +34,7 @@ class OverlapWatch:
         self._reported: events.Overlap | None = None
 
     def look(self) -> None:
-        """Look over what is shown now, unless that was done, or time runs and it was just done."""
+        """Check the shown state, unless that was done, or time runs and it was just done."""
         playback, started = self._playback, time.perf_counter()
         body = playback.body
         if body is None or body.refusal is not None:
@@ -58,6 +58,6 @@ class OverlapWatch:
             self._bus.publish(found)
 
     def send_snapshot(self, tab: Tab) -> None:
-        """Tell a new tab what the others know."""
+        """Send a new tab the events that the others have."""
         if self._reported is not None:
             self._bus.send_to(tab, self._reported)

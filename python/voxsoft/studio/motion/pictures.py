@@ -11,14 +11,14 @@ from voxsoft.studio.protocol.tab import Tab
 
 
 class Pictures:
-    """Paints what is played back for every tab, each as it wants it.
+    """Paints the shown body for every tab, each in its own view.
 
     Parameters
     ----------
     playback
-        What is shown.
+        The shown body.
     bus
-        Where events and frames go.
+        Bus of events and frames.
     """
 
     def __init__(self, playback: Playback, bus: EventBus) -> None:
@@ -30,7 +30,7 @@ class Pictures:
     def begin(self, body: StudioBody) -> None:
         """Give every tab another body, of which the checks have reported nothing yet."""
         self._report = self._smooth = None
-        # The shape first: what there is to say of it takes as long again.
+        # The shape first: its report takes as long again.
         canvas = self._playback.require_canvas()
         for mode in {tab.view.mode for tab in self._bus.tabs()}:
             if mode == "tets":  # hands and tapes hold on to the surface, also where it is not drawn
@@ -40,7 +40,7 @@ class Pictures:
         self.forget()
 
     def examined(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
-        """Pass on what the checks report of the body, and its smooth surface if it has one."""
+        """Pass on the report of the checks of the body, and its smooth surface if it has one."""
         self._report, self._smooth = report, smooth
         self._bus.publish(self._event(body))
         if smooth is not None:
@@ -82,7 +82,7 @@ class Pictures:
             self.paint(tab)
 
     def paint(self, tab: Tab) -> None:
-        """Pack what a tab shows, if it can take it and has not got it."""
+        """Pack the view of a tab, if it can take it and does not have it."""
         playback, view = self._playback, tab.view
         body, canvas = playback.body, playback.canvas
         if body is None or canvas is None or not tab.ready:

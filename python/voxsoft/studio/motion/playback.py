@@ -1,4 +1,4 @@
-"""What is shown of a body: its player, once there is something to play, and what goes on beside."""
+"""The shown body: its player, once there is something to play, and the work beside it."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from voxsoft.studio.motion.vibration import Vibration
 from voxsoft.studio.outputs.exports import Shown
 from voxsoft.studio.protocol import commands, events
 
-#: How a search for rest may have ended, in the words of the page.
+#: States in which a search for rest may end, in the words of the page.
 _STATES: Final[dict[str, events.SimulationState]] = {"ok": "at-rest", "diverged": "diverged"}
-#: What a run that is kept of a state is said to be.
+#: Status of a run that is kept of a state.
 _KEPT: Final[dict[events.SimulationState, Status]] = {"at-rest": "ok", "diverged": "diverged"}
 
 
@@ -41,11 +41,11 @@ class Playback:
     Attributes
     ----------
     body, canvas
-        What is shown, and what draws it.
+        The shown body, and its canvas.
     player
-        What moves it, if anything does yet.
+        The player, if there is one yet.
     doing, sentence, progress
-        What is done instead of playing, in a word and a sentence, and the part of it that is done.
+        The work done instead of playing, in a word and a sentence, and the part of it that is done.
     method
         The solver of the search for rest.
     result
@@ -53,8 +53,8 @@ class Playback:
     vibration
         Its natural vibrations, once they are found, and which of them is drawn.
     moments, contact_fields
-        Poses of objects and contacts, for each stored frame of a solution with contact; and what
-        touches each vertex, for the last frame of one.
+        Poses of objects and contacts, for each stored frame of a solution with contact; and the
+        contact of each vertex, for the last frame of one.
     """
 
     body: StudioBody | None = None
@@ -78,7 +78,7 @@ class Playback:
         Returns
         -------
         bool
-            Whether time shall run again.
+            True if time shall run again.
         """
         before, player = self.body, self.player
         if before is not None and player is not None and self._hands is None:
@@ -98,13 +98,13 @@ class Playback:
         return player is not None and player.wants_play and not body.not_live
 
     def let_go(self) -> None:
-        """Stop time and forget what hands did, as another document is opened."""
+        """Stop time and forget changes made by hand, as another document is opened."""
         if self.player is not None:
             self.player.do(commands.Pause(seq=0))
         self._hands = Hands()
 
     def do(self, command: Command) -> list[Event]:
-        """Do what a command asks of the player, and give what there is to tell.
+        """Execute a command for the player, and return its events.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class Playback:
         return self.require_player().do(command)
 
     def _refuse_live(self, command: Command) -> None:
-        """Refuse what needs time to run where it cannot: objects would be passed through."""
+        """Refuse a command that needs running time where objects would be passed through."""
         live = isinstance(command, commands.Play | commands.Step | commands.Grab)
         if live and self.body is not None and self.body.not_live:
             what = f"is not found while time runs: {self.body.not_live}"
@@ -193,7 +193,7 @@ class Playback:
             self.player.hold(sentence)
 
     def go_to_rest(self, result: Result) -> list[events.Event]:
-        """Take the state at rest that a solver found, and give what there is to tell."""
+        """Take the state at rest that a solver found, and return its events."""
         player = self.require_player()
         self.stop_doing()
         self.result = result
@@ -217,14 +217,14 @@ class Playback:
         return [*reported, *self.moments_event(), *self.chambers_event()]
 
     def moments_event(self) -> list[events.Event]:
-        """What is known of stored frames beside their pictures; nothing for most bodies."""
+        """Data of stored frames beside their pictures; nothing for most bodies."""
         body = self.body
         if body is None or not is_filmed(body.setup.design):
             return []
         return [events.Moments(topology=body.topology, moments=self.moments)]
 
     def chambers_event(self) -> list[events.Event]:
-        """What supplies did in the motion that is shown; nothing for a design without any."""
+        """State of supplies in the motion that is shown; nothing for a design without any."""
         body = self.body
         if body is None or not has_supplies(body.setup.design):
             return []
@@ -233,22 +233,22 @@ class Playback:
         return [chambers_of(self.result, body.topology)]
 
     def newest_moment(self) -> events.MomentNews | None:
-        """What touches in the present of a body that moves."""
+        """Contact in the present state of a body that moves."""
         return None if self.player is None or self.result is not None else self.player.moment()
 
     @property
     def moving(self) -> bool:
-        """Whether time runs."""
+        """True if time runs."""
         return self.player is not None and self.player.moving
 
     @property
     def swinging(self) -> bool:
-        """Whether a natural vibration is drawn."""
+        """True if a natural vibration is drawn."""
         return self.vibration is not None and self.vibration.mode is not None
 
     @property
     def state(self) -> events.SimulationState:
-        """How the simulation stands, in a word."""
+        """State of the simulation, in a word."""
         if self.doing is not None and not self.moving:
             return self.doing
         if self.player is not None:
@@ -257,7 +257,7 @@ class Playback:
 
     @property
     def untimed(self) -> bool:
-        """Whether what is shown was found without time: an equilibrium, not the end of a motion."""
+        """True if the shown state was found without time: an equilibrium, no end of a motion."""
         if self.result is None or self.state == "past":
             return False
         return len(film_of(self.result)[0]) == 0
@@ -296,13 +296,13 @@ class Playback:
 
     @property
     def factors(self) -> Sequence[float]:
-        """How many times as large as in the design each load is in what is looked at."""
+        """Factor on each load of the design in the shown frame."""
         final = self.require_body().load_values
         now = final if self.player is None else self.player.shown().loads
         return [load / end if end else 1.0 for load, end in zip(now, final, strict=True)]
 
     def shown_as(self, name: str, text: str) -> Shown:
-        """What is shown, for an export under a name, with the text of the design.
+        """The shown state, for an export under a name, with the text of the design.
 
         Raises
         ------
@@ -329,13 +329,13 @@ class Playback:
         )
 
     def _moment_of(self, frame: int) -> events.Moment | None:
-        """Where objects are in a frame, and what touches, as far as that is known."""
+        """Poses of objects in a frame, and its contacts, as far as they are known."""
         newest = self.newest_moment()
         known = [*self.moments, *([] if newest is None else [newest.moment])]
         return next((moment for moment in known if moment.frame == frame), None)
 
     def _standing(self, time: float) -> str:
-        """How the shown state came about, in words."""
+        """Origin of the shown state, in words."""
         if self.state == "at-rest":
             return "at rest" if self.untimed else f"at rest after {time_text(time)}"
         if self.player is None or self.player.unloaded:
@@ -343,7 +343,7 @@ class Playback:
         return f"as it stood at {time_text(time)}, not at rest"
 
     def complete(self, event: events.Event) -> events.Event:
-        """Add to a statistic what the player does not know of."""
+        """Add data to a statistic that the player does not know of."""
         if isinstance(event, events.Stat):
             event.solver, event.untimed = self.method, self.untimed
             if self.doing is not None and not self.moving:
@@ -364,7 +364,7 @@ class Playback:
         return self.body
 
     def require_canvas(self, vertex: int = 0) -> Canvas:
-        """What draws the body, which must have a vertex on its surface.
+        """The canvas of the body, which must have a vertex on its surface.
 
         Raises
         ------
@@ -378,7 +378,7 @@ class Playback:
         return self.canvas
 
     def require_player(self) -> Player:
-        """What moves the body.
+        """The player of the body.
 
         Raises
         ------

@@ -34,12 +34,12 @@ Command = (
     | commands.Pick
     | commands.Probe
 )
-#: What it tells.
+#: Events of a player.
 Event = events.Stat | events.Plot | events.Picked | events.MomentNews
 
 
 class Shown(msgspec.Struct):
-    """What is looked at, now or recorded: its frame, its time [s], loads and springs of then."""
+    """The frame in view, now or recorded: its time [s], loads and springs of then."""
 
     frame: int
     time: float
@@ -62,7 +62,7 @@ class Player:
     body
         The body.
     probes
-        What is plotted.
+        Plotted probes.
 
     Raises
     ------
@@ -76,7 +76,7 @@ class Player:
         self._core = scene_of(body, probes).play()
 
     def do(self, command: Command) -> list[Event]:
-        """Do what a command asks.
+        """Execute a command.
 
         Raises
         ------
@@ -126,7 +126,7 @@ class Player:
 
     @property
     def state(self) -> events.SimulationState:
-        """Whether time runs, and why not."""
+        """State of time, running or not, with the reason."""
         return self._core.state
 
     @property
@@ -136,17 +136,17 @@ class Player:
 
     @property
     def moving(self) -> bool:
-        """Whether time runs."""
+        """True if time runs."""
         return self._core.moving
 
     @property
     def wants_play(self) -> bool:
-        """Whether time runs again once a load or a pull wakes the body."""
+        """True if time runs again once a load or a pull wakes the body."""
         return self._core.wants_play
 
     @property
     def unloaded(self) -> bool:
-        """Whether the body has its unloaded shape still."""
+        """True if the body has its unloaded shape still."""
         return self._core.unloaded
 
     def stat(self) -> events.Stat:
@@ -154,7 +154,7 @@ class Player:
         return _STAT.decode(self._core.stat())
 
     def moment(self) -> events.MomentNews | None:
-        """What touches now, and where objects are; None for a body without contact."""
+        """Present contacts, and poses of objects; None for a body without contact."""
         moment = self._core.moment()
         return None if moment is None else _MOMENT.decode(moment)
 
@@ -163,15 +163,15 @@ class Player:
         return _PLOT.decode(self._core.plot())
 
     def shown(self) -> Shown:
-        """What is looked at, now or recorded."""
+        """The frame in view, now or recorded."""
         return _SHOWN.decode(self._core.shown())
 
     def positions(self) -> NDArray[np.float64]:
-        """Where the vertices of the mesh are in what is looked at [m], (n, 3)."""
+        """Positions of the vertices of the mesh in the frame in view [m], (n, 3)."""
         return self._core.positions()
 
     def packed(self, field: int, seq: int, display: _core.Display | None = None) -> bytes:
-        """What is looked at as the page reads it, on the surface or on another display."""
+        """The frame in view as the page reads it, on the surface or on another display."""
         return self._core.pack_frame(field, seq & 0xFFFF_FFFF, display)
 
 

@@ -18,7 +18,7 @@ from voxsoft.studio.bodies.body import StudioBody
 from voxsoft.studio.motion.sentences import time_text
 from voxsoft.units import format_percent
 
-#: What the frames of a film may take while it is solved for [bytes].
+#: Largest size of the frames of a film while it is solved for [bytes].
 ROOM: Final = 256 * 1024 * 1024
 
 
@@ -50,11 +50,11 @@ class RestSearch(threading.Thread):
     body
         The body.
     factors
-        How many times as large as in the design each load is.
+        Factor on each load of the design.
     method
         The solver.
     listener
-        Who is told.
+        Receiver of the events.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class RestSearch(threading.Thread):
 
     @property
     def as_designed(self) -> bool:
-        """Whether loads and solver are those of the design, which no hand has changed."""
+        """True if loads and solver are those of the design, not changed by hand."""
         return self._method == "auto" and all(factor == 1.0 for factor in self._factors)
 
     def stop(self) -> None:
@@ -95,7 +95,7 @@ class RestSearch(threading.Thread):
             say()
 
     def _settings(self, setup: Setup) -> dict[str, Any]:
-        """What is solved for: rest, or with contact and supplies what is asked for, as a film."""
+        """Settings of the search: rest; with contact and supplies the design's goal, as a film."""
         design = setup.design
         if not (has_contact(design) or has_supplies(design)):
             return {**settings_at_rest(), "method": self._method}

@@ -1,4 +1,4 @@
-"""The body on show: its motion, the search for its rest, and what the tabs are told of both."""
+"""The body on show: its motion, the search for its rest, and the events of both for the tabs."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Stage:
     Parameters
     ----------
     bus
-        Where events and frames go.
+        Bus of events and frames.
     later
         Does a task on the thread of the stage; may be called by any thread.
     solved
@@ -60,7 +60,7 @@ class Stage:
     def show(self, body: StudioBody, *, loaded: bool = False, known: Result | None = None) -> None:
         """Take another body, unloaded and at time zero, or in an equilibrium that is known.
 
-        Where it is to be shown `loaded` and its equilibrium is not known, a search for it begins.
+        If it is to be shown `loaded` and its equilibrium is not known, a search for it begins.
         """
         self.stop_search()
         self._equilibrium = None
@@ -90,7 +90,7 @@ class Stage:
             self.publish_stat()
 
     def publish_report(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
-        """Pass on what the checks report of a body, if it is still the one that is shown."""
+        """Pass on the report of the checks of a body, if it is still the one that is shown."""
         if body is self.playback.body:
             self.pictures.examined(body, report, smooth)
 
@@ -99,7 +99,7 @@ class Stage:
         self.playback.let_go()
 
     def send_snapshot(self, tab: Tab) -> None:
-        """Show a new tab what there is."""
+        """Show the present state to a new tab."""
         self.pictures.send_snapshot(tab)
         self.bus.send_to(tab, self.playback.complete(self.playback.stat()))
         self.overlaps.send_snapshot(tab)
@@ -116,14 +116,14 @@ class Stage:
     # Time
 
     def play(self, command: commands.Play | commands.Step) -> None:
-        """Let time run; what is asked last wins over a search that goes on."""
+        """Let time run; the last command wins over a search that goes on."""
         reported = self.playback.do(command)
         self.stop_search()
         self.playback.result = None
         self.publish(reported)
 
     def touch(self, command: commands.Load | commands.Grab | commands.Release) -> None:
-        """Change a load or a pull; what was at rest is so no more, and is shown at once."""
+        """Change a load or a pull; a body at rest is so no more, and is shown at once."""
         playback = self.playback
         reported = playback.do(command)
         self.stop_search()
@@ -183,7 +183,7 @@ class Stage:
         self._later(lambda: self._searching(search, sentence, progress))
 
     def found(self, search: RestSearch, result: Result) -> None:
-        """Hear what a search found, from its thread."""
+        """Receive the result of a search, from its thread."""
         self._later(lambda: self._found(search, result))
 
     def not_found(self, search: RestSearch, sentence: str) -> None:

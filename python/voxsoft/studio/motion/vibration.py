@@ -16,9 +16,9 @@ from voxsoft.errors import SimulationError, VoxSoftError
 from voxsoft.simulation import Modes, Result, modes
 from voxsoft.studio.protocol import events
 
-#: How long a drawn swing takes, whatever the frequency [s]: quick enough to be seen as motion.
+#: Duration of a drawn swing, whatever the frequency [s]: quick enough to be seen as motion.
 PERIOD: Final = 1.5
-#: How far the vertex that moves farthest is drawn, as a part of the largest extent of the body.
+#: Drawn amplitude of the vertex that moves farthest, as a part of the largest extent of the body.
 REACH: Final = 0.08
 
 
@@ -31,13 +31,13 @@ class Vibration:
     topology, frame
         The body, and the frame that shows the equilibrium.
     positions
-        Where its vertices are in equilibrium, (n, 3) [m].
+        Positions of its vertices in equilibrium, (n, 3) [m].
     found
         Its modes.
     mode
         The one that is drawn, from 0; None where the body stands still.
     started
-        When it began, on the monotonic clock [s].
+        Time of its start, on the monotonic clock [s].
     """
 
     topology: int
@@ -49,7 +49,7 @@ class Vibration:
 
     @property
     def amplitude(self) -> float:
-        """How far the vertex that moves farthest is drawn [m]."""
+        """Drawn amplitude of the vertex that moves farthest [m]."""
         return REACH * float(np.ptp(self.positions, axis=0).max())
 
     def with_mode(self, mode: int | None) -> Self:
@@ -66,7 +66,7 @@ class Vibration:
         return replace(self, mode=mode, started=time.monotonic())
 
     def now(self) -> NDArray[np.float64]:
-        """Where the vertices are drawn now, (n, 3) [m]."""
+        """Present positions of the drawn vertices, (n, 3) [m]."""
         if self.mode is None:
             return self.positions
         phase = 2.0 * math.pi * (time.monotonic() - self.started) / PERIOD
@@ -76,7 +76,7 @@ class Vibration:
         return moved
 
     def event(self) -> events.Vibration:
-        """What the page is told."""
+        """Event for the page."""
         return events.Vibration(
             topology=self.topology,
             frame=self.frame,

@@ -1,1 +1,1 @@
-"""What leaves the studio: files, the page of one body, and pictures."""
+"""Output of the studio: files, the page of one body, and pictures."""

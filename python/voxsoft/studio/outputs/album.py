@@ -1,4 +1,4 @@
-"""Which pictures and equilibria belong to what: trials, files, versions, open documents."""
+"""Pictures and equilibria of trials, files, versions and open documents."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files of what the studio shows: the design, the body as it stands, or a run folder."""
+"""Files of the shown body: the design, the body as it stands, or a run folder."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from voxsoft.studio.protocol import events
 from voxsoft.studio.protocol.events import GrabState
 from voxsoft.units import parse
 
-#: What can be written of the body that is shown.
+#: Formats in which the shown body can be written.
 FORMATS: Final = (*(suffix[1:] for suffix in WRITTEN), "run", "png", "html")
 #: Dots per inch of a picture of normal size.
 _DPI: Final = 200
@@ -37,30 +37,30 @@ _DPI: Final = 200
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """What a tab sees at the moment of an export.
+    """View of a tab at the moment of an export.
 
     Attributes
     ----------
     name
-        What files are called.
+        Name of the files.
     text
         The text of the design.
     body
         The body.
     positions
-        Where its vertices are [m].
+        Positions of its vertices [m].
     result
         The state at rest that a solver found, if the body is in it.
     columns, units, rows
-        What the plots show.
+        The content of the plots.
     factors
-        How many times as large as in the design each load is.
+        Factor on each load of the design.
     pulls
         The springs that pull by hand.
     status, sentence, time
-        How the simulation stands, and at what time [s].
+        State of the simulation, and its time [s].
     moment
-        Where objects are, and what touches, as far as that is known.
+        Poses of objects, and contacts, as far as they are known.
     """
 
     name: str
@@ -104,12 +104,12 @@ class Shown:
 
 
 def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Path) -> Path:
-    """Write what is shown.
+    """Write the shown state to files.
 
     Parameters
     ----------
     shown
-        What is shown.
+        The shown state.
     format
         One of :data:`FORMATS`.
     options
@@ -117,7 +117,7 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         in STL and OBJ files, ``"mm"`` by default; ``resolved``: whether a design file holds
         values in place of formulas; ``scale`` of a picture.
     folder
-        Where to write.
+        Folder of the files.
 
     Returns
     -------
@@ -158,12 +158,12 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
 
 
 def export_run(source: Path, format: str, options: dict[str, Any], folder: Path) -> Path:
-    """Write a run folder in a format: the folder itself as an archive, or what it holds.
+    """Write a run folder in a format: the folder itself as an archive, or its contents.
 
     Raises
     ------
     FileError
-        As for :func:`voxsoft.files.export`.
+        See :func:`voxsoft.files.export`.
     """
     target = folder / f"{source.name}.{format}"
     if format == "run":
@@ -230,7 +230,7 @@ def _draw(shown: Shown, target: Path, scale: object) -> None:
         mesh = shown.body.mesh
         moved = np.linalg.norm(shown.positions - mesh.vertices, axis=1)
         design = shown.body.setup.design
-        # Of a moment in the past it may not be known where objects were.
+        # The poses of objects may be unknown for a moment in the past.
         known = shown.moment is not None or shown.time == 0.0
         around = surroundings_of(design, poses_in(shown.moment, design))
         figure = plot_body(

@@ -36,7 +36,7 @@ _TITLE: Final = "<title>VoxSoft</title>"
 
 
 class Notes(msgspec.Struct):
-    """What a scene says of itself to the page."""
+    """Data of a scene for the page."""
 
     version: str
     name: str
@@ -44,11 +44,11 @@ class Notes(msgspec.Struct):
     sentence: str
     fields: list[events.Field]
     body: events.Body
-    #: Where the body is in itself as it is shown first; None: nowhere, or unloaded.
+    #: Overlap of the body with itself as it is shown first; None: nowhere, or unloaded.
     overlap: events.Overlap | None = None
-    #: Where objects are as they are shown first, and what touches then; None: nowhere, or unloaded.
+    #: Poses of objects as they are shown first, and contacts then; None: nowhere, or unloaded.
     moment: events.Moment | None = None
-    #: Whether what is shown first is an equilibrium.
+    #: True if the state shown first is an equilibrium.
     at_rest: bool = False
 
 
@@ -102,18 +102,18 @@ def page_of_body(
     body
         The body; it must be one that can be solved.
     factors
-        How many times as large as in the design each load is; default: as in the design.
+        Factor on each load of the design; default: 1.
     positions
-        Where the page shows the vertices first [m], (n, 3); default: unloaded. Play shows the way
-        from the unloaded shape.
+        Positions of the vertices that the page shows first [m], (n, 3); default: unloaded. Play
+        shows the way from the unloaded shape.
     moment
-        Where objects are then, and what touches; default: where they are unloaded.
+        Poses of objects then, and contacts; default: the unloaded poses.
     at_rest
-        Whether those positions are an equilibrium.
+        True if those positions are an equilibrium.
     text
         The design as text; default: as :meth:`voxsoft.design.Design.to_toml` writes it.
     sentence
-        What the page says first.
+        First sentence of the page.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def page_of_body(
         fields=list(FIELDS),
         body=body.event(),
         overlap=None if positions is None else _overlap(body, design, positions),
-        # The page shows first what it calls frame 0.
+        # The frame that the page shows first has number 0 there.
         moment=moment and msgspec.structs.replace(moment, frame=0, fields=False),
         at_rest=at_rest and positions is not None,
     )
@@ -152,7 +152,7 @@ def _overlap(
 
 
 def page_of(shown: Design | Result) -> LivePage:
-    """Make the page of a design, or of what came of it.
+    """Make the page of a design, or of its result.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A run folder of what is on the screen: the state itself, with its live loads and pulls."""
+"""A run folder of the state on the screen, with its live loads and pulls."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from voxsoft.units import format_quantity
 
 
 def keep(shown: Shown, base: Path, folder: Path) -> str:
-    """Write what is shown as a run folder; nothing is solved again.
+    """Write the shown state as a run folder; nothing is solved again.
 
     Parameters
     ----------
     shown
-        What is shown.
+        The shown state.
     base
-        Where relative paths of the design begin.
+        Base of relative paths of the design.
     folder
-        Where to write.
+        Folder to write.
 
     Returns
     -------
     str
-        What was kept, in a sentence.
+        Description of the kept state, in a sentence.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def with_live_loads(shown: Shown) -> str:
 
 
 def _under(shown: Shown) -> str:
-    """What holds the state there beside the design."""
+    """Describe the live loads and pulls that hold the state beside the design."""
     phrases = []
     for load, factor in zip(shown.body.loads, shown.factors, strict=True):
         if factor != 1.0:

@@ -6,9 +6,9 @@ import zipfile
 from pathlib import Path
 from typing import Final
 
-#: What `make studio` writes (studio/archive.py); part of every wheel.
+#: Archive of the page that `make studio` writes (studio/archive.py); part of every wheel.
 ARCHIVE: Final = Path(__file__).parents[1] / "page.zip"
-#: Where the files of the page are inside; beside them is the core as WebAssembly.
+#: Folder of the page's files inside; beside them is the core as WebAssembly.
 FOLDER: Final = "page/"
 
 

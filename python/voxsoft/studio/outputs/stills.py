@@ -1,6 +1,6 @@
 """Bodies at rest for pictures beside the view: of runs, of designs of studies, of calibrations.
 
-They come from what lies on disk, or are solved here, and the body that the view shows is not
+They are read from disk, or are solved here, and the body that the view shows is not
 touched.
 """
 
@@ -61,13 +61,13 @@ class Still:
     setup
         The body.
     positions
-        Where its vertices are [m], (n, 3).
+        Positions of its vertices [m], (n, 3).
     status
-        How the solution ended: ``ok``, ``not-at-rest`` or ``diverged``.
+        Status of the solution: ``ok``, ``not-at-rest`` or ``diverged``.
     fields
-        What can be told of that state.
+        Fields that are known of that state.
     poses
-        Where rigid objects are, by name; others are where they are at first.
+        Poses of rigid objects by name; others stand in their first poses.
     """
 
     setup: Setup = field(repr=False)
@@ -210,7 +210,7 @@ def design_in(folder: Path) -> Design:
 
 
 def _of_run(folder: Path) -> Still:
-    """Read what a run left."""
+    """Read the state that a run left."""
     mesh, positions = run_positions(folder)
     design = design_in(folder)
     try:
@@ -220,14 +220,14 @@ def _of_run(folder: Path) -> Still:
     status, poses = str(summary.get("status", "ok")), _poses_in(summary)
     setup = Setup(design, mesh)
     if has_feature(design, "softening"):
-        # The mesh file does not say what the voxels remember, and so not their stress.
+        # The mesh file does not hold the memory of the voxels, and so not their stress.
         shown = (FIELDS[DISPLACEMENT].name,)
         return Still(setup, positions, status, shown, poses)
     return Still(setup, positions, status, poses=poses)
 
 
 def _poses_in(summary: Mapping[str, Any]) -> dict[str, Pose]:
-    """Where a run left the rigid objects, by name; empty where that cannot be read."""
+    """Poses in which a run left the rigid objects, by name; empty where they cannot be read."""
     try:
         return msgspec.convert(summary.get("objects", {}), dict[str, Pose])
     except msgspec.ValidationError:

@@ -20,9 +20,9 @@ from voxsoft.study.equilibria import Equilibria
 
 #: Name of a folder of pictures, in that of a study and in the studio's own.
 FOLDER: Final = "thumbnails"
-#: What pictures show; those of another edition are drawn anew.
+#: Edition of the pictures; those of another one are drawn anew.
 _EDITION: Final = "with-objects"
-#: How many pictures the studio's own folder holds; those of a study are as many as its designs.
+#: Number of pictures in the studio's own folder; those of a study are as many as its designs.
 MOST: Final = 500
 
 
@@ -31,7 +31,7 @@ class NoLongerWantedError(Exception):
 
 
 class NoPictureError(FileError):
-    """What is listed is no design that can be drawn, which is no fault of the list."""
+    """The listed file is no design that can be drawn, which is no fault of the list."""
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ class Thumbnail:
     content
         PNG without a background.
     at_rest
-        Whether it shows the body at rest under its loads; else it shows the unloaded shape.
+        True if it shows the body at rest under its loads; else it shows the unloaded shape.
     per_meter
-        How many pixels a meter is; 0 where that is not known.
+        Pixels per meter; 0 where that is not known.
     """
 
     content: bytes
@@ -61,7 +61,7 @@ class Thumbnails:
     folder
         Made when there is something to keep.
     most
-        How many it holds; the oldest are dropped. None for any number.
+        Largest number of pictures; the oldest are dropped. None for any number.
     """
 
     def __init__(self, folder: Path, most: int | None = None) -> None:
@@ -79,11 +79,11 @@ class Thumbnails:
         Parameters
         ----------
         name
-            What it is called in the folder.
+            Name in the folder.
         design
             Gives the design; called only where the picture at rest is not there yet.
         known
-            Where its equilibrium may be.
+            Stores that may hold its equilibrium.
         cancelled
             Set where nobody waits for it any more.
 

@@ -1,1 +1,1 @@
-"""What page and server say to each other, and the tabs that it goes to."""
+"""Messages between page and server, and the tabs that receive them."""

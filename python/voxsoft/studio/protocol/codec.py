@@ -1,4 +1,4 @@
-"""The protocol of the studio: what page and server say to each other over one websocket.
+"""The protocol of the studio: messages between page and server over one websocket.
 
 Text messages are JSON objects: :data:`~voxsoft.studio.protocol.commands.AnyCommand` from the page,
 :data:`~voxsoft.studio.protocol.events.AnyEvent` from the server. ``studio/src/protocol.ts`` is

@@ -1,4 +1,4 @@
-"""Commands: what the page asks of the server. All quantities are SI.
+"""Commands: requests of the page to the server. All quantities are SI.
 
 Long because each command is a class with its documentation, and the union of all stands at the end.
 """
@@ -212,7 +212,7 @@ class Estimate(Command):
 
 
 class Fineness(Command):
-    """Ask what voxels half as large would cost the equilibrium that is shown."""
+    """Ask for the cost of the shown equilibrium on voxels half as large."""
 
 
 class Solver(Command):
@@ -272,7 +272,7 @@ class Live(Command):
 
 
 class View(Command):
-    """What this tab shows: the field, the surface or the tetrahedra, and whether it is visible.
+    """View of this tab: the field, the surface or the tetrahedra, and whether it is visible.
 
     Solid is the surface with the voxels behind it, which a section shows.
     """
@@ -322,7 +322,7 @@ class SpaceRange(Entry):
 
 
 class StudySpec(Entry, tag_field="kind", tag="study"):
-    """Solve many designs. What is left out is as the design has it.
+    """Solve many designs. Entries left out are those of the design.
 
     `space` holds, by parameter, a range or a list of choices. `objectives` and `constraints` are
     written as in a design file.
@@ -340,7 +340,7 @@ class StudySpec(Entry, tag_field="kind", tag="study"):
 
 
 class ColumnMap(Entry):
-    """What a column of a table holds: a quantity ("s", "dz", "x", ...; "" for nothing), a unit."""
+    """Content of a column of a table: a quantity ("s", "dz", "x", ...; "" for nothing), a unit."""
 
     column: str
     quantity: str
@@ -375,7 +375,7 @@ class CalibrateSpec(Entry, tag_field="kind", tag="calibrate"):
 
 
 class Keep(Command):
-    """Keep what is on the screen as a run folder, with its live loads and pulls."""
+    """Keep the state on the screen as a run folder, with its live loads and pulls."""
 
     name: ShortText | None = None
 
@@ -387,7 +387,7 @@ class JobStart(Command):
 
 
 class JobPause(Command):
-    """Hold a job: what has begun is finished, and nothing more begins."""
+    """Hold a job: work that has begun is finished, and nothing more begins."""
 
     id: ShortText
 
@@ -399,13 +399,13 @@ class JobResume(Command):
 
 
 class JobStop(Command):
-    """Stop a job; what is finished is kept."""
+    """Stop a job; finished work is kept."""
 
     id: ShortText
 
 
 class JobShow(Command):
-    """Tell what the folder of a study or calibration holds, as it was told when it ran."""
+    """Send the events in the folder of a study or calibration, as they were sent when it ran."""
 
     id: ShortText
 
@@ -447,7 +447,7 @@ class Compare(Command):
 
 
 class Measurement(Command):
-    """Read a measured table and say what its columns hold."""
+    """Read a measured table and guess the contents of its columns."""
 
     name: ShortText
     text: Annotated[str, Meta(max_length=10_000_000)]

@@ -1,4 +1,4 @@
-"""Where the studio's threads put what the tabs shall see."""
+"""Bus on which the studio's threads put events and frames for the tabs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from voxsoft.studio.protocol.tab import Tab
 
 
 class EventBus(Protocol):
-    """What the engine and the jobs need of the tabs; every method may be called by any thread."""
+    """Methods by which the engine and the jobs reach the tabs; any thread may call them."""
 
     def publish(self, event: events.Event) -> None:
         """Send an event to all tabs."""

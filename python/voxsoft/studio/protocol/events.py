@@ -1,4 +1,4 @@
-"""Events: what the server tells the page. All quantities are SI.
+"""Events: messages of the server to the page. All quantities are SI.
 
 Long because all events stand in one list, as the page reads them.
 """
@@ -12,11 +12,11 @@ from msgspec import field
 from voxsoft.studio.protocol.message import Entry, Json, Message, Triple
 
 Severity = Literal["error", "warning", "note"]
-#: Where a material is written: a card of VoxSoft, the design, or a card's file.
+#: Source of a material: a card of VoxSoft, the design, or a card's file.
 Origin = Literal["card", "design", "file"]
-#: How a body of one material moves live: in quick explicit substeps, in implicit steps, not at all.
+#: Live motion of a body of one material: in quick explicit substeps, in implicit steps, not at all.
 LiveMotion = Literal["explicit", "implicit", "none"]
-#: How a history is written: points, a sine, an expression of time, a table in a file, not at all.
+#: Form of a history: points, a sine, an expression of time, a table in a file, none.
 HistoryWay = Literal["points", "sine", "expression", "table", "none"]
 JobKind = Literal["run", "study", "calibrate"]
 JobState = Literal[
@@ -50,7 +50,7 @@ class MaterialCard(Entry):
 
 
 class MaterialFacts(Entry):
-    """What is known of a material, SI; null and "" where nobody stated it.
+    """Data of a material, SI; null and "" where nobody stated it.
 
     `same_as` and `choice` are of a plain name: the card that it stands for, and why. `tested_from`
     and `tested_to` are the stretches between which specimens were tested. `stress_at_double` is the
@@ -91,7 +91,7 @@ class Sampler(Entry):
 class Field(Entry):
     """A quantity that colors the body; `signed` ones have zero in the middle of their range.
 
-    Those of `contact` are known where a solution with contact ends.
+    Fields of `contact` are known where a solution with contact ends.
     """
 
     id: int
@@ -103,7 +103,7 @@ class Field(Entry):
 
 
 class Metric(Entry):
-    """What an objective or constraint may measure."""
+    """A metric for an objective or constraint."""
 
     name: str
     kind: str
@@ -124,9 +124,9 @@ class FitRange(Entry):
 
 
 class Hello(Event):
-    """First event: what this server can do. `design_schema` is the JSON Schema of a design.
+    """First event: abilities of this server. `design_schema` is the JSON Schema of a design.
 
-    `fit_ranges` holds by model of a material what a calibration fits.
+    `fit_ranges` holds for each model of a material the constants that a calibration fits.
     """
 
     version: str
@@ -155,7 +155,7 @@ class Robot(Entry):
 
 
 class Way(Entry):
-    """Where the three answers to New lead: a robot, with values of its own."""
+    """A robot, with values of its own, for the three answers to New."""
 
     name: str
     drive: str
@@ -176,7 +176,7 @@ class RecentFile(Entry):
 
 
 class Start(Event):
-    """What the start screen shows; `fresh` while nothing was opened or changed yet."""
+    """Content of the start screen; `fresh` while nothing was opened or changed yet."""
 
     fresh: bool
     robots: list[Robot]
@@ -218,7 +218,7 @@ class Diagnostic(Entry):
 
 
 class HistoryUse(Entry):
-    """What follows a history, and what a factor of 1 is of it, such as "30 kPa"."""
+    """An entry that uses a history, and the value of a factor of 1, such as "30 kPa"."""
 
     title: str
     amount: str
@@ -248,7 +248,7 @@ class HistoryLine(Entry):
 class Document(Event):
     """The document as it stands; `design` is that of the last text that was good (or null).
 
-    `dirty`: it differs from what was opened or saved last. `folder` is where it would be saved.
+    `dirty`: it differs from the text opened or saved last. `folder` is where it would be saved.
     `histories` are those of the last text that was good.
     """
 
@@ -289,7 +289,7 @@ class DesignFiles(Event):
 class Materials(Event):
     """All materials that a part can have: those of the design at `rev`, then the cards.
 
-    `mixed` says what is special where parts are of spring lattices and of rubber; "" elsewhere.
+    `mixed` describes effects of parts of spring lattices and of rubber together; "" elsewhere.
     """
 
     rev: int
@@ -298,7 +298,7 @@ class Materials(Event):
 
 
 class BodyPose(Entry):
-    """Where the frame of a body is: its origin in m, and its rotation, nine numbers by rows."""
+    """Frame of a body: its origin in m, and its rotation, nine numbers by rows."""
 
     position: Triple
     rotation: list[float]
@@ -348,7 +348,7 @@ class Leak(Entry):
 
 
 class Finding(Entry):
-    """What a check found; `at` is a point of the unloaded body in m where it is seen."""
+    """A finding of a check; `at` is a point of the unloaded body in m where it is seen."""
 
     severity: Severity
     where: str
@@ -376,7 +376,7 @@ class BodyPlane(Entry):
 class BodyLoad(Entry):
     """A load with the range of its slider; value / factor is the number to show with `unit`.
 
-    `kind` is that of the load in a design, `quantity` what its size is.
+    `kind` is that of the load in a design, `quantity` that of its size.
     """
 
     index: int
@@ -409,7 +409,7 @@ class BodyPlace(Entry):
 
 
 class BodyAttachment(Entry):
-    """What is attached to the body: the places that it joins, in turn.
+    """An attachment of the body: the places that it joins, in turn.
 
     `load` is the index of the load that pulls it; null where nothing does.
     """
@@ -513,7 +513,7 @@ class Body(Event):
 class GrabState(Entry):
     """A spring that pulls: force in N on the body, distance to its target in m.
 
-    Where it holds an object, that is its place among those of the body, and `vertex` means nothing.
+    If it holds an object, that is its place among those of the body, and `vertex` means nothing.
     """
 
     id: int
@@ -526,12 +526,12 @@ class GrabState(Entry):
 
 
 class Stat(Event):
-    """Where the simulation stands. Times in s, `step_ms` in ms for one substep, energies in J.
+    """State of the simulation. Times in s, `step_ms` in ms for one substep, energies in J.
 
-    `real_time_factor` is simulated over wall-clock time, and `pace` what it shall be at most;
-    `pace_chosen` is what the user chose, or null, and `pace_choices` how often there was a choice
-    for this body. Stored frames run from `first_frame` to `last_frame`. `untimed`: what is shown
-    was found without time, and `time` is that of what was played before.
+    `real_time_factor` is simulated over wall-clock time, and `pace` its upper limit;
+    `pace_chosen` is the user's choice, or null, and `pace_choices` the number of choices
+    for this body. Stored frames run from `first_frame` to `last_frame`. `untimed`: the shown state
+    was found without time, and `time` is that of the motion played before.
     """
 
     topology: int
@@ -606,12 +606,12 @@ class Summarized(Entry):
 
 
 class Grip(Entry):
-    """Whether a free object is held at the end of a run, also in a sentence.
+    """Grip on a free object at the end of a run, also in a sentence.
 
-    `held` only by what moves or is soft; `slips` where more slips than sticks; `touched` while it
-    still stands on something fixed; `lost` where nothing presses it. `rise` is how far it went up
-    in m, `pressed` what presses it in N, `weight` its weight in N, null without gravity, and
-    `margin` the friction that there can be over that which there is, null without any.
+    `held` only by moving or soft things; `slips` where more slips than sticks; `touched` while it
+    still stands on something fixed; `lost` where nothing presses it. `rise` is the way up
+    in m, `pressed` the force that presses it in N, `weight` its weight in N, null without gravity,
+    and `margin` the largest possible friction over the present one, null without any.
     """
 
     name: str
@@ -624,13 +624,13 @@ class Grip(Entry):
 
 
 class Equilibrium(Event):
-    """The numbers of the state that `frame` shows, and what is doubtful about it.
+    """The numbers of the state that `frame` shows, and its doubtful points.
 
     `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
     `error_bars` says where error bars come from, or why there are none; told a second time once
     they are known. `looking` while they are being looked for, and `askable` where none were found
-    and smaller voxels could still give them. `missing` is what of a state that was stored is not
-    there, in a sentence; empty where all is.
+    and smaller voxels could still give them. `missing` names the parts of a stored state that are
+    not there, in a sentence; empty where all is.
     """
 
     topology: int
@@ -662,7 +662,7 @@ class TextChange(Entry):
 
 
 class Fineness(Event):
-    """What voxels half as large would cost the equilibrium that is shown, and how to have them.
+    """Cost of the shown equilibrium on voxels half as large, and the way to have them.
 
     Sizes in m, memory in bytes, `seconds` of the solution, null where no solver found the state.
     `halving` makes the voxels half as large; where it is empty `not_halved` says why. Parts of
@@ -693,7 +693,7 @@ class Vibration(Event):
 
     `mode` is the one that is drawn, from 0, `amplitude` how far it is drawn in m, and `period` how
     long a drawn swing takes in s. While they are looked for there are none; `trouble` says why
-    there are none, and `hint` what to do.
+    there are none, and `hint` is the remedy.
     """
 
     topology: int
@@ -716,7 +716,7 @@ class ChamberCurve(Entry):
 
 
 class Chambers(Event):
-    """What supplies did in the motion that is shown, at instants in s; empty where nothing did."""
+    """State of supplies in the shown motion, at instants in s; empty where nothing happened."""
 
     topology: int
     times: list[float]
@@ -724,14 +724,14 @@ class Chambers(Event):
 
 
 class ObjectPose(Entry):
-    """Where an object is: the middle of its box in m, and its rotation, nine numbers by rows."""
+    """Pose of an object: the middle of its box in m, and its rotation, nine numbers by rows."""
 
     position: Triple
     rotation: list[float]
 
 
 class Touch(Entry):
-    """What touches what: the force on the first in N, the area in m² and the smallest gap in m.
+    """A pair in contact: the force on the first in N, the area in m² and the smallest gap in m.
 
     `pressed` is the sum of the sizes of all forces, and `slipping` the part of it that slips.
     `friction` is the size of that part of the force and `bound` the most that it can be, in N;
@@ -749,7 +749,7 @@ class Touch(Entry):
 
 
 class Moment(Entry):
-    """A frame of a solution: its time in s, the pose of each object of the body, what touches.
+    """A frame of a solution: its time in s, the pose of each object of the body, its contacts.
 
     `fields` tells whether the fields of contact are known of it. `depth` is how deep surfaces are
     in each other in m, where that is more than live contact should let them.
@@ -764,21 +764,21 @@ class Moment(Entry):
 
 
 class MomentNews(Event, tag="moment"):
-    """What touches in the newest frame of a body that moves; adds to what was known before."""
+    """Contacts in the newest frame of a body that moves; adds to those known before."""
 
     topology: int
     moment: Moment
 
 
 class Moments(Event):
-    """What is known of stored frames beside their pictures; replaces what was known before."""
+    """Data of stored frames beside their pictures; replaces those known before."""
 
     topology: int
     moments: list[Moment]
 
 
 class OverlapPlace(Entry):
-    """Where a body is in itself: how deep in m, and a point of it unloaded and now, m."""
+    """A place where a body is in itself: its depth in m, and a point of it unloaded and now, m."""
 
     depth: float
     rest: Triple
@@ -786,7 +786,7 @@ class OverlapPlace(Entry):
 
 
 class Overlap(Event):
-    """Where the body is in itself as it is shown, the deepest place first; none where it is not."""
+    """Places where the shown body is in itself, the deepest one first; none where it is not."""
 
     topology: int
     depth: float
@@ -826,7 +826,7 @@ class Picked(Event):
 
 
 class Job(Event):
-    """Where a job stands: `done` of `total` designs, generations or what else `of` says.
+    """State of a job: `done` of `total` designs, generations or other units, named in `of`.
 
     `left` is the time that these will still take in s, `best` a short text.
     """
@@ -929,7 +929,7 @@ class Overlay(Event):
 
 
 class FittedParameter(Entry):
-    """A constant that was fitted; `sentence` tells what the data say about it."""
+    """A constant that was fitted; `sentence` gives the information of the data about it."""
 
     name: str
     value: float
@@ -968,7 +968,7 @@ class Calibrated(Event):
 
 
 class Recipe(Event):
-    """How a job can be done again: a script, and a command where the options allow it (else "").
+    """Ways to repeat a job: a script, and a command where the options allow it (else "").
 
     `version` is that of the VoxSoft which did it; "" while it has not ended.
     """
@@ -1001,7 +1001,7 @@ class RunRow(Entry):
 
 
 class Runs(Event):
-    """The list of runs, newest first; `trash` holds what can be restored."""
+    """The list of runs, newest first; `trash` holds those that can be restored."""
 
     rows: list[RunRow]
     trash: list[RunRow]
@@ -1116,14 +1116,14 @@ class DifferentLine(Entry):
 
 
 class VersionDifference(Event):
-    """How the document came from a version to what it is; null where that is too long to tell."""
+    """Changes from a version to the present document; null where they are too long to list."""
 
     id: str
     lines: list[DifferentLine] | None
 
 
 class Error(Event):
-    """What could not be done, and what to try. `seq` is the command's, or 0."""
+    """A failure, and a remedy. `seq` is the command's, or 0."""
 
     seq: int
     where: str

@@ -28,7 +28,7 @@ def tag_of(name: str) -> str:
 
 
 class Message(msgspec.Struct, kw_only=True, tag_field="t", tag=tag_of):
-    """Base of what is sent over the websocket as text."""
+    """Base of text messages over the websocket."""
 
 
 class Entry(msgspec.Struct, kw_only=True):

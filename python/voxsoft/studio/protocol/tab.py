@@ -1,4 +1,4 @@
-"""One tab of a browser: what waits to be sent to it, and how much it can take."""
+"""One tab of a browser: its queue, and the frames that it can take."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _STATES: Final = (events.Document, events.Ghosts, events.Body, events.Runs, even
 
 
 class Socket(Protocol):
-    """What a tab needs of a websocket."""
+    """Methods of a websocket that a tab needs."""
 
     async def send_text(self, data: str) -> None:
         """Send text."""
@@ -42,22 +42,22 @@ class Tab:
     """A websocket with its queue.
 
     Frames need credits, of which an `ack` returns one; the newest frame takes the place of one that
-    waits. Everything else is sent in order. What waits gives way to newer news of its kind, or is
-    joined with them, so that a tab that reads slowly costs little memory; one that reads nothing is
-    cut off.
+    waits. Everything else is sent in order. Waiting events give way to newer ones of their kind, or
+    are joined with them, so that a tab that reads slowly costs little memory; one that reads
+    nothing is cut off.
 
     Attributes
     ----------
     socket
         The websocket.
     view
-        What the tab shows.
+        View of the tab.
     credits
         Frames that may still be sent.
     seq
         The last command of this tab.
     painted
-        What the last frame showed, so that the same is not packed twice.
+        Content of the last frame, so that the same is not packed twice.
     """
 
     socket: Socket
@@ -73,7 +73,7 @@ class Tab:
 
     @property
     def ready(self) -> bool:
-        """Whether a frame that is packed now would be sent at once."""
+        """True if a frame that is packed now would be sent at once."""
         return self.credits > 0 and self._frame is None and self.view.visible and not self.closed
 
     def put(self, event: events.Event) -> None:
@@ -102,7 +102,7 @@ class Tab:
         self._wake.set()
 
     def _forget(self, old: Callable[[events.Event | bytes], bool]) -> None:
-        """Drop what waits and has been overtaken."""
+        """Drop waiting messages that have been overtaken."""
         if any(map(old, self._queue)):
             self._queue = deque(waiting for waiting in self._queue if not old(waiting))
 

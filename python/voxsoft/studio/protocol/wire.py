@@ -1,7 +1,7 @@
 """Numbers that the page must know as the server does: codes, flags and marks of messages.
 
-They are written into ``studio/src/protocol.ts`` beside the types of the messages. What the core
-packs and plays with is the core's own.
+They are written into ``studio/src/protocol.ts`` beside the types of the messages. Numbers with
+which the core packs and plays are the core's own.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class CloseCode(IntEnum):
 
 
 class MessageKind(IntEnum):
-    """What a binary message holds."""
+    """Kind of a binary message."""
 
     TOPOLOGY = _core.MESSAGE_KINDS["TOPOLOGY"]
     FRAME = _core.MESSAGE_KINDS["FRAME"]
@@ -52,7 +52,7 @@ class MessageKind(IntEnum):
 
 
 class FrameFlag(IntFlag):
-    """What is said of a frame beside its numbers."""
+    """Flags of a frame beside its numbers."""
 
     PAUSED = _core.FRAME_FLAGS["PAUSED"]
     DIVERGED = _core.FRAME_FLAGS["DIVERGED"]
@@ -60,7 +60,7 @@ class FrameFlag(IntFlag):
 
 
 class TopologyFlag(IntFlag):
-    """What a topology describes."""
+    """Kind of a topology."""
 
     SURFACE = _core.TOPOLOGY_FLAGS["SURFACE"]
     SHRUNK_TETS = _core.TOPOLOGY_FLAGS["SHRUNK_TETS"]

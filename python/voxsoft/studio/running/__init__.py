@@ -1,1 +1,1 @@
-"""Runs, studies and calibrations: their processes, what they say, and their folders."""
+"""Runs, studies and calibrations: their processes, events, and folders."""

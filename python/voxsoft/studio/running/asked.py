@@ -1,4 +1,4 @@
-"""What a tab asks of a job, as the spec of that job."""
+"""Conversion of a tab's request for a job to the spec of that job."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def spec_of(asked: Asked, design: DesignSource, tables: Sequence[MeasuredTable])
     Parameters
     ----------
     asked
-        What the tab sent.
+        Command of the tab.
     design
         The design as it stands in the editor.
     tables

@@ -1,4 +1,4 @@
-"""The journal of a job: what it said, one event a line, so that it can be shown again later.
+"""The journal of a job: its events, one a line, so that they can be shown again later.
 
 The trials of a study are not in it: the study keeps them in a journal of its own.
 """
@@ -27,9 +27,9 @@ _decoder: Final[msgspec.json.Decoder[_Kept]] = msgspec.json.Decoder(_Kept)
 
 
 class JobJournal:
-    """Writes down what a job says.
+    """Writes down the events of a job.
 
-    A journal that cannot be written must not cost the job, whose results are what counts: the
+    A journal that cannot be written must not cost the job, whose results count more: the
     first failure is remembered in `trouble`, and later events are tried again.
 
     Parameters
@@ -37,7 +37,7 @@ class JobJournal:
     folder
         The folder of the job.
     anew
-        Whether to forget what an earlier process wrote, as for work that begins from its start.
+        True to forget the events of an earlier process, as for work that begins from its start.
     """
 
     def __init__(self, folder: Path, *, anew: bool = False) -> None:
@@ -70,7 +70,7 @@ class JobJournal:
 
 
 def read_journal(folder: Path) -> list[_Kept]:
-    """Read what the job of a folder said; lines that were cut off are left out.
+    """Read the events of a folder's job; lines that were cut off are left out.
 
     The folder may have been renamed since: its events carry the name that it has now.
     """

@@ -23,7 +23,7 @@ from voxsoft.studio.protocol.event_bus import Tabs
 from voxsoft.studio.protocol.tab import Tab
 from voxsoft.studio.running.job_journal import FINISHED, JobJournal
 
-#: What a process wrote on its standard error.
+#: Standard error of a process.
 LOG: Final = "job.log"
 #: Seconds that a process may take to stop before it is killed.
 PATIENCE: Final = 10.0
@@ -35,16 +35,16 @@ _decoder: Final[msgspec.json.Decoder[events.AnyEvent]] = msgspec.json.Decoder(ev
 
 @dataclass(eq=False)
 class Job:
-    """A process at work, or what it left.
+    """A process at work, or the events it left.
 
     Attributes
     ----------
     folder
-        Where it works; the job has its name.
+        Folder of the process; the job has its name.
     state
         The last it said of itself.
     kept
-        What a tab that comes later must be told besides.
+        Further events for a tab that comes later.
     """
 
     folder: Path
@@ -55,7 +55,7 @@ class Job:
 
     @property
     def running(self) -> bool:
-        """Whether its process still works."""
+        """True if its process still works."""
         return self.state.state not in FINISHED
 
     def order(self, word: str) -> None:
@@ -143,7 +143,7 @@ class Jobs:
         return job.running
 
     def stop(self, name: str) -> None:
-        """Stop a job; what is finished is kept."""
+        """Stop a job; finished work is kept."""
         job = self._job(name)
         if job.running:
             self._report(job, msgspec.structs.replace(job.state, state="stopping"))
@@ -154,7 +154,7 @@ class Jobs:
         return self._jobs.get(name)
 
     def running_in(self, folder: Path) -> bool:
-        """Whether a job works in a folder."""
+        """Check if a job works in a folder."""
         return any(job.running and job.folder == folder for job in self._jobs.values())
 
     def send_snapshot(self, tab: Tab) -> None:
@@ -165,7 +165,7 @@ class Jobs:
                 self._tabs.send_to(tab, event)
 
     def end(self) -> None:
-        """Stop all jobs, and wait until they have put away what is finished."""
+        """End all jobs, and wait until they have stored their finished work."""
         running = [job for job in self._jobs.values() if job.process.poll() is None]
         for job in running:
             job.order("stop")
@@ -181,7 +181,7 @@ class Jobs:
         return self._jobs[name]
 
     def _listen(self, job: Job) -> None:
-        """Pass on what a process says, until it ends."""
+        """Pass on the events of a process, until it ends."""
         assert job.process.stdout is not None
         for line in job.process.stdout:
             try:
@@ -222,4 +222,4 @@ class Jobs:
             last = " ".join(line.strip() for line in lines[-_LAST_LINES:] if line.strip())
             if last:
                 how += f": {last[-400:]}"
-        return f"The process {how}. What is finished is kept in {job.folder}; resume to go on."
+        return f"The process {how}. Finished work is kept in {job.folder}; resume to go on."

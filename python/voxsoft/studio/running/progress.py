@@ -1,4 +1,4 @@
-"""How far a job is, and its pauses."""
+"""Progress of a job, and its pauses."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from voxsoft.study.gate import Gate
 
 Tell = Callable[[events.Event], None]
 
-#: Seconds between two looks at what is still being finished.
+#: Seconds between two looks at unfinished work.
 _LOOK = 0.05
 
 
@@ -58,7 +58,7 @@ class Progress:
         idle = 0.0 if self._idle_since is None else now - self._idle_since
         return now - self._started - self._idle - idle
 
-    # What the studio wants, on the thread that listens to it
+    # Requests of the studio, on the thread that listens to it
 
     def pause(self) -> None:
         """Let nothing more begin."""
@@ -76,7 +76,7 @@ class Progress:
             self._gate.open()
         self.say()
 
-    # What the work says, on its own thread
+    # Reports of the work, on its own thread
 
     def gate(self) -> Gate:
         """A gate that is closed while the job is paused, for work that begins piece by piece."""
@@ -88,7 +88,7 @@ class Progress:
     def at(self, now: jobs.Progress) -> None:
         """Say how far the job is; without a gate, wait here while it is paused."""
         if self._first is None or now.of != self._now.of:
-            # What is counted from here on is something else, which takes a time of its own.
+            # The unit counted from here on is another, which takes a time of its own.
             self._first, self._since = now.done, self.elapsed
         self._now = now
         self._held = self._gate is None and not self._goes_on.is_set()
@@ -101,7 +101,7 @@ class Progress:
             self.say()
 
     def begin_study(self, study: Study) -> None:
-        """Say from now on what the study of the job is about."""
+        """Report from now on the objectives of the job's study."""
         self._parameters, self._objectives = list(study.space), list(study.objectives)
         self._directions = [each.direction for each in study.objectives.values()]
 
@@ -128,7 +128,7 @@ class Progress:
 
     @property
     def _finishing(self) -> str:
-        """What a pause waits for."""
+        """Work that a pause waits for."""
         if self._gate is not None:
             begun = self._gate.begun
             return f"{begun} design{' is' if begun == 1 else 's are'} being finished"

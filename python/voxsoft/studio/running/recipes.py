@@ -1,4 +1,4 @@
-"""How a job can be done again without the studio: as Python, and as a command line."""
+"""Ways to repeat a job without the studio: as Python, and as a command line."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def recipe_of(folder: Path) -> events.Recipe:
     return events.Recipe(
         job=folder.name,
         python=_SCRIPT.format(folder=str(folder), again=f"{folder.name}-again"),
-        # What was kept from the screen no job repeats: its design can be solved.
+        # No job repeats a state kept from the screen: its design can be solved.
         command=shlex.join(["voxsoft", *(["run", design] if kept else ["again", str(folder)])]),
         seed=getattr(job.spec, "seed", None),
         version=str(summary.get("versions", {}).get("voxsoft", job.version)),

@@ -1,4 +1,4 @@
-"""What a job says, as the page wants to hear it."""
+"""Events of a job in the form that the page expects."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from voxsoft.study import TrialEvent
 
 
 def listener_of(spec: Spec, progress: Progress) -> Listener:
-    """Return what passes on the events of a job to the page, and holds the job while it pauses."""
+    """Return a listener that passes a job's events to the page, and holds the job in its pauses."""
     smallest = np.inf
 
     def listen(event: JobEvent) -> None:
@@ -85,6 +85,6 @@ def _generation(job: str, event: CalibrationEvent) -> events.Generation:
 
 def _show(fits: Sequence[Fit], progress: Progress) -> None:
     """Leave the specimen of the best candidate in the folder, and tell the page of it."""
-    if fits:  # all are of one design and one material: they differ in what was measured
+    if fits:  # all are of one design and one material: they differ in the measurement
         write_specimen(fits[0], progress.folder)
     progress.tell(overlay_event(progress.job, fits))

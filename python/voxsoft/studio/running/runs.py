@@ -1,4 +1,4 @@
-"""The list of runs: what every folder of runs, studies and calibrations holds."""
+"""The list of runs: contents of all folders of runs, studies and calibrations."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from voxsoft.metrics import METRICS
 from voxsoft.studio.protocol import events
 from voxsoft.units import format_quantity
 
-#: Where folders go that are deleted, so that they can come back.
+#: Folder of deleted folders, from which they can come back.
 TRASH: Final = "trash"
 #: Pictures that stand for a folder, the best first.
 PICTURES: Final = (THUMBNAIL, "body.png", "shape.png", "scatter.png", "history.png")
@@ -31,7 +31,7 @@ _LARGEST: Final = 20_000_000
 
 Kind = Literal["run", "study", "calibrate", "unknown"]
 
-#: What the studio can do again itself.
+#: Kinds that the studio can repeat itself.
 _DONE_HERE: Final[tuple[Literal["run", "study", "calibrate"], ...]] = ("run", "study", "calibrate")
 
 
@@ -157,7 +157,7 @@ class RunList:
 
 
 def kind_of(folder: Path) -> Kind:
-    """What a folder holds, judged by the files in it."""
+    """Kind of a folder, judged by the files in it."""
     kind = kind_of_job(folder)
     if kind == "compare":
         return "unknown"
@@ -200,7 +200,7 @@ def read_summary(folder: Path) -> dict[str, Any]:
 
 
 def _content(folder: Path) -> tuple[Kind, dict[str, Any], str]:
-    """Kind and summary of a folder, and what is wrong with it."""
+    """Kind and summary of a folder, and its problem if it has one."""
     kind = kind_of(folder)
     if kind == "unknown" and (folder / REPORT).is_file():
         return kind, {}, f"a comparison: open {REPORT} in its folder"
@@ -242,7 +242,7 @@ def _best_of_run(summary: dict[str, Any], folder: Path) -> str:
 
 
 def _with_units(values: dict[str, float], folder: Path) -> str:
-    """Objectives with the units of their metrics, as far as the folder tells what they measure."""
+    """Objectives with the units of their metrics, as far as the folder names the metrics."""
     kinds: dict[str, str] = {}
     with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
         if (folder / "study.json").is_file():

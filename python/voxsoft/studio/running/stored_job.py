@@ -44,14 +44,14 @@ def stored_job(folder: Path) -> list[events.Event]:
 
 
 def _last_state(folder: Path, done: int | None = None) -> Iterator[events.Job]:
-    """Where the job of a folder stood when it was heard of last; nobody works on it now."""
+    """Last known state of a folder's job; nobody works on it now."""
     states = [event for event in read_journal(folder) if isinstance(event, events.Job)]
     if not states or not holds_job(folder):
         return
     last = states[-1]
     if last.state not in FINISHED:
         last = msgspec.structs.replace(
-            last, state="interrupted", left=None, stage="", message="what was finished is kept"
+            last, state="interrupted", left=None, stage="", message="finished work is kept"
         )
     yield last if done is None else msgspec.structs.replace(last, done=done)
 

@@ -1,7 +1,7 @@
 """The process of one job: ``python -m voxsoft.studio.running.worker FOLDER``.
 
 It writes events as lines of JSON, and reads ``pause``, ``resume`` and ``stop``, one a line. When
-nobody listens any more it stops as if told to; what is finished is kept.
+nobody listens any more it stops as on ``stop``; finished work is kept.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from voxsoft.studio.running.reporting import listener_of
 
 
 def listen(lines: TextIO, progress: Progress) -> None:
-    """Read what the studio wants until it is gone, or wants the job to stop."""
+    """Read requests of the studio until it is gone, or wants the job to stop."""
     for line in lines:
         match line.strip():
             case "pause":
@@ -37,7 +37,7 @@ def listen(lines: TextIO, progress: Progress) -> None:
 
 
 def _interrupt_main() -> None:
-    """Ctrl-C for the main thread, which also ends what it waits for."""
+    """Send Ctrl-C to the main thread, which also ends its waiting."""
     if hasattr(signal, "pthread_kill"):
         main = threading.main_thread().ident
         assert main is not None
@@ -61,7 +61,7 @@ def main(folder: Path) -> int:
         outcome = run_job(spec, folder, listener_of(spec, progress), gate=gate)
         progress.end("done", outcome.sentence)
     except KeyboardInterrupt as interrupt:
-        progress.end("stopped", str(interrupt) or "stopped; what is finished is kept")
+        progress.end("stopped", str(interrupt) or "stopped; finished work is kept")
     except VoxSoftError as error:
         progress.end("failed", str(error))
         return 1
@@ -71,7 +71,7 @@ def main(folder: Path) -> int:
 
 
 def _teller(line_out: TextIO, kind: events.JobKind, folder: Path) -> Tell:
-    """What sends events to the studio, and writes down those that a later tab has to know."""
+    """Sender of events to the studio, which writes down those that a later tab needs."""
     lock = threading.Lock()
     # Only a study goes on where it was; other work begins anew.
     journal = JobJournal(folder, anew=kind != "study")

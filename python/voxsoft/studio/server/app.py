@@ -36,7 +36,7 @@ HELLO_WITHIN: Final = 20.0
 #: Wrong messages in a row after which a tab is cut off.
 MOST_WRONG: Final = 200
 
-#: What a websocket may say as it is closed [bytes].
+#: Longest reason given when a websocket is closed [bytes].
 LONGEST_REASON: Final = 120
 
 #: Seconds between two looks whether somebody still waits for a body that is solved.
@@ -53,11 +53,11 @@ def make_app(session: Session, token: str, port: int) -> Guard:
     Parameters
     ----------
     session
-        What is shown.
+        The session.
     token
-        What a browser must know.
+        Token that a browser must know.
     port
-        Where the server listens.
+        Port of the server.
     """
     pages = _Pages(session, port)
     routes = [
@@ -173,7 +173,7 @@ class _Pages:
         work: Callable[[str, threading.Event], Found],
         request: Request,
     ) -> Found | None:
-        """What some work gives for the name `of` of a request; None where nobody waits any more."""
+        """Result of some work for the name `of` of a request; None where nobody waits any more."""
         cancelled, name = threading.Event(), request.query_params.get("of", "")
         begun = asyncio.get_running_loop().run_in_executor(executor, work, name, cancelled)
         begun.add_done_callback(lambda done: done.cancelled() or done.exception())
@@ -319,7 +319,7 @@ async def _body_within(request: Request, limit: int, name: str) -> bytes:
 
 
 async def _receive(socket: WebSocket) -> str | bytes:
-    """The next message, text or not: what is not text is refused by the decoder."""
+    """The next message, text or not: any other kind is refused by the decoder."""
     message = await socket.receive()
     if message["type"] == "websocket.disconnect":
         raise WebSocketDisconnect(message.get("code", 1000))

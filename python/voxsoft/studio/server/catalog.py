@@ -1,4 +1,4 @@
-"""What the page may offer: templates, materials, samplers, fields, metrics."""
+"""Catalog for the page: templates, materials, samplers, fields, metrics."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from voxsoft.units import UnitOf
 
 
 def hello(runs_folder: Path) -> events.Hello:
-    """Say what this server can do."""
+    """List the abilities of this server."""
     return events.Hello(
         version=__version__,
         protocol=PROTOCOL,

@@ -33,18 +33,18 @@ class StudioServer:
     runs
         Folder of the runs.
     port
-        Where to listen; 0 takes one that is free.
+        Port of the server; 0 takes one that is free.
     token
-        What a browser must know; default: a new random one.
+        Token that a browser must know; default: a new random one.
 
     Attributes
     ----------
     session
-        What is shown.
+        The session.
     port
-        Where it listens.
+        Port of the server.
     address
-        What to open in a browser; it holds the token.
+        Address for a browser; it holds the token.
 
     Raises
     ------

@@ -28,7 +28,7 @@ def new_token() -> str:
 
 
 def content_policy(port: int) -> str:
-    """Write what the page may load: its own files, and nothing from elsewhere."""
+    """Write the policy for the page: it may load its own files, and nothing from elsewhere."""
     # A policy cannot name an IPv6 address, and reports one as an error.
     sockets = " ".join(f"ws://{host}:{port}" for host in LOOPBACK if not host.startswith("["))
     rules = (
@@ -49,7 +49,7 @@ def content_policy(port: int) -> str:
 
 
 class Guard:
-    """Lets through what comes from the studio's own page, and refuses the rest in words.
+    """Passes requests of the studio's own page, and refuses the rest in words.
 
     Every request needs the name of this machine as its host, which no page of another name can
     send (DNS rebinding), and the token, in a cookie or in the query. A websocket and whatever
@@ -58,11 +58,11 @@ class Guard:
     Parameters
     ----------
     app
-        What is guarded.
+        The application that is guarded.
     token
         The token.
     port
-        Where the server listens.
+        Port of the server.
     """
 
     def __init__(self, app: ASGIApp, token: str, port: int) -> None:

@@ -1,4 +1,4 @@
-"""What all tabs share: the document, the body, the jobs and the runs.
+"""State shared by all tabs: the document, the body, the jobs and the runs.
 
 Long because every command that is not about time is carried out here, one short method each.
 """
@@ -102,7 +102,7 @@ class Session:
     runs
         Folder of the runs; made when something is written.
     source
-        What to open: a design file or a run folder; default: the last draft, or a template.
+        File to open: a design file or a run folder; default: the last draft, or a template.
 
     Raises
     ------
@@ -180,7 +180,7 @@ class Session:
         self.engine.repaint(tab)
 
     def handle(self, tab: Tab, command: commands.Command) -> None:
-        """Execute a command; what cannot be done is told to its tab."""
+        """Execute a command; a failure is reported to its tab."""
         try:
             with self._lock:
                 self._execute(command, tab)
@@ -198,7 +198,7 @@ class Session:
 
     @singledispatchmethod
     def _execute(self, command: commands.Command, tab: Tab) -> None:
-        """Do what a command asks; the engine does what is about time and pictures."""
+        """Execute a command; the engine executes those about time and pictures."""
         self.engine.execute(command, tab)
 
     @_execute.register
@@ -213,7 +213,7 @@ class Session:
             self.tabs.send_to(tab, self.document.event())
             raise FileError(
                 "text",
-                "was changed in another tab meanwhile; what was typed here was not taken",
+                "was changed in another tab meanwhile; the text typed here was not taken",
                 "look at the text as it is now, and change it again",
             )
         self._author = tab
@@ -283,7 +283,7 @@ class Session:
         self._ghosts.ask(tab, self.document.design, self.document.rev, command.names)
 
     def _of_several(self, name: str) -> tuple[DesignDocument, str]:
-        """A document in which bodies have names, and what there is called by a name."""
+        """A document in which bodies have names, and the new name there of a body or object."""
         _, design = self._good(self.document)
         if name != BODY or design.bodies:
             return self.document, name
@@ -291,7 +291,7 @@ class Session:
 
     def _good(self, document: DesignDocument) -> tuple[PlainDocument, Design]:
         if document.source is None or document.design is None or not document.valid:
-            raise DesignError("design", "is not valid", "fix what the editor underlines")
+            raise DesignError("design", "is not valid", "fix the underlined errors")
         return document.source, document.design
 
     def _change(
@@ -339,7 +339,7 @@ class Session:
         self.tabs.publish(events.Saved(what="document", path=str(written)))
 
     def _saved(self, path: Path | None) -> Path:
-        """Save the document; what the file held before is a version, as is what it holds now."""
+        """Save the document; earlier and new content of the file are versions."""
         before = ""
         with suppress(VoxSoftError):
             before = read_text(self.document.target(path or self.document.path or Path()))
@@ -407,7 +407,7 @@ class Session:
 
     @property
     def _home(self) -> Path:
-        """Where documents that have no file would be saved."""
+        """Folder in which documents without a file would be saved."""
         return self.runs.parent
 
     def _open(self, document: DesignDocument, stored: Sequence[Known] | None = None) -> None:
@@ -481,7 +481,7 @@ class Session:
         self.tabs.publish(events.Saved(what="run", path=str(folder)))
         self.tabs.publish(events.Log(level="info", text=f"kept {sentence}"))
         self._runs_changed()
-        # The picture takes longer than the run: what is asked next must not wait for it.
+        # The picture takes longer than the run: the next command must not wait for it.
         threading.Thread(target=self._draw, args=(shown, folder), daemon=True).start()
 
     def _draw(self, shown: Shown, folder: Path) -> None:
@@ -497,7 +497,7 @@ class Session:
     def _on_job_start(self, command: commands.JobStart, tab: Tab) -> None:
         asked, document = command.spec, self.document
         if not document.valid or document.design is None:
-            raise StudyError("job", "the design is not valid", "fix what the editor underlines")
+            raise StudyError("job", "the design is not valid", "fix the underlined errors")
         tables = []
         if isinstance(asked, commands.CalibrateSpec):
             tables = [self._table(each) for each in asked.data]
@@ -614,7 +614,7 @@ class Session:
         self._keep_draft()
 
     def _keep_draft(self, *, now: bool = False) -> None:
-        """Keep what is not saved, within a second; what was kept before goes once it is saved."""
+        """Keep unsaved changes, within a second; the earlier draft goes once they are saved."""
         document: DesignDocument | None = self.document
         while document is not None and not document.dirty:
             document = document.before
@@ -633,7 +633,7 @@ class Session:
     # The mesher's answers, on its thread
 
     def _meshed(self, body: StudioBody) -> None:
-        # What came to rest when it ran is shown as it ended, not as it began.
+        # A run that came to rest is shown as it ended, not as it began.
         asked = self._loaded
         loaded = asked is not None and asked.rev == body.rev
         known = None
@@ -681,7 +681,7 @@ class Session:
         return events.Exported(format=format, url=f"/download/{key}", name=file.name)
 
     def export(self, format: str, options: dict[str, Any]) -> events.Exported:
-        """Write what is shown, or a run of `options`, in a format, ready to be fetched.
+        """Write the shown state, or a run of `options`, in a format, ready to be fetched.
 
         Raises
         ------
@@ -697,13 +697,13 @@ class Session:
         return self.offer(written, format)
 
     def _shown(self) -> Shown:
-        """What is on the screen now."""
+        """The state on the screen now."""
         with self._lock:
             name, text = Path(self.document.name).stem, self.document.text
         return self.engine.shown(name, text)
 
     def picture(self, of: str, cancelled: threading.Event) -> Thumbnail:
-        """Draw what a page asks for: "trial/ID/INDEX", "file/PATH" or "version/ID" of the document.
+        """Draw a picture: "trial/ID/INDEX", "file/PATH" or "version/ID" of the document.
 
         Only files that the start screen lists are drawn.
 
@@ -732,7 +732,7 @@ class Session:
         return self.list.picture(run)
 
     def _first_document(self, source: Path | None) -> DesignDocument:
-        """What to begin with: the source, with what was not saved of it; the draft; a template."""
+        """First document: the source, with its unsaved changes; the draft; a template."""
         draft = self._drafts.read()
         if draft is None:
             if source is not None:

@@ -1,4 +1,4 @@
-"""What the start screen shows: finished robots, ways to a new one, and files of before."""
+"""Content of the start screen: finished robots, ways to a new one, and files of before."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from typing import Final
 from voxsoft.design import robots
 from voxsoft.studio.protocol import events
 
-#: Where the server has the pictures of robots.
+#: Address of the pictures of robots on the server.
 PICTURES: Final = "/robot/"
 #: The robot whose picture moves.
 MOVING: Final = robots.ROBOTS[0].name
 
 
 def start_event(recent: list[events.RecentFile], *, fresh: bool) -> events.Start:
-    """Tell what the start screen shows.
+    """Make the event of the start screen.
 
     Parameters
     ----------
     recent
         Files of before, the newest first.
     fresh
-        Whether nothing was opened or changed yet, so that the screen opens by itself.
+        True if nothing was opened or changed yet, so that the screen opens by itself.
     """
     return events.Start(
         fresh=fresh,

@@ -6,7 +6,7 @@ import { useStudio } from "../../store/studio";
 import { Findings } from "./Findings";
 import "./body.css";
 
-/** What the mesh came to: counts, mass, cavities, and what the check found. */
+/** Data of the mesh: counts, mass, cavities, and the findings of the check. */
 export default function BodyPane() {
   const body = useStudio((state) => state.body);
   if (!body) {

@@ -7,7 +7,7 @@ import "./body.css";
 
 const SIGNS = { error: "✕", warning: "!", note: "i" } as const;
 
-// Where a sentence tells the place, it is not that which makes it another one.
+// A place named in a sentence does not make another sentence of it.
 const PLACE = /\bnear \([^)]*\) mm/;
 
 /** Findings that say the same, with all their places. */
@@ -20,7 +20,7 @@ function grouped(findings: readonly Finding[]): Finding[][] {
   return [...groups.values()];
 }
 
-/** What a check found, the subject first; a click goes to the place where it is. */
+/** Findings of a check, the subject first; a click goes to the place where it is. */
 export function Findings(props: { findings: readonly Finding[] }) {
   return (
     <div data-testid="findings">

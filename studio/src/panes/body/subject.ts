@@ -1,6 +1,6 @@
 import { single } from "../design/fields/schema";
 
-// What a finding is about, in words: the path "loads[0]" of a design is "Load 1".
+// Subjects of findings, in words: the path "loads[0]" of a design is "Load 1".
 
 const ENTRY = /^(\w+)\[(\d+)\]/;
 const NAMED = /^(shapes|probes|materials|parameters|objectives|constraints|chambers)\.([^.[]+)/;

@@ -9,7 +9,7 @@ import { useCalibration } from "./current";
 import { errorsText } from "./text";
 import "../study/study.css";
 
-/** The error at each station in mm and in percent, with what was measured and simulated. */
+/** The error at each station in mm and in percent, with the measured and the simulated value. */
 export default function ErrorsPane() {
   const current = useCalibration();
   const result = current?.result;

@@ -60,7 +60,7 @@ function curvesOf(generations: readonly GenerationEvent[], what: string): Curves
   };
 }
 
-/** How the search went, generation by generation. */
+/** Progress of the search, generation by generation. */
 export default function GenerationsPane() {
   const current = useCalibration();
   const [what, setWhat] = useState("error");

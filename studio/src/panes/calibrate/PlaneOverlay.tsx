@@ -14,7 +14,7 @@ const MARGIN = { left: 56, right: 24, top: 20, bottom: 40 };
 
 export function PlaneOverlay(props: {
   experiments: readonly OverlayExperiment[];
-  /** What stands in the bar before the choice of the plane. */
+  /** Content of the bar before the choice of the plane. */
   bar: ReactNode;
 }) {
   const { experiments } = props;

@@ -10,7 +10,7 @@ import type { Schema } from "../design/fields/schema";
 import { withUnits } from "./setup";
 import { showFit } from "./tell";
 
-/** What came out: the constants, whether the data fix them, and what can be done with them. */
+/** Result: the constants, whether the data fix them, and actions with them. */
 export function Result(props: { result: CalibratedEvent; root: Schema }) {
   const { result } = props;
   const [name, setName] = useState(`${result.job}`.toLowerCase().replaceAll(/[^a-z0-9]+/g, "-"));

@@ -1,4 +1,4 @@
-// The measured tables: dropped or chosen, with what each column holds and in which unit.
+// The measured tables: dropped or chosen, with the content of each column and its unit.
 import { useRef, useState } from "react";
 import { Button, Section, Select } from "../../controls/Choice";
 import type { MeasuredColumn, MeasuredEvent } from "../../protocol";

@@ -1,4 +1,4 @@
-// The calibration that is being set up: tables that were dropped, and what to fit.
+// The calibration that is being set up: tables that were dropped, and constants to fit.
 import { create } from "zustand";
 import type { ColumnMap } from "../../protocol";
 import { send } from "../../store/session";
@@ -7,7 +7,7 @@ import { toast } from "../../store/studio";
 export interface MeasuredFile {
   readonly name: string;
   readonly text: string;
-  /** As mapped by hand; null while VoxSoft guesses. */
+  /** Columns as mapped by hand; null while VoxSoft guesses. */
   readonly columns: readonly ColumnMap[] | null;
   readonly select: string | null;
 }

@@ -1,4 +1,4 @@
-// From what was chosen in the pane to the calibration that is asked of VoxSoft.
+// Conversion of the pane's choices to the calibration command.
 import { siUnit } from "../../controls/kinds";
 import type { CalibrateSpec, FitRange, MaterialCard, MeasuredEvent } from "../../protocol";
 import { controlOf, helpOfKeys, resolve, type Schema } from "../design/fields/schema";
@@ -84,7 +84,7 @@ export function calibrateSpec(
   };
 }
 
-/** What a design says of each constant of a model, for tips. */
+/** Descriptions in a design of each constant of a model, for tips. */
 export function helpOfModel(root: Schema, model: string): Readonly<Record<string, string>> {
   const map = resolve(root, root.properties?.materials ?? {}).additionalProperties;
   const control = typeof map === "object" ? controlOf(root, map) : null;

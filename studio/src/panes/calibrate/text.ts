@@ -1,4 +1,4 @@
-// What a calibration shows, as tables for a spreadsheet: SI numbers, their units in the heads.
+// Content of a calibration as tables for a spreadsheet: SI numbers, their units in the heads.
 import { tableText } from "../../controls/tableText";
 import type { GenerationEvent, StationError } from "../../protocol";
 

@@ -135,7 +135,7 @@ export default function DesignPane() {
   );
 }
 
-/** What is wrong with the text, in words; the fields below show it at their places. */
+/** Errors of the text, in words; the fields below show them at their places. */
 function Faults() {
   const diagnostics = useStudio((state) => state.document?.diagnostics ?? NO_DIAGNOSTICS);
   return (

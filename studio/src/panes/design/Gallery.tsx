@@ -6,7 +6,7 @@ import { useStudio } from "../../store/studio";
 import { openHere } from "./edits";
 import { EMPTY } from "./empty";
 
-// A sign for each shipped family: what it does under load, from the side.
+// A sign for each shipped family: its deformation under load, from the side.
 const SKETCHES: Readonly<Record<string, string>> = {
   empty: "M28 14v20M18 24h20M8 8h6M8 8v6M48 8h-6m6 0v6M8 40h6m-6 0v-6m40 6h-6m6 0v-6",
   beam: "M6 8v32M6 14h20c12 0 20 6 24 16M6 22h18c9 0 15 5 18 13",

@@ -1,4 +1,4 @@
-// What a study strives for and what it must keep: metrics at probes.
+// Goals of a study and its bounds: metrics at probes.
 import { Select } from "../../controls/Choice";
 import { formatKind, readWritten } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
@@ -20,7 +20,7 @@ const AXES = [
   { value: "z", label: "z" },
 ];
 
-/** The fields that every metric has: which one, where, along what. */
+/** The fields that every metric has: its name, its place, its axis. */
 function MetricFields(props: {
   metric: string;
   value: Table;
@@ -110,7 +110,7 @@ function MetricFields(props: {
   );
 }
 
-/** What may be touched: objects by their names, and bodies. */
+/** Things in contact: objects by their names, and bodies. */
 function objectsOf(source: Table): string[] {
   const objects = Array.isArray(source.objects) ? source.objects : [];
   return [...objects.map((one) => String((one as Table).name ?? "")), ...bodyNames(source)];
@@ -135,7 +135,7 @@ function withCurrent(options: { value: string; label: string }[], current: strin
     : [{ value: current, label: current || "choose…" }, ...options];
 }
 
-/** What a goal needs when its metric changes: a probe where there must be one, and no keys that the
+/** Keys of a goal when its metric changes: a probe where there must be one, and no keys that the
  * metric would refuse. */
 export function fittingKeys(
   metric: Metric | undefined,
@@ -156,7 +156,7 @@ export function fittingKeys(
   }
   if (metric?.needs_cavity && value.cavity !== undefined) return { ...kept, cavity: value.cavity };
   if (metric?.needs_object) {
-    // Of a design without objects the body is meant, which needs no name.
+    // In a design without objects the body is meant, which needs no name.
     const named = object ?? objects[0];
     return named === undefined ? kept : { ...kept, object: named };
   }

@@ -34,7 +34,7 @@ export function editAll(changes: readonly Change[]): void {
 
 type Table = Readonly<Record<string, unknown>>;
 
-/** What makes a table another one: keys alone, so that a change of another key that is under way stays. */
+/** Changes that turn a table into another one: keys alone, so that a pending change of another key stays. */
 export function changesOf(path: Path, before: Table, after: Table): readonly Change[] {
   const gone = Object.keys(before).filter((key) => !(key in after));
   const other = Object.entries(after).filter(
@@ -95,7 +95,7 @@ export function placeText(path: Path): string {
     .join("");
 }
 
-/** What is wrong at a place or anywhere below it. */
+/** Problems at a place or anywhere below it. */
 export function problemsAt(diagnostics: readonly Diagnostic[], path: Path): readonly Diagnostic[] {
   const place = placeText(path);
   return diagnostics.filter(
@@ -104,7 +104,7 @@ export function problemsAt(diagnostics: readonly Diagnostic[], path: Path): read
   );
 }
 
-/** One sentence for a field: what is wrong, and what to try. */
+/** One sentence for a field: the problem, and a remedy. */
 export function problemText(diagnostics: readonly Diagnostic[]): string | undefined {
   const first = diagnostics[0];
   if (!first) return undefined;

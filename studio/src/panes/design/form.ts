@@ -1,4 +1,4 @@
-// What every field of the form needs to know of the document.
+// Context of the document that every field of the form needs.
 import { createContext, useContext } from "react";
 import type { Amounts } from "../../controls/formula";
 import type { Diagnostic } from "../../protocol";
@@ -13,7 +13,7 @@ export interface Form {
   readonly design: Readonly<Record<string, unknown>> | null;
   readonly diagnostics: readonly Diagnostic[];
   readonly names: Names;
-  /** What formulas may speak of. */
+  /** Parameters for formulas. */
   readonly amounts: Amounts;
   readonly materialTitles: Readonly<Record<string, string>>;
 }

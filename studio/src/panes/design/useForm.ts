@@ -9,7 +9,7 @@ import type { Form } from "./form";
 
 export const NO_DIAGNOSTICS: Form["diagnostics"] = [];
 
-/** What the form shows, or null while no text can be read as a table of values. */
+/** Content of the form, or null while no text can be read as a table of values. */
 export function useFormOfDocument(): Form | null {
   const hello = useStudio((state) => state.hello);
   const document = useStudio((state) => state.document);

@@ -41,7 +41,7 @@ async function savePicture(scale: number): Promise<void> {
   await recorder.savePicture(viewport(), scale);
 }
 
-/** Each way to take the result away, with what it is for. */
+/** Each way to take the result away, with its purpose. */
 export default function ExportPane() {
   const open = useStudio((state) => state.document !== null);
   const touches = useStudio((state) => (state.body?.not_live ?? "") !== "");

@@ -1,4 +1,4 @@
-// What can be taken away, and what each is for.
+// Formats of export, with the purpose of each.
 
 import { WRITTEN } from "../../protocol";
 
@@ -71,7 +71,7 @@ export function obstacle(
   return null;
 }
 
-/** What is asked of the server. */
+/** Request to the server. */
 export function request(format: Format, options: Options): Record<string, unknown> {
   return {
     format: format.id,

@@ -56,7 +56,7 @@ export function JobCard(props: { job: JobEvent }) {
           {live && (
             <Button
               icon
-              label="Stop; what is finished is kept"
+              label="Stop; finished work is kept"
               disabled={job.state === "stopping"}
               onClick={() => send({ t: "job_stop", id: job.id })}
             >

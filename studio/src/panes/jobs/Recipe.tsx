@@ -1,4 +1,4 @@
-// How a job is done again without the studio: as Python, or as a command line.
+// Ways to repeat a job without the studio: as Python, or as a command line.
 import { useEffect } from "react";
 import { Button } from "../../controls/Choice";
 import { copy } from "../../controls/clipboard";

@@ -1,5 +1,5 @@
 // The study or calibration of the address comes back after a reload and after a restart of the
-// server, and when a past one is chosen: what is not known here is asked for.
+// server, and when a past one is chosen: unknown jobs are asked for.
 import { usePage } from "../../store/page";
 import { onReady, send } from "../../store/session";
 import { useStudio } from "../../store/studio";

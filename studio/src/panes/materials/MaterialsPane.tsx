@@ -1,4 +1,4 @@
-// All materials that a part can have: what is known of them, and what makes a part of one.
+// All materials that a part can have: their data, and a button that makes a part of one.
 import { useDeferredValue, useEffect, useMemo, useState } from "react";
 import { Button, Empty, Select } from "../../controls/Choice";
 import type { MaterialFacts } from "../../protocol";

@@ -4,7 +4,7 @@ import { toast, useStudio } from "../../store/studio";
 import { editAll } from "../design/edits";
 import { given, partsOf, refusal } from "./use";
 
-/** Make a part of a material, and say so; what cannot be is said instead. */
+/** Make a part of a material, and say so; a failure is reported instead. */
 export function giveMaterial(one: MaterialFacts, index: number): void {
   const document = useStudio.getState().document;
   const source = document?.source ?? {};

@@ -25,7 +25,7 @@ const KEYS: Readonly<Record<Exclude<Sort, "name">, (one: MaterialFacts) => numbe
   tested: (one) => one.tested_to,
 };
 
-/** What is listed: the design's own first, then in order; what is not stated comes last. */
+/** Listed materials: the design's own first, then in order; unstated values come last. */
 export function listed(
   materials: readonly MaterialFacts[],
   words: string,

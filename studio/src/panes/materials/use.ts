@@ -1,11 +1,11 @@
-// How a part gets a material, and how a card becomes a material of the design.
+// Giving a material to a part, and making a material of the design from a card.
 import type { MaterialFacts } from "../../protocol";
 import type { Change } from "../design/edits";
 import { freeName } from "../design/fields/starters";
 
 type Table = Readonly<Record<string, unknown>>;
 
-/** What a material that is dragged is called among the data of the drag. */
+/** Name of a dragged material among the data of the drag. */
 export const DRAGGED = "application/x-voxsoft-material";
 
 /** A part of the design, as far as its material goes. */
@@ -31,7 +31,7 @@ function nameOf(part: Table, index: number): string {
   return typeof part.shape === "string" ? part.shape : `part ${index + 1}`;
 }
 
-/** Whether a part is made of a material, by its name or by the card that this stands for. */
+/** Check if a part is made of a material, by its name or by the card that this stands for. */
 export function isUsed(one: MaterialFacts, part: PartChoice): boolean {
   if (typeof part.material !== "string") return false;
   if (part.material === one.name || (one.same_as !== "" && part.material === one.same_as))
@@ -51,7 +51,7 @@ export function refusal(one: MaterialFacts, part: PartChoice, source: Table): st
   return null;
 }
 
-/** What a material beside the others makes the design mix, in words; empty where it does not. */
+/** Mixture that a material makes of the design, in words; empty where there is none. */
 export function mixes(
   one: MaterialFacts,
   part: PartChoice,

@@ -205,7 +205,7 @@ function Misfits(props: { measured: Measured; path: PathEvent; column: PathColum
   );
 }
 
-/** What is asked of the design comes first; without it, the displacement that changes most. */
+/** A number that the design asks for comes first; without it, the displacement that changes most. */
 function mostTelling(path: PathEvent): PathColumn | undefined {
   const first = path.columns[0];
   const moved = path.columns.filter((one) => /\.[xyz]$/.test(one.name));

@@ -1,4 +1,4 @@
-// What of a design can change along a path, and the range of a path as text.
+// Values of a design that can change along a path, and the range of a path as text.
 
 import { siUnit, writtenUnit } from "../../controls/kinds";
 import { factorOf } from "../../controls/units";
@@ -6,13 +6,13 @@ import type { Parameter } from "../../protocol";
 
 /** A value of the design that a path may change. */
 export interface Changeable {
-  /** As the design file names it. */
+  /** Key in the design file. */
   readonly key: string;
   readonly label: string;
   readonly kind: string;
   /** In SI units. */
   readonly value: number;
-  /** Where a path begins unless it is said otherwise, in SI units. */
+  /** Default start of a path, in SI units. */
   readonly start: number;
 }
 
@@ -60,7 +60,7 @@ function numbers(value: unknown, key: string, label: string, kind: string): Chan
   );
 }
 
-/** What a path may change: loads, tendons, activations, moved clamps, and parameters of them. */
+/** Values that a path may change: loads, tendons, activations, moved clamps, and parameters of them. */
 export function changeable(design: Table, parameters: readonly Parameter[]): Changeable[] {
   const found: Changeable[] = [];
   tables(design.loads).forEach((load, i) => {

@@ -11,7 +11,7 @@ export interface Measured {
   readonly assumed: boolean;
 }
 
-/** How far a computed curve is from a measured one, where both are. */
+/** Difference between a computed curve and a measured one, where both are known. */
 export interface Misfit {
   readonly rms: number;
   readonly largest: number;
@@ -32,7 +32,7 @@ function factorFor(header: string | undefined, kind: string): number | { problem
   return { problem: `“${header}” is no ${kind}: name the column as in angle_deg or angle (deg)` };
 }
 
-/** Read two columns: what changed along the path, and a number of the given kind over it. */
+/** Read two columns: the value changed along the path, and a number of the given kind over it. */
 export function readMeasured(
   text: string,
   name: string,
@@ -40,7 +40,7 @@ export function readMeasured(
   yKind: string,
 ): Measured | { readonly problem: string } {
   const lines = text.split(/\r?\n/).filter((line) => line.trim() && !line.startsWith("#"));
-  // Where a semicolon or a tab parts the columns, a comma is that of decimals.
+  // If a semicolon or a tab separates the columns, a comma is that of decimals.
   const apart = lines.some((line) => /[;\t]/.test(line));
   const cells = lines.map((line) =>
     line.split(apart ? /[;\t]/ : ",").map((cell) => {

@@ -31,7 +31,7 @@ function useKinds(): (name: string) => string {
   }, [metrics, parameters, trials]);
 }
 
-/** Two runs or designs side by side: what differs between them, and what came of it. */
+/** Two runs or designs side by side: their differences, and their results. */
 export default function ComparePane() {
   const compared = useStudio((state) => state.compared);
   const kindOf = useKinds();

@@ -39,7 +39,7 @@ const TONES: Readonly<Record<string, string>> = {
   diverged: "bad",
 };
 
-/** Show what a folder holds: its design in the view, its study or calibration in the plots. */
+/** Show the content of a folder: its design in the view, its study or calibration in the plots. */
 function open(row: RunRow, go: boolean): void {
   openHere("run", row.id);
   if (row.kind === "study" || row.kind === "calibrate") usePage.setState({ job: row.id });

@@ -1,4 +1,4 @@
-// What two designs side by side come to, as rows of a table.
+// Results of two designs side by side, as rows of a table.
 import { describeValue, formatKind } from "../../controls/kinds";
 import { factorOf, formatNumber, unitText } from "../../controls/units";
 import type { ComparedEvent, Side } from "../../protocol";
@@ -54,13 +54,13 @@ export function percentChange(a: number, b: number): number {
   return (100 * (b - a)) / Math.abs(a);
 }
 
-/** What a side is called: a run by its name, a trial by its number. */
+/** Name of a side: a run by its name, a trial by its number. */
 export function sideTitle(side: Side): string {
   const slash = side.id.lastIndexOf("/");
   return slash < 0 ? side.name : `Design ${side.id.slice(slash + 1)}`;
 }
 
-/** What the changes of a table are changes of. */
+/** Title of the table of changes. */
 export function changeTitle(a: Side, b: Side): string {
   return `${sideTitle(b)} minus ${sideTitle(a)}, in % of ${sideTitle(a)}`;
 }

@@ -1,7 +1,7 @@
 // Searching and naming rows of the list of runs.
 import type { RunRow } from "../../protocol";
 
-/** Whether all words of a search stand somewhere in a row. */
+/** Check if all words of a search stand somewhere in a row. */
 export function matchesSearch(row: RunRow, search: string): boolean {
   const text = [row.name, row.kind, row.status, row.best, row.message].join(" ").toLowerCase();
   return search
@@ -17,7 +17,7 @@ const STEPS: readonly (readonly [seconds: number, word: string])[] = [
   [2_592_000, "day"],
 ];
 
-/** How long ago something was, in words; the date where it is more than a month. */
+/** Time since an instant, in words; the date where it is more than a month. */
 export function ago(when: string, now: number): string {
   const then = Date.parse(when);
   if (Number.isNaN(then)) return "–";

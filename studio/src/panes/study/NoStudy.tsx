@@ -2,7 +2,7 @@ import { Button, Empty } from "../../controls/Choice";
 import { showPane } from "../../shell/actions";
 import { setMode } from "../../store/page";
 
-/** What the plots of a study say while there is none. */
+/** Text in the plots of a study while there is none. */
 export function NoStudy(props: { what: string }) {
   return (
     <Empty title="No study yet">

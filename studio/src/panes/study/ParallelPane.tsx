@@ -1,4 +1,4 @@
-// Parallel coordinates: one line for each design; drag along an axis to keep what lies there.
+// Parallel coordinates: one line for each design; drag along an axis to keep the designs there.
 import { memo, type PointerEvent as ReactPointerEvent, useMemo, useRef } from "react";
 import { Button } from "../../controls/Choice";
 import { useSize } from "./chart/useSize";

@@ -15,7 +15,7 @@ export interface Coloring {
 
 const FAILED = "var(--bad)";
 
-/** How trials are colored by an axis; the first objective where none is given. */
+/** Colors of trials by an axis; the first objective where none is given. */
 export function coloring(
   study: TrialsEvent,
   axes: readonly Axis[],

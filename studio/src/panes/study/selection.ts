@@ -1,4 +1,4 @@
-// What is pointed at, marked and brushed; all plots of a study show the same.
+// Pointed, marked and brushed trials; all plots of a study show the same.
 
 import { create } from "zustand";
 import { showPane } from "../../shell/actions";
@@ -22,7 +22,7 @@ const NOTHING = { hovered: null, pinned: [], opened: null, selected: null, brush
 
 export const useSelection = create<Selection>(() => ({ job: null, ...NOTHING }));
 
-/** Forget what was marked in another study. */
+/** Forget the marks of another study. */
 export function attend(job: string | null): void {
   if (useSelection.getState().job !== job) useSelection.setState({ job, ...NOTHING });
 }

@@ -1,4 +1,4 @@
-// From what was chosen in the pane to the study that is asked of VoxSoft.
+// Conversion of the pane's choices to the study command.
 import type { Parameter, Sampler, SpaceRange, StudySpec } from "../../protocol";
 import type { StudyDraft, Sweep } from "./draft";
 
@@ -45,13 +45,13 @@ function problemOf(sweep: Sweep): string | null {
   return null;
 }
 
-/** How many values a range has by its steps; null where it has none. */
+/** Number of values of a range by its steps; null where it has none. */
 export function countOf(sweep: Sweep): number | null {
   if (sweep.step === null || !(sweep.step > 0) || !(sweep.high > sweep.low)) return null;
   return Math.floor((sweep.high - sweep.low) / sweep.step + 1e-9) + 1;
 }
 
-/** How many designs a grid has; null where a range has no step. */
+/** Number of designs of a grid; null where a range has no step. */
 export function gridSize(chosen: readonly Choice[]): number | null {
   let size = 1;
   for (const { sweep } of chosen) {

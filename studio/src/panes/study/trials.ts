@@ -1,4 +1,4 @@
-// What the plots and the table of a study need of its trials.
+// Data of a study's trials for its plots and its table.
 
 import { describeValue, formatKind, siUnit } from "../../controls/kinds";
 import { tableText } from "../../controls/tableText";
@@ -81,7 +81,7 @@ export function rangeOf(values: readonly number[]): [number, number] {
   return [low, high];
 }
 
-/** Whether `a` is at least as good as `b` in all objectives and better in one. */
+/** Check if `a` is at least as good as `b` in all objectives and better in one. */
 function dominates(a: TrialEvent, b: TrialEvent, study: TrialsEvent): boolean {
   let better = false;
   for (const [i, name] of study.objectives.entries()) {
@@ -107,7 +107,7 @@ export function frontOf(study: TrialsEvent): Set<number> {
   return new Set(front.map((trial) => trial.index));
 }
 
-/** Trials as a league: those that no other beats, the others that count, then what may not or failed. */
+/** Trials as a league: those that no other beats, the others that count, then infeasible or failed ones. */
 export function bestFirst(study: TrialsEvent, front: ReadonlySet<number>): TrialEvent[] {
   const name = study.objectives[0];
   const sign = study.directions[0] === "maximize" ? -1 : 1;
@@ -138,7 +138,7 @@ export function bestSoFar(study: TrialsEvent, objective: number): { x: number; y
 
 export type Brushes = Readonly<Record<string, readonly [number, number]>>;
 
-/** Whether a trial lies within all stretches that are brushed. */
+/** Check if a trial lies within all stretches that are brushed. */
 export function within(trial: TrialEvent, axes: readonly Axis[], brushes: Brushes): boolean {
   return axes.every((axis) => {
     const brush = brushes[axis.key];
@@ -148,7 +148,7 @@ export function within(trial: TrialEvent, axes: readonly Axis[], brushes: Brushe
   });
 }
 
-/** How many trials meet all requirements, of all that there are; failed ones meet none. */
+/** Number of trials that meet all requirements, of all that there are; failed ones meet none. */
 export function remaining(
   trials: readonly TrialEvent[],
   axes: readonly Axis[],
@@ -161,7 +161,7 @@ export function remaining(
 const COMPARISON = /^([\w-]+)\s*(<=|>=|<|>|=)\s*(.+)$/;
 
 /**
- * Whether a trial is meant by a filter such as `ok`, `diverged`, `#12` or `wall > 8 mm`.
+ * Check if a trial is meant by a filter such as `ok`, `diverged`, `#12` or `wall > 8 mm`.
  *
  * Several conditions stand with commas between; `read` turns a text with a unit into an SI value.
  */

@@ -34,7 +34,7 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
   const [draft, setDraft] = useState<readonly Point[] | null>(null);
   const [chosen, choose] = useState<number | null>(null);
   const dragged = useRef<number | null>(null);
-  /** Whether arrow keys moved a point that the text does not have yet. */
+  /** True if arrow keys moved a point that the text does not have yet. */
   const nudged = useRef(false);
   const points = draft ?? kept;
   // The text that was asked for has come, or another one.
@@ -125,7 +125,7 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
         role="group"
         aria-label={`${line.title} over time`}
         onDoubleClick={(event) => {
-          // Where the round time has a point already, one beside it was meant.
+          // If the round time has a point already, one beside it was meant.
           const places = [event.shiftKey, true].map((fine) =>
             place(event, event.currentTarget, fine),
           );
@@ -200,12 +200,12 @@ export function setInType(amount: string): string {
   return amount.replaceAll("^2", "²").replaceAll("^3", "³");
 }
 
-/** What follows it, and the text of what is no list of points. */
+/** Entries that use it, and the text of a history that is no list of points. */
 function about(line: HistoryLine): string {
   const named = line.path.at(-2) === "histories";
   const users = line.used_by.map(({ title, amount }) => {
     const one = amount && `1 is ${setInType(amount)}`;
-    // Of a body it says which one.
+    // The history of a body needs its name.
     const whose = named || line.path[0] === "bodies";
     return whose ? [title, one && `(${one})`].filter(Boolean).join(" ") : one;
   });

@@ -1,4 +1,4 @@
-// The points of a history, and what becomes of its text when they are changed.
+// The points of a history, and its text after they are changed.
 import { writeValue } from "../../controls/kinds";
 import { factorOf } from "../../controls/units";
 import { unitOf } from "../../controls/unitTable";
@@ -10,7 +10,7 @@ import { ticks } from "../study/chart/ticks";
 /** Points are dragged one by one up to this many; longer lists are changed in the text. */
 export const MOST_POINTS = 200;
 
-/** A point: its instant in s and its factor, each with what the text has for it. */
+/** A point: its instant in s and its factor, each with its text. */
 export interface Point {
   readonly time: number;
   readonly factor: number;
@@ -20,7 +20,7 @@ export interface Point {
   readonly units: { readonly time: string; readonly factor: string };
 }
 
-/** How near two points may be: a round part of the time that all of them take, s. */
+/** Least gap between two points: a round part of the time that all of them take, s. */
 function gapOf(points: readonly Point[]): number {
   const span = Math.max(points.at(-1)!.time - points[0]!.time, 1e-3);
   return 10 ** Math.floor(Math.log10(span)) / 1e3;
@@ -54,7 +54,7 @@ export function isFormula(written: unknown): boolean {
   return typeof written === "string" && written.trimStart().startsWith("=");
 }
 
-/** How far a point can go: never past its neighbors, nor where what follows the history cannot. */
+/** Range of a point: never past its neighbors, nor outside of the values that the user of the history can have. */
 export function roomOf(points: readonly Point[], index: number, line: HistoryLine): Room {
   const point = points[index]!;
   const gap = gapOf(points);
@@ -67,7 +67,7 @@ export function roomOf(points: readonly Point[], index: number, line: HistoryLin
     ],
     factor: [line.low ?? Number.NEGATIVE_INFINITY, line.high ?? Number.POSITIVE_INFINITY],
   };
-  // What a formula says, and the ends of what repeats, move with something else.
+  // Formulas, and the ends of a repeated history, move with something else.
   const [first, last] = [index === 0, index === points.length - 1];
   const tied = line.repeat > 1 && (first || last);
   const other = points[first ? points.length - 1 : 0]!;
@@ -84,7 +84,7 @@ export const round = (value: number): number => Number(value.toPrecision(12));
 const within = (value: number, [low, high]: readonly [number, number]) =>
   Math.min(Math.max(value, low), high);
 
-/** Move a point as near to a place as it can go; of what repeats both ends keep one factor. */
+/** Move a point as near to a place as it can go; both ends of a repeated history keep one factor. */
 export function moved(
   points: readonly Point[],
   index: number,
@@ -147,7 +147,7 @@ export function removed(
   return tied(points.toSpliced(index, 1), line, index);
 }
 
-/** Of what repeats the end is the beginning: the end that is new takes the factor of the other. */
+/** The end of a repeated history is its beginning: a new end takes the factor of the other. */
 function tied(points: readonly Point[], line: HistoryLine, at: number): readonly Point[] {
   const last = points.length - 1;
   if (line.repeat <= 1 || (at > 0 && at < last)) return points;
@@ -192,7 +192,7 @@ export function whole(
   repeat: number,
 ): [number[], number[]] {
   const long = (times.at(-1) ?? 0) - (times[0] ?? 0);
-  // What repeats more often than can be seen is drawn as often as can be.
+  // A history that repeats more often than can be seen is drawn as often as can be.
   const cycles = Math.min(repeat, Math.max(1, Math.floor(4000 / Math.max(times.length, 1))));
   const all: [number[], number[]] = [[...times], [...factors]];
   for (let cycle = 1; cycle < cycles; cycle++) {

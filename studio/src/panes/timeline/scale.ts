@@ -1,4 +1,4 @@
-// Where times and factors stand in the rows of the timeline, in pixels.
+// Places of times and factors in the rows of the timeline, in pixels.
 
 export interface Axis {
   readonly width: number;

@@ -1,6 +1,6 @@
 import type { StatEvent } from "../../protocol";
 
-/** Whether the body is drawn as it was built: no time has run and nothing was solved. */
+/** Check if the body is drawn as it was built: no time has run and nothing was solved. */
 export function isAsBuilt(stat: Pick<StatEvent, "state" | "time"> | null): boolean {
   if (stat === null) return true;
   const moved: readonly StatEvent["state"][] = ["at-rest", "playing", "solving", "diverged"];

@@ -200,7 +200,7 @@ export class BodyMesh {
     return { lut: this.lut, frame: uFrameRange!.value, range: uRange!.value };
   }
 
-  /** Whether a frame is one of this body in this kind of view. */
+  /** Check if a frame is one of this body in this kind of view. */
   suits(frame: Frame): boolean {
     return (
       frame.topology === this.topology.id && frame.packed.length === this.attribute.array.length
@@ -220,7 +220,7 @@ export class BodyMesh {
     (this.shared.uRange!.value as Vector2).set(low, high);
   }
 
-  /** Height of the picture in device pixels, halved: what the fading of edges measures by. */
+  /** Height of the picture in device pixels, halved: the measure for the fading of edges. */
   setPixels(half_height: number): void {
     this.edges.material.uniforms.uPixels!.value = half_height;
     this.ghost.material.uniforms.uPixels!.value = half_height;
@@ -244,7 +244,7 @@ export class BodyMesh {
       const cavity = (owner & CAVITY) !== 0;
       const { uniforms } = mesh.material;
       const through = view.cavities && !cavity;
-      // Where the field is the same everywhere, as before the first step, a map tells nothing.
+      // If the field is the same everywhere, as before the first step, a map shows nothing.
       const flat = !this.frame || this.frame.max <= this.frame.min;
       const by_field = view.coloring === "field" && !flat && !(view.cavities && cavity);
       uniforms.uByField!.value = by_field ? 1 : 0;
@@ -295,7 +295,7 @@ export class BodyMesh {
     return this.bounds;
   }
 
-  /** Where a vertex is drawn. */
+  /** Position where a vertex is drawn. */
   place(vertex: number, exaggeration: number, out = new Vector3()): Vector3 {
     const { rest } = this.topology;
     out.set(rest[3 * vertex]!, rest[3 * vertex + 1]!, rest[3 * vertex + 2]!);

@@ -5,7 +5,7 @@ import { type Frame, type Topology, valueIn } from "../../engine/frames";
 
 /** The part of the area whose values the colors tell apart. */
 export const CLIP = 0.99;
-/** How far beyond it a value must lie to be clipped: this part of the range of the others. */
+/** Distance beyond it at which a value is clipped: this part of the range of the others. */
 const FAR = 0.1;
 const LEVELS = 65536;
 /** Displacements and speed (fields of crates/solid/src/fields) have no sharp corners: none is clipped. */

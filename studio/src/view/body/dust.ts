@@ -3,7 +3,7 @@ import { cleaned } from "../../controls/units";
 import type { Frame } from "../../engine/frames";
 
 /**
- * A frame whose field is zero everywhere if all its values are what rounding leaves of zero. One value
+ * A frame whose field is zero everywhere if all its values are rounding errors of zero. One value
  * above that keeps all as they are: small values beside large ones are true ones.
  */
 export function withoutDust(frame: Frame, unit: string | undefined): Frame {

@@ -30,7 +30,7 @@ export function turned(direction: Vector3, axis: Vector3, angle: number): Vector
   return direction.clone().applyAxisAngle(axis, angle);
 }
 
-/** Where a box begins and ends along a direction. */
+/** Begin and end of a box along a direction. */
 export function extent(box: Box3, along: Vector3): [number, number] {
   const center = box.getCenter(new Vector3()).dot(along);
   const size = box.getSize(new Vector3());
@@ -62,10 +62,10 @@ export class Section {
   readonly group = new Group();
   readonly plane: IUniform<Vector4> = { value: new Vector4(0, 0, 1, 0) };
   readonly on: IUniform<number> = { value: 0 };
-  /** Of the plane as it is drawn: its middle, and the direction to the side that is cut away. */
+  /** Middle of the plane as it is drawn, and the direction to the side that is cut away. */
   readonly middle = new Vector3();
   readonly normal = new Vector3(0, 0, 1);
-  /** Where it is, as a share of the body along `normal`. */
+  /** Position, as a share of the body along `normal`. */
   share = 0.5;
   private readonly box = new Box3();
   private readonly cap: Mesh<PlaneGeometry, ShaderMaterial>;
@@ -110,7 +110,7 @@ export class Section {
     this.outline.material.color = themeColor("--accent");
   }
 
-  /** Whether a point is on the side that is shown. */
+  /** Check if a point is on the side that is shown. */
   keeps(point: Vector3): boolean {
     const { x, y, z, w } = this.plane.value;
     return this.on.value === 0 || x * point.x + y * point.y + z * point.z <= w;

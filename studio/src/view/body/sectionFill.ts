@@ -1,4 +1,4 @@
-// What a section shows of the inside: the cut through the voxels, colored by the field as the surface is.
+// Inside of the body in a section: the cut through the voxels, colored by the field as the surface is.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -35,7 +35,7 @@ export class SectionFill {
           uFrameRange: { value: new Vector2(0, 1) },
           uRange: { value: new Vector2(0, 1) },
         },
-        // Only where the surface says that there is material, and in front of the hatching that fills what is left.
+        // Drawn only where the surface marks material, and in front of the hatching that fills the rest.
         stencilWrite: true,
         stencilRef: 0,
         stencilFunc: NotEqualStencilFunc,
@@ -52,16 +52,16 @@ export class SectionFill {
     this.mesh.visible = false;
   }
 
-  /** How many triangles the cut has, as it is drawn. */
+  /** Number of drawn triangles of the cut. */
   get triangles(): number {
     const count = this.mesh.geometry.getAttribute("position")?.count ?? 0;
     return this.mesh.visible ? count / 3 : 0;
   }
 
-  /** Cut the voxels of a body as it is drawn; none hides what was cut. */
+  /** Cut the voxels of a body as it is drawn; no body hides the cut. */
   update(body: BodyMesh | null, plane: Vector4, exaggeration: number): void {
     const shown = body?.frame;
-    // Where the field is the same everywhere, a map tells nothing.
+    // If the field is the same everywhere, a map shows nothing.
     this.mesh.visible =
       body !== null && body.topology.voxels.length > 0 && !!shown && shown.max > shown.min;
     if (!this.mesh.visible || !body) return;
@@ -84,7 +84,7 @@ export class SectionFill {
   }
 }
 
-/** Where the points of a body are drawn, and the value of the field at each as a part of its range. */
+/** Positions where the points of a body are drawn, and the value of the field at each as a part of its range. */
 function placed(
   body: BodyMesh,
   exaggeration: number,

@@ -1,10 +1,10 @@
-// How the smooth shape follows the voxels: each of its points is moved as the vertices of the
+// Motion of the smooth shape with the voxels: each of its points is moved as the vertices of the
 // surface near by are, the nearer the more, and so are its values. Vertices that face another way
 // are of another side: of the wall across a slit, or of the other side of a thin wall.
 import { nearest } from "../hands/target";
 
 /**
- * How far vertices reach, in voxels. The smooth shape is never a voxel away from the surface; less
+ * Reach of vertices, in voxels. The smooth shape is never a voxel away from the surface; less
  * than this shows the stairs of coarse voxels, and more lets the walls of a slit pull each other.
  */
 const REACH = 1.75;
@@ -34,7 +34,7 @@ export function normalsOf(points: Float32Array, triangles: Uint32Array): Float32
 }
 
 export class Skin {
-  /** Of point i the vertices and shares `starts[i]` to `starts[i + 1]`. */
+  /** Vertices and shares of point i are at `starts[i]` to `starts[i + 1]`. */
   private readonly starts: Uint32Array;
   private readonly vertices: number[] = [];
   private readonly shares: number[] = [];

@@ -1,4 +1,4 @@
-// Where a plane cuts voxels: the polygons of the cut, with the field at their corners.
+// Cut of a plane through voxels: the polygons of the cut, with the field at their corners.
 import type { Vector4 } from "three";
 
 /** A voxel as six tetrahedra around its diagonal from corner 0 to corner 7. */
@@ -21,7 +21,7 @@ export interface Slice {
  * Cut voxels by the plane where `x a + y b + z c = w`.
  *
  * `corners` are eight of `positions` (x, y, z each) for each voxel, `values` one for each position. Within a
- * tetrahedron both are linear, so that what is linear in space is cut exactly.
+ * tetrahedron both are linear, so that a field linear in space is cut exactly.
  */
 export function slice(
   corners: Uint32Array,

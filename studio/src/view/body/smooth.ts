@@ -72,7 +72,7 @@ export class SmoothMesh {
   /** x, y, z of each vertex unloaded, m. */
   readonly vertices: Float32Array;
   readonly triangles: Uint32Array;
-  /** The same as they are drawn. */
+  /** Points as they are drawn. */
   readonly drawn: Float32Array;
   private readonly field: Float32Array;
   private skin: Skin | null = null;

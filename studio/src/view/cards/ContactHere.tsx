@@ -1,4 +1,4 @@
-// What the body touches at the face that was pressed, and what is bonded to it there.
+// Contacts of the body at the face that was pressed, and bonds there.
 import { bondOffers, type Offer, touchOffers } from "../../panes/design/here/touchHere";
 import type { BodyEvent, DocumentEvent } from "../../protocol";
 import { setView } from "../../store/view";

@@ -1,4 +1,4 @@
-// What can be done at the face that was pressed.
+// Actions at the face that was pressed.
 import { type ReactNode, useState } from "react";
 import { Button, Select } from "../../controls/Choice";
 import { formatNumber } from "../../controls/units";
@@ -92,7 +92,7 @@ function mirrorVerb(face: Face, document: DocumentEvent, body: BodyEvent): Verb[
   ];
 }
 
-/** Something to grip, in the middle between the face and what is opposite, or in front of it. */
+/** Something to grip, in the middle between the face and the opposite one, or in front of it. */
 function Gripping(props: { face: Face; document: DocumentEvent; body: BodyEvent }) {
   const { face, document, body } = props;
   const { source, design } = document;

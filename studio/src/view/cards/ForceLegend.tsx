@@ -8,7 +8,7 @@ const HOLDS = [
   ["slips", "slips"],
 ] as const;
 
-/** What the arrows of contact forces mean: how long a newton is, and their colors. */
+/** Legend of the arrows of contact forces: the length of a newton, and their colors. */
 export function ForceLegend() {
   const scale = useShown((shown) => shown.forceScale);
   const on = useView((view) => view.forces);

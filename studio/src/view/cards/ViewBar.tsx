@@ -29,7 +29,7 @@ export function ViewBar(props: { view: Viewport }) {
   const [open, setOpen] = useState<"more" | "film" | null>(null);
   const menus = useRef<HTMLDivElement>(null);
   useAway(menus, open !== null, (by) => {
-    // While a film is made one plays with the body; what stops it stays at hand.
+    // While a film is made one plays with the body; the button that stops it stays at hand.
     if (by === "escape" || !recording) setOpen(null);
   });
   const appearances = APPEARANCES.map((one) => ({

@@ -1,4 +1,4 @@
-// What is behind the body: sky and ground. While the camera stands still they are drawn once
+// Backdrop of the body: sky and ground. While the camera stands still they are drawn once
 // and kept, as without a graphics card they would cost more than the body in front of them.
 import {
   type Camera,
@@ -36,10 +36,10 @@ export class Backdrop {
     this.theme += 1;
   }
 
-  /** Draw onto what the renderer draws on; it covers every pixel. */
+  /** Draw onto the target of the renderer; it covers every pixel. */
   paint(renderer: WebGLRenderer, camera: Camera): void {
     const key = this.key(renderer, camera);
-    // A camera that moves makes another picture each time: kept is what is asked for twice.
+    // A camera that moves makes another picture each time: a picture asked for twice is kept.
     if (key !== this.keptKey && key === this.lastKey) this.keep(renderer, camera, key);
     this.lastKey = key;
     renderer.render(key === this.keptKey ? this.copy.scene : this.scene, camera);

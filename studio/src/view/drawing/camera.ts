@@ -36,7 +36,7 @@ export class CameraRig {
   private height = 1;
   private reach = 0.1;
   flat = false;
-  /** Whether it was placed by hand since it last was fitted to a body. */
+  /** True if it was placed by hand since it last was fitted to a body. */
   steered = false;
   /** Grows whenever the camera is placed anew. */
   places = 0;
@@ -76,7 +76,7 @@ export class CameraRig {
     this.place();
   }
 
-  /** How far the scene reaches, so that nothing of it is clipped away. */
+  /** Set the reach of the scene, so that nothing of it is clipped away. */
   setReach(reach: number): void {
     this.reach = reach;
     this.place();
@@ -100,7 +100,7 @@ export class CameraRig {
     this.place();
   }
 
-  /** Zoom so that what is under the pointer (in -1 to 1) stays under it. */
+  /** Zoom so that the point under the pointer (in -1 to 1) stays under it. */
   zoom(factor: number, x: number, y: number): void {
     this.steered = true;
     this.flight = null;
@@ -149,7 +149,7 @@ export class CameraRig {
     } else this.fly(to);
   }
 
-  /** Whether all of a box is in the picture. */
+  /** Check if all of a box is in the picture. */
   holds(box: Box3): boolean {
     const corner = new Vector3();
     for (let i = 0; i < 8; i++) {

@@ -1,4 +1,4 @@
-// Draws the scene in front of its backdrop, whole or with less of what takes time.
+// Draws the scene in front of its backdrop, whole or without slow parts.
 import {
   type Camera,
   LinearSRGBColorSpace,

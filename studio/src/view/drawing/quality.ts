@@ -1,8 +1,8 @@
-// How long the graphics take for a picture decides what moving pictures leave out. A picture
+// Time that the graphics take for a picture decides the details left out of moving pictures. A picture
 // that stands still is always whole, so a machine with a graphics card never sees any of this.
 
 export interface Quality {
-  /** Whether edges of surfaces are smoothed (four samples a pixel). */
+  /** True if edges of surfaces are smoothed (four samples a pixel). */
   readonly smooth: boolean;
   /** Pixels along a side, as a share of those of the screen. */
   readonly share: number;
@@ -26,12 +26,12 @@ export class Ladder {
   private rung = 0;
   private times: number[] = [];
 
-  /** What a moving picture is drawn with. */
+  /** Quality of a moving picture. */
   get quality(): Quality {
     return RUNGS[this.rung] as Quality;
   }
 
-  /** Whether whole pictures take too long to move: other drawing should hold back as well. */
+  /** True if whole pictures take too long to move: other drawing should hold back as well. */
   get slow(): boolean {
     return this.rung > 0;
   }
@@ -49,5 +49,5 @@ export class Ladder {
   }
 }
 
-/** That of this page: all of it shares one way to the screen. */
+/** Ladder of this page: all of it shares one way to the screen. */
 export const ladder = new Ladder();

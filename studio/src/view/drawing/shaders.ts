@@ -15,7 +15,7 @@ export const COLORED = /* glsl */ `
 uniform sampler2D uLut;
 uniform vec2 uFrameRange;
 uniform vec2 uRange;
-// Where a value stands in the range of colors: 0 to 1, or beyond.
+// Place of a value in the range of colors: 0 to 1, or beyond.
 float shareOf(float field) {
   float value = uFrameRange.x + (uFrameRange.y - uFrameRange.x) * field;
   return (value - uRange.x) / max(uRange.y - uRange.x, 1e-30);

@@ -1,4 +1,4 @@
-// The flat face of the unloaded body that was pressed: its triangles, its plane, what else lies there.
+// The flat face of the unloaded body that was pressed: its triangles, its plane, its surroundings.
 import { Ray, Vector3 } from "three";
 import type { Topology } from "../../engine/frames";
 import { CAVITY } from "../../protocol";
@@ -24,15 +24,15 @@ export interface Face {
   readonly normal: Triple;
   /** The axis that it lies across; null where it is oblique. */
   readonly axis: Axis | null;
-  /** Whether its plane holds vertices of the surface that are not its own. */
+  /** True if its plane holds vertices of the surface that are not its own. */
   readonly shared: boolean;
   /** The cavity that it bounds; null on the outside. */
   readonly cavity: number | null;
   /** The middle of the triangle that was pressed, m. */
   readonly point: Triple;
-  /** How far it is from there to what lies straight opposite, m; null where nothing does. */
+  /** Distance from there to the surface straight opposite, m; null where there is none. */
   readonly opposite: number | null;
-  /** Where a plate lies on it; null where it is oblique. */
+  /** Seat of a plate on it; null where it is oblique. */
   readonly seat: Seat | null;
   readonly voxelSize: number;
 }
@@ -97,7 +97,7 @@ export function faceAt(
   const height = (t: number) => dot(normal, vertexOf(rest, triangles[3 * t]!));
   const level = height(triangle);
   for (let t = 0; 3 * t < triangles.length; t++) {
-    // Only what lies in the plane can belong to it.
+    // Only triangles in the plane can belong to it.
     if (Math.abs(height(t) - level) > 1e-3 * voxelSize || !fits(t)) continue;
     for (const edge of edgesOf(t)) byEdge.set(edge, [...(byEdge.get(edge) ?? []), t]);
   }
@@ -125,7 +125,7 @@ export function faceAt(
   const axis = ([0, 1, 2] as const).find((one) => Math.abs(normal[one]) >= ACROSS) ?? null;
   let shared = false;
   for (let vertex = 0; 3 * vertex < rest.length && !shared; vertex++) {
-    // A region catches what lies within half a voxel of it.
+    // A region catches vertices within half a voxel of it.
     const near = Math.abs(dot(normal, vertexOf(rest, vertex)) - level) <= 0.5 * voxelSize;
     shared = near && !own.has(vertex);
   }

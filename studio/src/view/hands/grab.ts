@@ -35,7 +35,7 @@ export class Grabs {
   private pulls = new Map<number, Pull>();
   private held: Pull | null = null;
   private readonly plane = new Plane();
-  /** From where the mouse holds something to what is told of it. */
+  /** Offset from the mouse's grip on something to the reported point. */
   private readonly offset = new Vector3();
   private nextId = 1;
   private sent: Vector3 | null = null;
@@ -88,7 +88,7 @@ export class Grabs {
     return pull;
   }
 
-  /** Move what is held to where a ray meets the plane of the grab. */
+  /** Move the held thing to where a ray meets the plane of the grab. */
   move(ray: Ray): void {
     if (!this.held) return;
     if (ray.intersectPlane(this.plane, this.held.target)) this.held.target.add(this.offset);

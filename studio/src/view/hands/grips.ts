@@ -21,7 +21,7 @@ export function put(button: HTMLButtonElement, at: { x: number; y: number }, ang
   (button.firstChild as HTMLElement).style.transform = `rotate(${angle.toFixed(3)}rad)`;
 }
 
-/** While a grip is held, call what `begin` gives with the pixels of each move, and whether Shift is held; then `ended`. */
+/** While a grip is held, call the result of `begin` with the pixels of each move and the state of Shift; then `ended`. */
 export function drags(
   button: HTMLButtonElement,
   begin: () => (dx: number, dy: number, fine: boolean) => void,

@@ -5,7 +5,7 @@ import type { CameraRig } from "../drawing/camera";
 import type { Rect } from "../marks/labelLayout";
 import { drags, GRIP, grip, keys, put } from "./grips";
 
-/** How far the grips stand from the middle, pixels. */
+/** Distance of the grips from the middle, pixels. */
 const LONG = 86;
 /** A grip whose axis points at the eye is not shown: there is no way along it. */
 const SHORT = 20;
@@ -34,7 +34,7 @@ export const snapped = (distance: number): number =>
 
 export class MoveHandle {
   readonly element = document.createElement("div");
-  /** What of the picture its grips take; nothing while it is not shown. */
+  /** Part of the picture that its grips take; nothing while it is not shown. */
   grips: readonly Rect[] = [];
   /** The way of the drag that goes on, m. */
   shift: Triple = [0, 0, 0];
@@ -87,7 +87,7 @@ export class MoveHandle {
     }
   }
 
-  /** Put it where the middle of what is chosen is drawn, in a picture of some pixels; hide it for null. */
+  /** Put it where the middle of the chosen entry is drawn, in a picture of some pixels; hide it for null. */
   place(middle: Vector3 | null, width: number, height: number): void {
     this.element.hidden = middle === null;
     this.grips = [];

@@ -16,7 +16,7 @@ export interface Hit {
 
 /**
  * First point of a ray on triangles whose vertices lie at `positions` (x, y, z of each).
- * What `keep` refuses, such as the side that a section cuts away, is passed through.
+ * Triangles that `keep` refuses, such as on the side that a section cuts away, are passed through.
  */
 export function pick(
   ray: Ray,

@@ -1,4 +1,4 @@
-// What the mouse does: turn, move, zoom, pull, pick, measure.
+// Actions of the mouse: turn, move, zoom, pull, pick, measure.
 import { useFace } from "../../store/face";
 import { send } from "../../store/session";
 import { useStudio } from "../../store/studio";

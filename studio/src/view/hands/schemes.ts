@@ -57,7 +57,7 @@ const MOTIONS: readonly (readonly [Motion, string])[] = [
   ["zoom", "Zoom"],
 ];
 
-/** What a press begins, if it is meant for the camera. */
+/** Motion that a press begins, if it is meant for the camera. */
 export function motionOf(
   scheme: Scheme,
   press: Pick<PointerEvent, "button" | "shiftKey" | "ctrlKey" | "metaKey">,
@@ -76,7 +76,7 @@ export function steer(rig: CameraRig, motion: Motion, dx: number, dy: number): v
   else rig.zoom(1.006 ** dy, 0, 0);
 }
 
-/** The scheme in words: what is done, and how. */
+/** The scheme in words: actions, and their buttons. */
 export function schemeWords(scheme: Scheme): [string, string][] {
   const rows: [string, string][] = [];
   for (const [motion, title] of MOTIONS) {

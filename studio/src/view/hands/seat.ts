@@ -1,4 +1,4 @@
-// Where a plate lies on a face: how high the surface of the body reaches there, and whether there is room around it.
+// Seat of a plate on a face: the height of the body's surface there, and the room around it.
 import type { Axis } from "./face";
 
 type Triple = readonly [number, number, number];
@@ -12,22 +12,22 @@ interface Flat {
 }
 
 export interface Seat {
-  /** Where what lies on the face begins along its axis, m. */
+  /** Begin of a plate on the face along its axis, m. */
   readonly level: number;
-  /** Whether nothing of the body stands up beside the face. */
+  /** True if nothing of the body stands up beside the face. */
   readonly free: boolean;
 }
 
-/** How many times as wide as a face the plate on it is, where there is room. */
+/** Width of the plate over that of the face it is on, where there is room. */
 export const WIDER = 1.25;
-/** How far from the face its smooth surface may be, and how high what is beside it is looked at, in voxels. */
+/** Distance of the smooth surface from the face, and height of the searched room beside it, in voxels. */
 const NEAR = 1;
 const HIGH = 3;
 
 /**
  * The seat of a face across an axis.
  *
- * `rest` are the vertices of the voxels, x, y, z of each in m. What touches does so at the smooth surface of the
+ * `rest` are the vertices of the voxels, x, y, z of each in m. Contact is at the smooth surface of the
  * shapes, `smooth` likewise, which is up to half a voxel off the face; without it at the face itself.
  */
 export function seatOf(

@@ -34,7 +34,7 @@ const UP = new Vector3(0, 0, 1);
 
 export class SectionHandle {
   readonly element = document.createElement("div");
-  /** What of the picture its two grips take; nothing while there is no section. */
+  /** Part of the picture that its two grips take; nothing while there is no section. */
   grips: readonly Rect[] = [];
   private readonly line = document.createElementNS("http://www.w3.org/2000/svg", "line");
   private readonly mover = grip("section-move", "Move the section: drag, or arrow keys", "↕");
@@ -100,7 +100,7 @@ export class SectionHandle {
     const tip = page(middle.clone().addScaledVector(normal, reach));
     const [dx, dy] = [tip.x - from.x, tip.y - from.y];
     const long = Math.hypot(dx, dy);
-    // Where the normal points at the eye there is no way along it: up stands for toward the eye.
+    // If the normal points at the eye there is no way along it: up stands for toward the eye.
     const toward = normal.dot(this.rig.toEye) < 0 ? 1 : -1;
     this.along =
       long > 0.2 * LONGEST

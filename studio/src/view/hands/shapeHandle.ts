@@ -9,7 +9,7 @@ import type { Rect } from "../marks/labelLayout";
 import { drags, GRIP, grip as gripButton, keys, put } from "./grips";
 import { previewOf } from "./shapePreview";
 
-/** How far from the middle grips that move stand, and those that size at least, pixels. */
+/** Distance from the middle of grips that move, and least distance of those that size, pixels. */
 const FAR = 86;
 const NEAR = 44;
 /** Between two grips along one axis, pixels. */
@@ -19,7 +19,7 @@ const LEAST_WAY = 0.2;
 /** Radius of the ring of an angle, pixels, and the corners that it is drawn with. */
 const RING = 112;
 const CORNERS = 48;
-/** Where on it its grip may stand, from where it is seen best, radians: clear of other grips. */
+/** Places of the grip on it, from where it is seen best, radians: clear of other grips. */
 const TURNS = [0, -0.5, 0.5, -1, 1];
 /** Keys move a shape by this, m; all else they change by the step of its drags. */
 const KEY_MOVE = 1e-3;
@@ -38,7 +38,7 @@ export interface Edited {
   readonly middle: Vector3;
 }
 
-/** What the handle asks for; a typed text gives what is wrong with it, or null. */
+/** Requests of the handle; a typed text gives its error, or null. */
 export interface ShapeEdits {
   changed(): void;
   dropped(grip: ShapeGrip, value: number): void;
@@ -53,7 +53,7 @@ export function numberText({ sign, number, kind }: ShapeGrip, value: number): st
   return sign ? `${sign} ${own}` : own;
 }
 
-/** What a grip does, for those who do not see it. */
+/** Effect of a grip, for those who do not see it. */
 export function gripLabel({ label, number, kind }: ShapeGrip, value: number): string {
   const amount = NUMBERS[kind].text(value);
   if (number.blocked) return `${label}: ${amount} ${number.blocked}`;
@@ -61,7 +61,7 @@ export function gripLabel({ label, number, kind }: ShapeGrip, value: number): st
   return `${label}: ${amount}. Drag, arrow keys, or Enter to type.${through}`;
 }
 
-/** Where on the ring about an axis a grip stands, that it is seen best: on the side of the eye. */
+/** Place of a grip on the ring about an axis where it is seen best: on the side of the eye. */
 export function frontOf(axis: Vector3, toEye: Vector3, right: Vector3): Vector3 {
   const front = toEye.clone().addScaledVector(axis, -axis.dot(toEye));
   // Seen along its axis a ring is the same to all sides.
@@ -79,7 +79,7 @@ interface Item {
   /** The way of the grip in the picture, and pixels for each meter, or radian. */
   way: { x: number; y: number; pixels: number };
   input: HTMLInputElement | null;
-  /** Where on its ring it stands, from where it would be seen best, radians. */
+  /** Place on its ring, from where it would be seen best, radians. */
   turn: number;
 }
 
@@ -90,13 +90,13 @@ interface Tip {
 
 export class ShapeHandle {
   readonly element = document.createElement("div");
-  /** What of the picture its grips and numbers take. */
+  /** Part of the picture that its grips and numbers take. */
   grips: readonly Rect[] = [];
   private readonly drawing = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   private readonly outline = document.createElementNS("http://www.w3.org/2000/svg", "path");
   private readonly items = new Map<string, Item>();
   private held: { grip: ShapeGrip; value: number } | null = null;
-  /** What was dropped is drawn as it was until the shape comes anew. */
+  /** A dropped shape is drawn as it was until the shape comes anew. */
   private dropped: { grip: ShapeGrip; value: number } | null = null;
 
   constructor(
@@ -110,7 +110,7 @@ export class ShapeHandle {
     this.element.append(this.drawing);
   }
 
-  /** How the shape is drawn while a grip is held, in its own frame; null where it is as it is. */
+  /** Transform of the drawn shape while a grip is held, in its own frame; null where it is unchanged. */
   get preview(): Matrix4 | null {
     const shown = this.held ?? this.dropped;
     return shown && previewOf(shown.grip, shown.value);
@@ -212,7 +212,7 @@ export class ShapeHandle {
     const seen = Number.isFinite(pixels) && (known || pixels > LEAST_WAY * RING);
     this.show(item, seen);
     if (!seen) return null;
-    // Where the ring turns away from the eye it goes on as it went before.
+    // If the ring turns away from the eye it goes on as it went before.
     if (pixels > LEAST_WAY * RING) item.way = { x: dx / pixels, y: dy / pixels, pixels };
     const corners = Array.from({ length: CORNERS + 1 }, (_, i) =>
       page(at((2 * Math.PI * i) / CORNERS)),
@@ -222,7 +222,7 @@ export class ShapeHandle {
     return tip;
   }
 
-  // Lines that show what numbers do: of the grip that is held, as it would be.
+  // Lines that show the meaning of numbers: of the grip that is held, as it would be.
   private outlineOf(edited: Edited, page: (point: Vector3) => Tip): string {
     const lines = edited.grips.flatMap((grip) => {
       const known = this.held ?? this.dropped;
@@ -234,7 +234,7 @@ export class ShapeHandle {
     return drawn.join("");
   }
 
-  // Where a grip that moves begins: in the middle of the shape, or at the point that it moves.
+  // Start of a grip that moves: in the middle of the shape, or at the point that it moves.
   private standOf({ grip }: Item, along: Vector3, middle: Vector3, pose: Matrix4): Vector3 {
     if (!grip.at) return middle;
     const by = this.valueOf(grip) - grip.value;
@@ -256,7 +256,7 @@ export class ShapeHandle {
     return across.multiplyScalar(across.dot(right) > 0 ? -1 : 1).normalize();
   }
 
-  // Where the number of a grip ends now, in the picture's frame.
+  // Present end of the number of a grip, in the picture's frame.
   private endOf({ grip }: Item, along: Vector3, pose: Matrix4): Vector3 {
     const reach = grip.reach + (this.valueOf(grip) - grip.value) / grip.rate;
     return new Vector3(...grip.from).applyMatrix4(pose).addScaledVector(along, reach);
@@ -292,7 +292,7 @@ export class ShapeHandle {
 
   private itemOf(grip: ShapeGrip): Item {
     const known = this.items.get(grip.id) ?? this.made(grip);
-    // While it is held it stays what it was when it was taken.
+    // While it is held it stays as it was when it was taken.
     if (this.held?.grip.id !== grip.id) known.grip = grip;
     const { button, number } = known;
     const blocked = known.grip.number.blocked !== null;
@@ -384,7 +384,7 @@ export class ShapeHandle {
     }, LONGEST_WAIT);
   }
 
-  // A field in place of the number; Enter or leaving it takes what was typed.
+  // A field in place of the number; Enter or leaving it takes the typed text.
   private type(item: Item): void {
     if (item.input) return;
     const { grip } = item;

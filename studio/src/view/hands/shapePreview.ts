@@ -1,4 +1,4 @@
-// How a shape is drawn while a number of it is changed by hand.
+// Preview of a shape while a number of it is changed by hand.
 import { Matrix4, Vector3 } from "three";
 import type { ShapeGrip } from "../../panes/design/shapes/shapeReader";
 

@@ -4,7 +4,7 @@ import type { CameraRig } from "../drawing/camera";
 import type { Rect } from "../marks/labelLayout";
 import { drags, GRIP, grip, keys, put } from "./grips";
 
-/** How near to the middle it stands at least, pixels: the grips that move stand farther out. */
+/** Least distance from the middle, pixels: the grips that move stand farther out. */
 const NEAR = 44;
 /** Down and to the left, where in the usual view no axis points. */
 const WAY = { x: -Math.SQRT1_2, y: Math.SQRT1_2 };
@@ -15,16 +15,16 @@ const SIGNS: Readonly<Record<string, number>> = {
   ...{ ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1 },
 };
 
-/** How many times as large something of half a size is after a change of that, m; never turned inside out. */
+/** Factor on the size of something of half a size after a change of that, m; never turned inside out. */
 export function factorFor(half: number, change: number): number {
   return Math.max(half + Math.round(change / FINE_STEP) * FINE_STEP, FINE_STEP) / half;
 }
 
 export class SizeHandle {
   readonly element = document.createElement("div");
-  /** What of the picture it takes; nothing while it is not shown. */
+  /** Part of the picture that it takes; nothing while it is not shown. */
   grips: readonly Rect[] = [];
-  /** How many times as large the object is drawn while it is dragged. */
+  /** Factor on the drawn size of the object while it is dragged. */
   factor = 1;
   private half = 0;
   private readonly button = grip("size-object", "Size: drag, or arrow keys", "⤢");
@@ -63,7 +63,7 @@ export class SizeHandle {
     });
   }
 
-  /** Put it at the edge of what has its middle there and half a size, m; hide it for null. */
+  /** Put it at the edge of an object with its middle there and half a size, m; hide it for null. */
   place(middle: Vector3 | null, half: number, width: number, height: number): void {
     this.element.hidden = middle === null;
     this.grips = [];

@@ -1,4 +1,4 @@
-// What of the body is under the pointer, in every way to show it. Hands, tapes and questions hold
+// Point of the body under the pointer, in every way to show it. Hands, tapes and questions hold
 // on to vertices of its surface: a hit on the smooth shape or on a tetrahedron goes to the nearest.
 import type { Ray, Vector3 } from "three";
 import type { Topology } from "../../engine/frames";
@@ -6,12 +6,12 @@ import type { BodyMesh } from "../body/body";
 import type { SmoothMesh } from "../body/smooth";
 import { type Hit, pick } from "./pick";
 
-/** A hit on the surface, and the vertex of what is drawn. */
+/** A hit on the surface, and the vertex of the drawn mesh. */
 export interface Target extends Hit {
   readonly drawn: number;
 }
 
-/** Where the vertices of the surface are drawn. */
+/** Positions where the vertices of the surface are drawn. */
 export interface Places {
   readonly topology: Topology;
   place(vertex: number, exaggeration: number, out?: Vector3): Vector3;
@@ -32,7 +32,7 @@ function vertexAt(vertices: Float32Array, i: number): [number, number, number] {
   return [vertices[3 * i]!, vertices[3 * i + 1]!, vertices[3 * i + 2]!];
 }
 
-/** The same hit at a vertex of the surface. */
+/** Move a hit to a vertex of the surface. */
 function onSurface(hit: Hit, surface: BodyMesh, rest: Float32Array): Target {
   const vertex = nearest(surface.topology.rest, ...vertexAt(rest, hit.vertex));
   return {
@@ -44,7 +44,7 @@ function onSurface(hit: Hit, surface: BodyMesh, rest: Float32Array): Target {
   };
 }
 
-/** The first point of a ray on what is drawn: `mesh` at `positions`, or the smooth shape. */
+/** The first point of a ray on the drawn body: `mesh` at `positions`, or the smooth shape. */
 export function targetOf(
   ray: Ray,
   surface: BodyMesh,

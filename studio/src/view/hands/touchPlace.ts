@@ -1,6 +1,6 @@
-// Where two surfaces touch: the mean of the points of the first that are near the second, the nearer the more.
+// Contact place of two surfaces: the mean of the points of the first that are near the second, the nearer the more.
 
-/** How near a point of the first must be to one of the second, in voxels; twice that where none is. */
+/** Largest distance of a point of the first from one of the second, in voxels; twice that where none is. */
 const REACH = 1.5;
 
 export interface Near {
@@ -39,7 +39,7 @@ export function nearOf(first: Float32Array, second: Float32Array, voxel: number)
 }
 
 function near(first: Float32Array, second: Float32Array, reach: number): Near | null {
-  // Only what is in both boxes can be near: a few points of most bodies.
+  // Only points in both boxes can be near: a few points of most bodies.
   const box = boxOf(second);
   const candidates: number[] = [];
   for (let i = 0; i < first.length; i += 3) if (within(first, i, box, reach)) candidates.push(i);
@@ -68,7 +68,7 @@ function near(first: Float32Array, second: Float32Array, reach: number): Near | 
   });
 }
 
-/** The lowest points: what touches a floor. */
+/** The lowest points: those that touch a floor. */
 export function lowestOf(first: Float32Array, voxel: number): Near | null {
   const lowest = boxOf(first)[2];
   const all = Array.from({ length: first.length / 3 }, (_, i) => 3 * i);

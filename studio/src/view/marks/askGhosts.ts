@@ -5,7 +5,7 @@ import { currentEngine, onReady, send } from "../../store/session";
 import { useStudio } from "../../store/studio";
 import { useView } from "../../store/view";
 
-/** Of those that nothing uses so many are drawn. */
+/** Largest number of drawn shapes that nothing uses. */
 const MOST_UNUSED = 8;
 
 type Table = Readonly<Record<string, unknown>>;

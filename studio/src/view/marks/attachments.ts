@@ -1,4 +1,4 @@
-// What is attached to the body, such as springs and tendons: a line through the places that it joins, which move with it.
+// Attachments of the body, such as springs and tendons: a line through the places that it joins, which move with it.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -23,7 +23,7 @@ interface Drawn {
   readonly places: BufferAttribute;
 }
 
-/** Where a place is now: its center, moved as its vertices are on the mean. */
+/** Present center of a place, moved as its vertices are on the mean. */
 export function placeNow(place: BodyPlace, mesh: Places, exaggeration: number): Vector3 {
   const center = new Vector3(...place.center);
   if (place.vertices.length === 0 || mesh.topology.tets) return center;

@@ -1,4 +1,4 @@
-// How things meet in the unloaded design: dots where surfaces are bonded, the floor, and words for pairs of contact.
+// Marks of contact in the unloaded design: dots where surfaces are bonded, the floor, and words for pairs of contact.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -20,7 +20,7 @@ import type { Label } from "./labels";
 const BOND_COLOR = "#35b8c0";
 const TOUCH_COLOR = "#98a1ab";
 const FLOOR = "floor";
-/** How far the floor is drawn beyond the body, as a part of its size. */
+/** Margin of the drawn floor beyond the body, as a part of its size. */
 const BEYOND = 0.5;
 
 type Table = Readonly<Record<string, unknown>>;
@@ -34,9 +34,9 @@ export interface Meets {
 }
 
 /**
- * The pairs that the picture speaks of: those that the design names, and those of what is chosen.
+ * The pairs named in the picture: those that the design names, and those of the chosen entry.
  *
- * `design` is what the document comes to. Bonds have dots and words of their own.
+ * `design` holds the values of the document. Bonds have dots and words of their own.
  */
 export function meetsOf(body: BodyEvent, design: Table | null, chosen: string | null): Meets[] {
   const contact = design?.contact;
@@ -71,13 +71,13 @@ function boxOf(name: string, body: BodyEvent, design: Table | null): Room | null
   return z === null ? null : { low: [-Infinity, -Infinity, z], high: [Infinity, Infinity, z] };
 }
 
-/** Where the floor of a design is, m; null where it has none. */
+/** Height of the floor of a design, m; null where it has none. */
 function heightOf(design: Table | null): number | null {
   const z = (design?.floor as { z?: unknown } | null | undefined)?.z;
   return typeof z === "number" ? z : null;
 }
 
-/** The corners of what is drawn of a floor: a square under the body and somewhat beyond, m. */
+/** The corners of the drawn floor: a square under the body and somewhat beyond, m. */
 export function floorCorners([low, high]: BodyEvent["bounds"], z: number): number[][] {
   const side = 0.5 * (1 + BEYOND) * Math.max(high[0] - low[0], high[1] - low[1]);
   const [x, y] = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
@@ -89,7 +89,7 @@ export function floorCorners([low, high]: BodyEvent["bounds"], z: number): numbe
   ];
 }
 
-/** The middle of what two boxes share, or of the gap between them. */
+/** The middle of the room shared by two boxes, or of the gap between them. */
 function between(a: Room | null, b: Room | null): [number, number, number] | null {
   if (!a || !b) return null;
   return [0, 1, 2].map(

@@ -1,4 +1,4 @@
-// The face that was pressed, laid over the body in the color of what is chosen.
+// The face that was pressed, laid over the body in the color of chosen things.
 import {
   BufferAttribute,
   BufferGeometry,

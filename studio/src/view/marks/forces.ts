@@ -19,14 +19,14 @@ import { lowestOf, type Near, nearOf } from "../hands/touchPlace";
 import type { Label } from "./labels";
 import type { RigidObjects } from "./objects";
 
-/** What contact calls the only body of a design, and its floor. */
+/** Names in contact of the only body of a design, and of its floor. */
 const BODY = "body";
 const FLOOR = "floor";
 /** Length of the longest arrow, as a part of the size of the body. */
 const LONGEST = 0.3;
 /** Arrows shorter than this part of the longest one that there may be are not drawn. */
 const SHORTEST = 0.01;
-/** By what holds: it sticks, slips in part, slips. They differ for color-blind eyes too. */
+/** Colors by hold: it sticks, slips in part, slips. They differ for color-blind eyes too. */
 export const HOLD_COLORS = { sticks: "#2fc39b", partly: "#d9a21b", slips: "#e0457b" } as const;
 
 export function holdColor(slipping: number): string {
@@ -124,7 +124,7 @@ export class ContactForces {
   }
 
   private arrow(): Arrow {
-    // What touches hides where it does: the arrow is drawn over it.
+    // The touching body hides the contact: the arrow is drawn over it.
     const material = new MeshBasicMaterial({ depthTest: false, transparent: true });
     const group = new Group();
     for (const geometry of [this.shaft, this.head]) {
@@ -152,7 +152,7 @@ export class ContactForces {
 
 const UP = new Vector3(0, 1, 0);
 
-/** Points of what touches in one frame, as they are and as they are drawn. */
+/** Points of touching things in one frame, as they are and as they are drawn. */
 class Places {
   constructor(
     private readonly body: BodyEvent,
@@ -162,7 +162,7 @@ class Places {
     private readonly exaggeration: number,
   ) {}
 
-  /** Where a pair touches, as it is drawn. */
+  /** Contact place of a pair, as it is drawn. */
   of({ of: [first, second] }: Touch): Vector3 | null {
     const own = this.points(first, 1);
     if (!own) return null;

@@ -1,5 +1,5 @@
-// Shapes of the design by themselves, over the body: what cuts it, what it is made of, what nothing
-// uses yet. Each shows through what is before it, with a line around what is seen of it.
+// Shapes of the design by themselves, over the body: shapes that cut it, shapes it is made of, unused
+// ones. Each shows through the things before it, with a line around its visible part.
 import {
   AlwaysStencilFunc,
   Box3,
@@ -28,10 +28,10 @@ import type { Label } from "./labels";
 import { CHOSEN_COLOR } from "./several";
 
 const COLOR = "#7f9bb8";
-/** How much of a picture a ghost takes in the middle, and at its rim. */
+/** Opacity of a ghost in the middle, and at its rim. */
 const OPACITY = { chosen: 0.34, other: 0.22 } as const;
 const RIM = { chosen: 0.3, other: 0.2 } as const;
-/** Of the line around it, CSS pixels. */
+/** Width of the line around it, CSS pixels. */
 const LINE = { chosen: 2, other: 1.2 } as const;
 /** The bit of the stencil that says where a ghost is; sections count in the others, before. */
 const BIT = 0x80;
@@ -112,7 +112,7 @@ export class Ghosts {
       line: this.pass(geometry, order + 2, {}),
       clear: this.pass(geometry, order + 3, { colorWrite: false }),
     };
-    // What is before a ghost does not hide it, but it hides itself: else many layers were one blot.
+    // Things before a ghost do not hide it, but it hides itself: else many layers were one blot.
     passes.mask.onBeforeRender = (renderer) => renderer.clearDepth();
     for (const [pass, mark] of [
       [passes.mask, BIT],
@@ -212,7 +212,7 @@ export class Ghosts {
     return best?.name ?? null;
   }
 
-  /** Where a shape is drawn, or null where it is not. */
+  /** Box of a drawn shape, or null where it is not drawn. */
   boxOf(name: string): Box3 | null {
     const found = this.drawn.find((one) => one.ghost.name === name);
     if (!found) return null;
@@ -260,7 +260,7 @@ function topOf({ low, high }: Ghost, out: Vector3): Vector3 {
   return out.set((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2]);
 }
 
-/** What must be known of how a shape is drawn. */
+/** Title that explains the drawing of a shape. */
 function titleOf({ step, clipped }: Ghost): string {
   const cut = clipped ? ` It goes on along ${[...clipped].join(", ")} beyond what is drawn.` : "";
   const apart = Number((1e3 * step).toPrecision(2));

@@ -1,5 +1,5 @@
-// Where words stand beside their points, so that they lie neither over each other nor over what can
-// be pressed in the picture.
+// Layout of words beside their points, so that they lie neither over each other nor over buttons
+// in the picture.
 
 export interface Rect {
   readonly left: number;
@@ -13,7 +13,7 @@ export interface Word {
   readonly x: number;
   readonly y: number;
   readonly width: number;
-  /** Whether it may be left out where there is no room: its dot then stands for it. */
+  /** True if it may be left out where there is no room: its dot then stands for it. */
   readonly minor: boolean;
 }
 
@@ -30,7 +30,7 @@ export const LINE = 21;
 const MOST_MOVED = 3;
 // So many a word moves down that would lie under a panel.
 const MOST_LOWERED = 6;
-// As .view-label has them: half the height of a word, and from its point to its left edge.
+// Sizes of .view-label: half the height of a word, and from its point to its left edge.
 const HALF = 9;
 const BESIDE = 9;
 const GAP = 4;
@@ -85,7 +85,7 @@ export function standWords(
   });
 }
 
-/** How far to the left a word would have to go to leave the panels it lies under, the least first. */
+/** Shifts to the left by which a word leaves the panels it lies under, the least first. */
 function sideways(rect: Rect, pressed: readonly Rect[]): number[] {
   let [left, right] = [0, 0];
   for (const one of pressed) {

@@ -43,7 +43,7 @@ export class Labels {
     for (const label of labels) {
       gone.delete(label.key);
       let element = this.shown.get(label.key)?.element;
-      // What can be clicked is a button; a word that becomes clickable becomes one.
+      // A label that can be clicked is a button; a word that becomes clickable becomes one.
       if (element && element instanceof HTMLButtonElement !== Boolean(label.onClick)) {
         element.remove();
         element = undefined;
@@ -68,7 +68,7 @@ export class Labels {
     }
   }
 
-  /** Put each word at its point, clear of the others and of what is pressed in the picture. */
+  /** Put each word at its point, clear of the others and of buttons in the picture. */
   place(camera: Camera, width: number, height: number, pressed: readonly Rect[] = []): void {
     const seen: { element: HTMLElement; word: Word }[] = [];
     for (const { label, element } of this.shown.values()) {

@@ -1,4 +1,4 @@
-// Rigid objects beside the body: gray, and so that what is behind them shows through. They stand
+// Rigid objects beside the body: gray, and so that things behind them show through. They stand
 // where the frame that is drawn has them.
 import {
   type Box3,
@@ -26,11 +26,11 @@ import type { Label } from "./labels";
 import { CHOSEN_COLOR } from "./several";
 
 const COLOR = "#8d959e";
-/** How much of a picture an object takes: what it presses must be seen through it. */
+/** Opacity of an object: the body that it presses must be seen through it. */
 const OPACITY = 0.42;
 const CHOSEN_OPACITY = 0.5;
 const FAINT = 0.08;
-/** How far around a body its objects are brought into the picture, in lengths of its longest side. */
+/** Room around a body in which its objects are brought into the picture, in lengths of its longest side. */
 const AROUND = 1;
 
 const VERTEX = /* glsl */ `
@@ -90,7 +90,7 @@ export function placedBy(
 
 export type ObjectMesh = Mesh<BufferGeometry, ShaderMaterial>;
 
-/** Where a section cuts, and whether it does. */
+/** Plane of the section, and true if it cuts. */
 export interface Cut {
   readonly plane: IUniform<Vector4>;
   readonly on: IUniform<number>;
@@ -149,7 +149,7 @@ export class RigidObjects {
   constructor(private readonly section: Cut) {}
 
   build(objects: readonly BodyObject[]): void {
-    // What the check reports of a body comes with the same objects again.
+    // The report of a body's checks comes with the same objects again.
     const key = (all: readonly BodyObject[]) => all.map((one) => `${one.name} ${one.vertices}`);
     if (key(objects).join() === key(this.built).join()) return;
     this.clear();
@@ -165,7 +165,7 @@ export class RigidObjects {
     this.place(undefined, 1, null);
   }
 
-  /** Put all where they are in a frame, and mark the one that is chosen; faint ones do not hide what they press. */
+  /** Put all in their poses of a frame, and mark the chosen one; faint ones do not hide the bodies they press. */
   place(
     moment: Moment | undefined,
     exaggeration: number,
@@ -241,12 +241,12 @@ export class RigidObjects {
     return best;
   }
 
-  /** Where the middle of an object is drawn, m. */
+  /** Position where the middle of an object is drawn, m. */
   middleAt(index: number): Vector3 | undefined {
     return this.drawn[index]?.middle;
   }
 
-  /** The same of one that is known by its name. */
+  /** Position of the middle of an object by its name. */
   middleOf(name: string): [number, number, number] | null {
     return this.drawn.find((one) => one.object.name === name)?.middle.toArray() ?? null;
   }

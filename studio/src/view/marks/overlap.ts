@@ -1,11 +1,11 @@
-// Where the body is in itself: marks in the picture, the deepest with its words.
+// Overlaps of the body with itself: marks in the picture, the deepest with its words.
 import type { Vector3 } from "three";
 import { formatQuantity } from "../../controls/units";
 import type { OverlapEvent, OverlapPlace } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import type { Label } from "./labels";
 
-/** Where the body that is shown is in itself; null where it is not, or another body came. */
+/** Overlap of the shown body with itself; null where there is none, or another body came. */
 export function useOverlap(): OverlapEvent | null {
   return useStudio(({ overlap, body }) => overlapOf(overlap, body?.topology));
 }
@@ -17,7 +17,7 @@ export function overlapOf(
   return overlap && overlap.topology === topology && overlap.places.length > 0 ? overlap : null;
 }
 
-/** Where a place is drawn: where it is now, its displacement drawn as large as all others. */
+/** Position where a place is drawn: its present one, its displacement drawn as large as all others. */
 export function drawnAt({ rest, now }: OverlapPlace, exaggeration: number, out: Vector3): Vector3 {
   const along = (axis: 0 | 1 | 2) => rest[axis] + exaggeration * (now[axis] - rest[axis]);
   return out.set(along(0), along(1), along(2));

@@ -1,4 +1,4 @@
-// Where cards, bars and banners lie over the picture: words keep out of them.
+// Rectangles of cards, bars and banners over the picture: words keep out of them.
 import type { Rect } from "./labelLayout";
 
 const PANELS = [

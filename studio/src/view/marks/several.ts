@@ -8,10 +8,10 @@ import { setView } from "../../store/view";
 import type { BodyMesh } from "../body/body";
 import type { Label } from "./labels";
 
-/** Of what is chosen in the form or the picture. */
+/** Color of the entry chosen in the form or the picture. */
 export const CHOSEN_COLOR = "#f0b429";
 const COLOR = "#b9c2cc";
-/** How far the color of a part goes over to that of what is chosen. */
+/** Share of the chosen color in that of a chosen part. */
 const TINT = 0.6;
 
 /** The entry of the form that a body of the picture belongs to. */
@@ -29,7 +29,7 @@ export function partColors(body: BodyEvent | null, chosen: string | null): strin
   );
 }
 
-/** The first and last drawn vertex of what an entry holds, or null. */
+/** The first and last drawn vertex of an entry, or null. */
 export function verticesOf(body: BodyEvent, entry: string | null): [number, number] | null {
   const own = body.bodies.filter((one) => isOf(one.name, entry));
   if (own.length === 0) return null;

@@ -26,7 +26,7 @@ import type { Label } from "./labels";
 const CLAMP_COLOR = "#98a1ab";
 const LOAD_COLOR = "#e8704a";
 const PLANE_COLOR = "#b48ead";
-/** How far a plane of symmetry is drawn beyond the body, as a part of its size. */
+/** Margin of a drawn plane of symmetry beyond the body, as a part of its size. */
 const BEYOND = 0.08;
 const PROBE_COLOR = "#56b4e9";
 
@@ -50,7 +50,7 @@ function meanPlace(
 }
 
 /**
- * Where the tip of a load's arrow is: at the place that it pushes on, or so far out of a place that
+ * Tip of a load's arrow: at the place that it pushes on, or so far out of a place that
  * it pulls on that the whole arrow stands outside of the body, where it is seen.
  */
 export function arrowTip(
@@ -172,7 +172,7 @@ export class Symbols {
     this.geometries = [];
   }
 
-  /** Words for what the body has; probes follow their vertices. */
+  /** Words for the loads, clamps and probes of the body; probes follow their vertices. */
   labels(
     body: BodyEvent,
     stat: StatEvent | null,

@@ -12,12 +12,12 @@ export interface StillCell {
   readonly key: string;
   readonly state: StillState;
   readonly caption: ReactNode;
-  /** What is said until the body is there. */
+  /** Text until the body is there. */
   readonly waiting: string;
 }
 
 export interface StillViewProps {
-  /** What the picture shows, for those who cannot see it. */
+  /** Description of the picture, for those who cannot see it. */
   label: string;
   cells: readonly StillCell[];
   over?: boolean;
@@ -78,7 +78,7 @@ export function StillView(props: StillViewProps) {
   );
 }
 
-/** What is under way in a cell, or why it stays empty. */
+/** Work under way in a cell, or the reason why it stays empty. */
 function Told(props: { state: StillState; waiting: string }) {
   const { still, pending, failure, again } = props.state;
   if (failure) {

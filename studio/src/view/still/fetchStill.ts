@@ -38,7 +38,7 @@ export function stillOf(buffer: ArrayBuffer): Still {
   return { topology, frames, objects };
 }
 
-/** What is wrong, as a sentence for people. */
+/** A refusal as a sentence for people. */
 function sentenceOf({ where, what, hint }: Refusal): string {
   const cause = [where, what].filter(Boolean).join(": ");
   return hint ? `${cause}. Try: ${hint}.` : `${cause}.`;

@@ -69,7 +69,7 @@ export class Marks {
   }
 
   /**
-   * Whether words stand better at the left of their points: toward the first of them, since a
+   * Check if words stand better at the left of their points: toward the first of them, since a
    * specimen that bends leaves room on the side of its clamp.
    */
   leanLeft(camera: Camera): boolean {

@@ -66,7 +66,7 @@ export function listen(stage: StillStage): void {
     else if (event.key === "-") stage.steer((rig) => rig.zoom(ZOOM, 0, 0));
     else if (event.key === "f") stage.fit();
     else return;
-    // The same keys steer the main view, which is not meant here.
+    // These keys steer the main view too, which is not meant here.
     event.stopPropagation();
     event.preventDefault();
   });

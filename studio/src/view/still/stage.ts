@@ -98,7 +98,7 @@ export class StillStage {
       if (!box.isEmpty()) {
         this.ground.lay(box);
         this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
-        // What a user has turned to look at stays where it is.
+        // A view that a user has turned stays as it is.
         if (!this.touched) this.rig.fit(box, true);
       }
     }
@@ -129,7 +129,7 @@ export class StillStage {
     this.request();
   }
 
-  /** Where a place of the page lies in its cell, -1 to 1 along both sides. */
+  /** Position in its cell of a place of the page, -1 to 1 along both sides. */
   within(x: number, y: number): [number, number] {
     const rect = this.renderer.domElement.getBoundingClientRect();
     const width = rect.width / this.columns;

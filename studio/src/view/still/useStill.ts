@@ -15,7 +15,7 @@ export interface StillState extends Answer {
 
 /**
  * The body of a name, asked for again when its edition changes: one after the other, the newest
- * last. What is under way is given up when the name changes or the pane closes, and its solver
+ * last. A request under way is given up when the name changes or the pane closes, and its solver
  * stops.
  */
 export function useStill(name: string, edition: unknown = null): StillState {

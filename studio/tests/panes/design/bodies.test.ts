@@ -49,7 +49,7 @@ const HAND = {
   ],
 } as unknown as BodyEvent;
 
-it("knows what belongs to an entry of the form", () => {
+it("knows the vertices of an entry of the form", () => {
   expect(isOf("pair.a", "pair")).toBe(true);
   expect(isOf("pairs.a", "pair")).toBe(false);
   expect(isOf("left", null)).toBe(false);

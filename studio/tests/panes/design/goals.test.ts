@@ -42,7 +42,7 @@ it("keeps an object only where the next metric asks of one", () => {
   expect(fittingKeys(needs, {}, [])).toEqual({});
 });
 
-it("reads a percentile, and refuses what is none", () => {
+it("reads a percentile, and refuses other text", () => {
   expect(readPercentile("99 %")).toEqual({ value: 99 });
   expect(readPercentile(" ")).toEqual({ value: null });
   for (const text of ["0", "100.5", "-1", "most"]) {

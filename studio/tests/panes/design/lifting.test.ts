@@ -25,7 +25,7 @@ describe("gripping and lifting", () => {
     expect(found.get("solver")).toMatchObject({ method: "dynamics", end_time: "1 s" });
   });
 
-  it("puts a floor under what hangs lowest, and else lets weight come when it is held", () => {
+  it("puts a floor under the lowest object, and else lets weight come when it is held", () => {
     const found = values(GRIPPER);
     expect(found.get("floor")).toEqual({ z: "-3.05 mm" });
     expect(found.get("histories.weight")).toMatchObject({ time: ["0 s", "0.1 s"] });
@@ -35,7 +35,7 @@ describe("gripping and lifting", () => {
     expect(held.get("histories.weight")).toMatchObject({ time: ["0.4 s", "0.5 s"] });
   });
 
-  it("leaves what has a history or a motion, and what others name the same", () => {
+  it("leaves things with a history or a motion, and names used by others", () => {
     const source = {
       histories: { lift: { time: ["1 s"], factor: [1] } },
       clamps: [{ region: {}, motion: {} }, { region: {}, axes: "x" }, { region: {} }],

@@ -39,7 +39,7 @@ describe("the mirror image of a design", () => {
     });
   });
 
-  it("has what is held, covered and measured at its own places, and nothing twice", () => {
+  it("has clamps, layers and probes at its own places, and nothing twice", () => {
     const found = values(1);
     // The plane of the first clamp holds both.
     expect(found.get("clamps.2")).toEqual({ region: { x: ["-inf", "= -10 mm - apart"] } });

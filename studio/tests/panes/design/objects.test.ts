@@ -66,7 +66,7 @@ it("writes primitives about one middle, and a mesh moved there", () => {
   });
 });
 
-it("gives what is free a mass, and takes it from what is not", () => {
+it("gives free objects a mass, and takes it from others", () => {
   const fixed = { name: "ball", shape: "ball", motion: "fixed" };
   const free = withMotion(fixed, "free", null);
   expect(free).toEqual({ ...fixed, motion: "free", mass: "50 g" });

@@ -51,11 +51,11 @@ describe("a shape that is turned", () => {
     ]);
     expect(numberText(angle!, 45 * DEGREE)).toBe("45°");
     expect(snappedValue(angle!, 33 * DEGREE, 5 * DEGREE)).toBeCloseTo(35 * DEGREE, 9);
-    // A quarter more takes what is beside the center a quarter around it.
+    // A quarter more takes the points beside the center a quarter around it.
     expect(image(angle!, 120 * DEGREE, [0.02, 0, 0])).toEqual(near([0.01, 0.01, 0]));
   });
 
-  it("goes with its center by what the rotation leaves of the way", () => {
+  it("goes with its center by the rest of the way after the rotation", () => {
     const quarter = { ...solved, angle: Math.PI / 2 };
     const grips = gripsOf(text, quarter);
     expect(grips["center-x"]?.at).toEqual([0.01, 0, 0]);
@@ -76,7 +76,7 @@ describe("a shape that is turned", () => {
     expect(gripLabel(other, other.value)).toContain("follows the formula “= 2*lean”");
   });
 
-  it("takes what is typed in degrees", () => {
+  it("takes typed numbers in degrees", () => {
     const { angle } = gripsOf(text, solved);
     const document = { source: {}, valid: true, parameters: [] } as unknown as DocumentEvent;
     expect(typedChanges(angle!, "12.5", document)).toEqual({
@@ -97,7 +97,7 @@ describe("a shape that is scaled", () => {
     expect(image(factor, 3, [0.04, 0.02, 0])).toEqual(near([0.06, 0.03, 0]));
     expect(numberText(factor, 2.5)).toBe("× 2.5");
     expect(snappedValue(factor, -1, 0.05)).toBe(0.01);
-    // Of twice the size the center goes the other way.
+    // At twice the size the center goes the other way.
     expect(image(grips["center-y"]!, 0.003, [0, 0, 0])).toEqual(near([0, -0.003, 0]));
   });
 
@@ -203,7 +203,7 @@ it("keeps grips in the picture, on the way to where they end", () => {
   expect(within(center, { x: 150, y: 20 }, 400, 300)).toEqual({ x: 150, y: 20 });
   expect(within(center, { x: 100, y: 388 }, 400, 300)).toEqual({ x: 100, y: 288 });
   expect(within(center, { x: -76, y: 276 }, 400, 300)).toEqual({ x: 12, y: 188 });
-  // What is chosen is out of the picture itself.
+  // The chosen entry is out of the picture itself.
   expect(within({ x: 500, y: 100 }, { x: 600, y: 100 }, 400, 300)).toEqual({ x: 600, y: 100 });
 });
 

@@ -55,7 +55,7 @@ describe("a number that becomes a parameter", () => {
     ]);
   });
 
-  it("of the bound of a goal is called by the goal", () => {
+  it("is called by the goal for the bound of a goal", () => {
     const source = { constraints: { reach: { metric: "displacement", min: "5 mm" } } };
     expect(promoted(["constraints", "reach", "min"], "5 mm", source)).toEqual([
       {

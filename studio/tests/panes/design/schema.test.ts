@@ -73,7 +73,7 @@ describe("starters", () => {
     });
     expect(starter(root, { $ref: "#/$defs/Part" }, names)).toEqual({ shape: "body" });
   });
-  it("keep what a change of kind can keep", () => {
+  it("keep all that a change of kind can keep", () => {
     const box = root.$defs?.Box ?? {};
     const before = { kind: "cone", center: [0, 0, 1], radius: 2 };
     expect(changeVariant({ kind: "box", size: 1 }, box, before, "kind")).toEqual({
@@ -82,7 +82,7 @@ describe("starters", () => {
       center: [0, 0, 1],
     });
   });
-  it("name a material after what it is", () => {
+  it("name a material after its model", () => {
     expect(materialName({ model: "rigid" })).toBe("rigid");
     expect(materialName({ model: "yeoh", c10: "17 kPa" })).toBe("rubber");
   });

@@ -70,7 +70,7 @@ describe("a number that is a formula", () => {
   const text = { kind: "box", size: ["= length", "= half", "= length - 2*half"] };
   const grips = gripsOf(text, solved, parameters);
 
-  it("of one name changes that parameter, and says so", () => {
+  it("changes the parameter of a formula of one name, and reports it", () => {
     const size = grips["size-x"]!;
     expect(write(size, 0.05)).toEqual([
       { path: ["parameters", "length", "value"], value: "50 mm" },
@@ -79,7 +79,7 @@ describe("a number that is a formula", () => {
     expect(gripLabel(size, 0.05)).toContain("changes the parameter length");
   });
 
-  it("of more, or of a parameter that is one itself, is not changed and says why", () => {
+  it("does not change a formula of more, or of a parameter that is one itself, and gives the reason", () => {
     expect(grips["size-y"]!.number.blocked).toContain("follows a formula itself");
     expect(grips["size-z"]!.number.blocked).toContain("“= length - 2*half”");
     expect(write(grips["size-z"], 0.01)).toEqual([]);
@@ -122,12 +122,12 @@ describe("other kinds", () => {
       { path: ["shapes", "it", "by", 0], value: "2 mm" },
     ]);
     expect(gripsOf({ kind: "union", of: ["a"] }, { kind: "union" })).toEqual({});
-    // While the kind was just changed, what the design comes to is still of the other.
+    // While the kind was just changed, the values of the design are still of the other.
     expect(gripsOf({ kind: "sphere" }, SOLVED)).toEqual({});
   });
 });
 
-it("comes to whole steps, within what is allowed", () => {
+it("comes to whole steps, within its bounds", () => {
   const tube = { kind: "tube", radius: "5 mm", wall: "2 mm", height: "9 mm" };
   const solved = {
     kind: "tube",

@@ -9,7 +9,7 @@ it("has every kind of the schema in one group", () => {
   expect([...all].sort()).toEqual([...SHAPE_KINDS].sort());
 });
 
-it("finds kinds by name, by group and by what is said of them", () => {
+it("finds kinds by name, by group and by description", () => {
   const found = (search: string) =>
     foundGroups(search, SHAPE_GROUPS, about).flatMap((group) => group.kinds);
   expect(found("")).toEqual(all);

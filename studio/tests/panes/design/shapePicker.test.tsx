@@ -45,7 +45,7 @@ it("begins in its field, and arrow keys go from kind to kind", () => {
   expect(field()!.getAttribute("aria-activedescendant")).toMatch(/rounded-box$/);
 });
 
-it("adds what is found, and gives the focus back", () => {
+it("adds the found shape, and gives the focus back", () => {
   type("cyl");
   expect(active()).toBe("cylinder");
   key("Enter");

@@ -30,7 +30,7 @@ it("leaves the place of a first shape to its kind", () => {
   expect(shapeStarter("shell", first)).toMatchObject({ of: { kind: "sphere" } });
 });
 
-it("makes what combines of the shape that is chosen, and of the next", () => {
+it("makes combining shapes of the shape that is chosen, and of the next", () => {
   expect(shapeStarter("difference", ON_TOP)).toEqual({ kind: "difference", of: ["hole", "block"] });
   expect(shapeStarter("translate", ON_TOP)).toEqual({
     ...{ kind: "translate", of: "hole", by: ["10 mm", 0, 0] },

@@ -33,8 +33,8 @@ describe("a new shape", () => {
   });
 });
 
-describe("what is done with a shape", () => {
-  it("leaves its name to what it becomes, so that parts go on with it", () => {
+describe("actions with a shape", () => {
+  it("leaves its name to the new shape, so that parts go on with it", () => {
     expect(verb("Hollow it out")).toEqual([
       { path: ["shapes", "box-whole"], value: BOX },
       {
@@ -80,7 +80,7 @@ describe("what is done with a shape", () => {
     expect(joined("ball", "cut", smooth)[1]?.changes).toHaveLength(2);
   });
 
-  it("knows what is made of what, so that nothing becomes a part of itself", () => {
+  it("knows the operands of shapes, so that nothing becomes a part of itself", () => {
     const shapes = {
       box: BOX,
       cut: { kind: "shell", of: "box" },

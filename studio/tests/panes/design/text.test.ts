@@ -36,7 +36,7 @@ describe("placeAt", () => {
     expect(at('a = "# [x" # b = {\nc|')).toMatchObject({ at: "key", path: [], word: "c" });
     expect(at("a = 1 # wh|y")).toMatchObject({ at: "comment" });
   });
-  it("knows headers, and what was read before", () => {
+  it("knows headers, and the text before", () => {
     expect(at("[sha|")).toMatchObject({ at: "header", word: "sha" });
     expect(at('[shapes]\nbody = { kind = "box", |').read).toEqual({
       shapes: { body: { kind: "box" } },
@@ -91,7 +91,7 @@ describe("renamed", () => {
       '[histories]\nrise = { time = [0] }\n[[loads]]\nhistory = "rise" # lift',
     );
   });
-  it("renames a shape where shapes are named, not what is only called alike", () => {
+  it("renames a shape where shapes are named, not other things of its name", () => {
     const after = renamed(text, "shapes", "wall", "hull");
     expect(after).toContain('hull = { kind = "box", size = ["= wall"');
     expect(after).toContain('of = ["hull", "other"]');
@@ -138,7 +138,7 @@ it("renames a body or an object where they are spoken of", () => {
   ]);
 });
 
-it("orders shapes below what uses them, each once", () => {
+it("orders shapes below their users, each once", () => {
   const shapes = {
     a: { kind: "box" },
     b: { kind: "union", of: ["a", "c"] },
@@ -163,7 +163,7 @@ it("finds problems at a place and below it, not at one that begins alike", () =>
   expect(problemsAt(found, ["parts"])).toHaveLength(2);
 });
 
-it("changes only what differs between two texts", () => {
+it("changes only the differences between two texts", () => {
   expect(difference("a = 1\nb = 2", "a = 13\nb = 2")).toEqual({ from: 5, to: 5, insert: "3" });
   expect(difference("aa", "aaa")).toEqual({ from: 2, to: 2, insert: "a" });
 });
@@ -183,7 +183,7 @@ it("tells rows of the tree apart where a shape is used several times", () => {
 
 describe("changes of a table", () => {
   const path = ["objectives", "goal"];
-  it("are those of keys, and leave what is the same alone", () => {
+  it("are those of keys, and leave equal values alone", () => {
     const before = { maximize: "mass", probe: "tip", axis: "z" };
     const after = { minimize: "mass", probe: "tip", axis: "x" };
     expect(changesOf(path, before, after)).toEqual([

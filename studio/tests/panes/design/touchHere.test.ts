@@ -83,7 +83,7 @@ describe("a plate on a face", () => {
     expect(plateOn(face, around(ABOVE))?.size).toEqual(["= length", "20 mm", "10 mm"]);
   });
 
-  it("fits in front of what is opposite, and is none on an oblique face", () => {
+  it("fits in front of the opposite face, and is none on an oblique face", () => {
     const two = boxes(
       { low: [0, 0, 0], high: [0.04, 0.02, 0.01] },
       { low: [0, 0, 0.014], high: [0.04, 0.02, 0.02] },
@@ -94,7 +94,7 @@ describe("a plate on a face", () => {
   });
 });
 
-describe("what the body can touch", () => {
+describe("things the body can touch", () => {
   it("is a plate, also one that is pressed into it, with the friction that all have", () => {
     const { plate, press } = byId(touchOffers(around(ABOVE)));
     const [object, contact] = plate!.changes;
@@ -129,7 +129,7 @@ describe("what the body can touch", () => {
     const { plate, press, floor } = byId(touchOffers(held));
     expect(press?.label).toContain("a clamp holds this face");
     expect([press?.disabled, press?.changes]).toEqual([true, []]);
-    // What rests may lie on what is held.
+    // An object at rest may lie on a held one.
     expect([plate?.disabled, floor?.disabled]).toEqual([undefined, undefined]);
     const other = around(ABOVE, { body: body({ clamps }) });
     expect(byId(touchOffers(other)).press?.disabled).toBeUndefined();
@@ -191,7 +191,7 @@ describe("what the body can touch", () => {
   });
 });
 
-describe("what is bonded", () => {
+describe("bonds", () => {
   it("is a plate on the face, with a pair that says so", () => {
     expect(byId(bondOffers(around(ABOVE))).plate?.changes).toMatchObject([
       { path: ["objects", 0], value: { name: "plate", motion: "fixed" } },
@@ -199,7 +199,7 @@ describe("what is bonded", () => {
     ]);
   });
 
-  it("is what is within half a voxel of the face", () => {
+  it("take things within half a voxel of the face", () => {
     const near = around(ABOVE, { body: body({ objects: [BALL] }) });
     expect(byId(bondOffers(near))["thing-ball"]?.changes[0]?.value).toEqual({
       pairs: [{ of: ["body", "ball"], kind: "bonded" }],
@@ -243,7 +243,7 @@ describe("a pair of contact", () => {
     expect(chosen?.at[2]).toBeCloseTo(0.011, 6);
   });
 
-  it("of a floor is drawn under the body, around it", () => {
+  it("draw a floor under the body, around it", () => {
     const corners = floorCorners(
       [
         [0, 0, 0],

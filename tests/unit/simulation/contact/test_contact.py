@@ -1,4 +1,4 @@
-"""Contact in equilibrium: objects that press, slits that close, and what is refused."""
+"""Contact in equilibrium: objects that press, slits that close, and refusals."""
 
 import numpy as np
 import pytest
@@ -64,7 +64,7 @@ def test_a_plate_presses_as_a_clamp_does_that_leaves_the_sides_free(result):
 
 def test_forces_balance_and_the_plate_is_where_it_was_sent(result):
     (contact,) = result.contacts
-    # The foot carries what the plate presses, and nothing else does.
+    # The foot carries the force of the plate, and nothing else does.
     foot = result.reactions[:, 2].sum()
     assert foot == pytest.approx(-contact.force[2], rel=1e-6)
     assert result.residual < 1e-6
@@ -114,7 +114,7 @@ def test_lips_of_a_slit_meet_and_do_not_pass_through_each_other():
     through, kept = simulate(slit(None)), simulate(slit(Contact()))
     assert through.penetration.depth > 0.1 * mm
     assert kept.status == "ok"
-    # What touches are the bilinear faces of voxels; the test for overlaps takes each as two
+    # The contact surfaces are the bilinear faces of voxels; the test for overlaps takes each as two
     # triangles, which stand out of a face that is warped.
     assert kept.penetration.depth < 0.01 * 2 * mm
     (contact,) = kept.contacts
@@ -138,7 +138,7 @@ def test_a_design_with_contact_is_saved_and_read_back(tmp_path):
         ({"objects": [{"name": "a", "shape": "nothing"}]}, "nothing"),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_place(changes, message):
+def test_invalid_entries_are_refused_with_their_place(changes, message):
     with pytest.raises(DesignError, match=message):
         pressed(**changes)
 
@@ -193,7 +193,7 @@ def test_an_arc_along_which_a_plate_moves_ends_where_load_control_does(friction)
     assert off < (1e-4 * by_load.design.voxel_size if friction == 0.0 else step)
 
 
-def test_what_knows_no_contact_says_so(result):
+def test_solvers_without_contact_say_so(result):
     with pytest.raises(DesignError, match="objects: is not known to states"):
         result_at(Setup.of(pressed()), result.positions)
     lattice = vs.Part(shape=BLOCK, material=vs.Lattice(edge=25 * kPa, bulk=100 * kPa))
@@ -213,7 +213,7 @@ def test_a_side_of_an_object_that_goes_through_samples_is_there():
 
 
 @pytest.mark.slow
-def test_a_path_that_ends_early_proposes_what_knows_contact():
+def test_a_path_that_ends_early_proposes_a_control_with_contact():
     # The plate ends 0.3 mm below the ground that the block stands on.
     result = simulate(pressed(way=-SIDE - 0.8 * mm))
     assert result.status == "not-at-rest"
@@ -223,7 +223,7 @@ def test_a_path_that_ends_early_proposes_what_knows_contact():
 
 
 @pytest.mark.parametrize("what", ["floor", "plate"])
-def test_a_clamped_end_may_lie_on_what_the_body_touches(what):
+def test_a_clamped_end_may_lie_on_a_touched_object(what):
     # Clamped vertices that touch to the last bit are not the clearance apart, and never will be.
     side = 10 * mm
     below = {"floor": {"z": 0.0}}

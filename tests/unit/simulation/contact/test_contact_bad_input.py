@@ -1,4 +1,4 @@
-"""Objects that cannot be what they are meant to be: open meshes, and plates thinner than a step."""
+"""Objects unfit for their purpose: open meshes, and plates thinner than a step."""
 
 import numpy as np
 import pytest
@@ -55,7 +55,7 @@ def test_a_plate_that_moves_through_the_body_is_not_let_through():
     assert found.load_factor < 0.5
 
 
-def test_blocked_force_is_what_holds_an_object():
+def test_blocked_force_holds_an_object():
     found = simulate(pressed())
     (contact,) = found.contacts
     assert found.metric("blocked_force", object="plate", axis="z") == -contact.force[2] > 0.0

@@ -1,4 +1,4 @@
-"""Bonded pairs: what hangs on them, lets go, and is refused; objects that are separated."""
+"""Bonded pairs: hanging bodies, bonds that let go, refusals; objects that are separated."""
 
 import json
 
@@ -47,14 +47,14 @@ BELOW = (6 * mm, 6 * mm, -3 * mm)
 
 
 @pytest.mark.parametrize("gap", [0.0, 0.5 * mm, -0.5 * mm])
-def test_what_is_bonded_hangs(gap):
+def test_a_bonded_object_hangs(gap):
     center = (6 * mm, 6 * mm, -3 * mm - gap)
     hanging = simulate(ceiling(center, {"kind": "bonded"}))
     assert (hanging.status, hanging.stable) == ("ok", True)
     (contact,) = hanging.contacts
     assert contact.of == ("body", "weight")
     assert contact.force == pytest.approx((0, 0, -MASS * GRAVITY), abs=1e-6 * MASS * GRAVITY)
-    # What is over the weight, to half of the voxels' parts.
+    # The force over the weight, to half of the voxels' parts.
     assert contact.bonded == pytest.approx((8 * mm) ** 2, rel=0.5)
     assert contact.area == contact.bonded == hanging.summary()["contacts"][0]["bonded"]
     # The gap at rest stays: the weight goes down as the face does.
@@ -77,7 +77,7 @@ def test_over_time_it_hangs_too():
 def test_a_weak_bond_lets_its_weight_fall():
     area = simulate(ceiling(BELOW, {"kind": "bonded"})).contacts[0].area
     mean = MASS * GRAVITY / area
-    # The traction is larger at the rim of what is rigid.
+    # The traction is larger at the rim of a rigid part.
     strong = simulate(ceiling(BELOW, {"kind": "bonded", "strength": 5 * mean}))
     assert strong.status == "ok"
     assert strong.contacts[0].bonded == pytest.approx(area)

@@ -25,7 +25,7 @@ def top_of(result):
 
 @pytest.fixture(scope="module")
 def dragged():
-    """A block that is pressed, and dragged along x by what sticks."""
+    """A block that is pressed, and dragged along x by sticking friction."""
     way = vs.Motion(displacement=(0.5 * mm, 0, -1.5 * mm))
     plate = PLATE.replace(motion=way)
     return simulate(pressed(objects=[plate], contact=Contact(friction=0.8)))
@@ -56,7 +56,7 @@ def test_pressure_and_friction_over_the_surface_are_the_force(dragged):
     # that pressure has a share along the plate, as friction has one across it below.
     assert rubbed[0] == pytest.approx(contact.force[0], abs=1e-6 * pressed_by)
     assert rubbed[0] > 0.05 * pressed_by
-    # The plate is flat: what is along it is friction, and what is across it is pressure.
+    # The plate is flat: the component along it is friction, and that across it is pressure.
     assert abs(rubbed[2]) < 1e-6 * pressed_by
     bound = 0.8 * field.pressure
     assert (np.linalg.norm(field.friction, axis=1) <= 1.01 * bound + 1.0).all()
@@ -100,7 +100,7 @@ def test_the_command_line_tells_and_draws_it(dragged, tmp_path):
     assert (tmp_path / "run" / "contact.png").stat().st_size > 10_000
 
 
-def test_colors_of_a_picture_go_up_to_the_largest_pressure_of_a_small_place():
+def test_colors_go_up_to_the_largest_pressure_of_a_small_place():
     """Most of a body is pressed by nothing; 99 % of its area end far below that."""
     fine = simulate(pressed(voxel_size=1 * mm, objects=[], loads=[vs.Gravity()]))
     count = len(fine.mesh.vertices)

@@ -35,7 +35,7 @@ def test_a_ball_that_starts_above_a_pad_comes_to_lie_on_it():
     assert found.objects["ball"].position[2] == pytest.approx(height, abs=1e-3 * mm)
 
 
-def test_what_is_gripped_is_held_by_friction():
+def test_a_gripped_object_is_held_by_friction():
     held = statics(pinched(0.7, objects=[bar(40 * mm)]))
     assert held.status == "ok"
     (contact,) = held.contacts
@@ -49,7 +49,7 @@ def test_what_is_gripped_is_held_by_friction():
     assert contact.summary()["friction_bound"] == contact.bound
 
 
-@pytest.mark.slow  # what slides out of a grip takes long; the core's tests have a quick one
+@pytest.mark.slow  # sliding out of a grip takes long; the core's tests have a quick one
 def test_a_grip_lets_go_at_its_margin():
     near = statics(pinched(0.02, objects=[bar(40 * mm)]))
     least = 0.02 / near.metric("hold_margin", object="block")
@@ -62,7 +62,7 @@ def test_a_grip_lets_go_at_its_margin():
     assert 'the object "block" falls or slides away' in fallen.message
 
 
-def test_what_nothing_holds_is_named_and_exits_with_4(tmp_path):
+def test_an_unheld_object_is_named_and_exits_with_4(tmp_path):
     stone = Object(
         name="stone",
         shape=vs.Sphere(radius=6 * mm, center=(60 * mm, 10 * mm, 20 * mm)),
@@ -107,7 +107,7 @@ def test_a_body_that_nothing_holds_is_named():
         statics(dropped(clamps=[], objects=[], contact=Contact()))
 
 
-def test_what_balances_is_called_unstable():
+def test_a_balanced_object_is_called_unstable():
     # A traced ball on a rigid table stands on a vertex.
     table = Object(
         name="table",

@@ -1,4 +1,4 @@
-"""Metrics of contact: what touches, with what, in results, studies and files."""
+"""Metrics of contact: pairs and forces, in results, studies and files."""
 
 import json
 
@@ -31,7 +31,7 @@ def result():
     return simulate(design)
 
 
-def test_a_result_measures_what_touches(result):
+def test_a_result_measures_contacts(result):
     (contact,) = result.contacts
     assert result.metric("contact_force", object="plate", axis="z") == contact.force[2] < 0.0
     assert result.metric("contact_force", object="plate") == pytest.approx(
@@ -43,11 +43,11 @@ def test_a_result_measures_what_touches(result):
     summary = result.summary()["metrics"]
     assert summary["push"] == contact.force[2]
     assert summary["touch"] == contact.area
-    # What must be told its object is in no list that nobody asked for.
+    # Metrics that need an object are in no list that nobody asked for.
     assert not {"contact_force", "contact_area", "contact_gap", "sticking"} & summary.keys()
 
 
-def test_what_is_apart_has_no_force_but_a_distance(result):
+def test_separate_surfaces_have_no_force_but_a_distance(result):
     for name in ("contact_force", "contact_area", "sticking"):
         assert result.metric(name, object="post") == 0.0
     # Its face is at x = -5 mm, traced to a thousandth of a voxel, and the block bulges toward it.
@@ -89,7 +89,7 @@ def test_a_body_presses_itself():
         ([PLATE], {"minimize": "sticking", "axis": "z"}, "axis: sticking has no direction"),
     ],
 )
-def test_what_has_no_answer_is_refused_by_check_with_its_place(objects, objective, message):
+def test_check_refuses_problems_without_an_answer_with_their_place(objects, objective, message):
     found = check(pressed(objects=objects, objectives={"aim": objective}))
     assert not found.valid
     with pytest.raises(DesignError, match=f"objectives.aim.{message}"):

@@ -1,4 +1,4 @@
-"""Contact over time: objects that fall, are pinched, slip, and what is refused."""
+"""Contact over time: objects that fall, are pinched, slip, and refusals."""
 
 import numpy as np
 import pytest
@@ -54,7 +54,7 @@ def test_free_objects_ask_for_motion_over_time():
 
 
 @pytest.mark.parametrize("step", [pytest.param(5e-3, marks=pytest.mark.slow), 20e-3])
-def test_what_is_pinched_does_not_creep(step):
+def test_a_pinched_object_does_not_creep(step):
     result = simulate(pinched(0.7), end_time=0.6, time_step=step)
     times, heights = result.recording.times, result.recording.objects["capsule"][0][:, 2]
     assert result.status == "ok"
@@ -66,7 +66,7 @@ def test_what_is_pinched_does_not_creep(step):
 
 
 @pytest.mark.slow
-def test_what_is_pinched_slips_at_its_bound():
+def test_a_pinched_object_slips_at_its_bound():
     # Faces wider than the pads: as it slides nothing changes but the friction.
     block = bar(40 * mm)
     weight = 0.045 * GRAVITY
@@ -82,7 +82,7 @@ def test_what_is_pinched_slips_at_its_bound():
     # slips has gone millimeters.
     assert np.ptp(heights[-5:]) < 1e-8
     contact = {contact.of: contact for contact in slid.contacts}[("body", "block")]
-    # What slips is held by the coefficient times the pressure; bounds are right to 0.3 %.
+    # A slipping object is held by the coefficient times the pressure; bounds are right to 0.3 %.
     pressure = np.sqrt(contact.pressed**2 - contact.force[2] ** 2)
     assert -contact.force[2] == pytest.approx(0.96 * friction * pressure, rel=5e-3)
     steady = slid.recording.times >= 0.15
@@ -92,7 +92,7 @@ def test_what_is_pinched_slips_at_its_bound():
     assert fallen[-1] < -1 * mm
 
 
-def test_what_slides_out_of_a_grip_falls_freely():
+def test_an_object_that_slides_out_of_a_grip_falls_freely():
     block = bar(16 * mm)
     # Its upper edge passes the faces of the pads, which bulge out over it.
     result = simulate(pinched(0.01, objects=[block]), end_time=0.24, time_step=5e-3)
@@ -105,7 +105,7 @@ def test_what_slides_out_of_a_grip_falls_freely():
     assert (rate - before) / 0.02 == pytest.approx(-GRAVITY, rel=1e-4)
 
 
-def test_what_falls_for_ever_is_called_by_its_name():
+def test_an_endless_fall_is_reported_as_such():
     away = Object(name="stone", shape=BALL, motion="free", mass="1 g", voxel_size=3 * mm)
     aside = {"shape": vs.Sphere(radius=6 * mm, center=(60 * mm, 10 * mm, 20 * mm))}
     result = simulate(dropped(objects=[away.replace(**aside)]), end_time=2.0, time_step=0.02)
@@ -149,7 +149,7 @@ def test_the_mass_of_an_object_is_that_of_its_density():
         ({"motion": "free", "mass": "1 g", "name": "floor"}, 'the name "floor" is taken'),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_place(changes, message):
+def test_invalid_entries_are_refused_with_their_place(changes, message):
     with pytest.raises(DesignError, match=message):
         dropped(objects=[{"name": "ball", "shape": BALL} | changes])
 
@@ -204,7 +204,7 @@ def test_a_pose_has_the_middle_of_the_box_also_where_mass_is_off_it():
         ({"objects": ["ball", "same"]}, r'objects\[1\]: is .* mm deep in "ball" at'),
     ],
 )
-def test_what_overlaps_at_rest_is_refused(changes, message):
+def test_overlap_at_rest_is_refused(changes, message):
     ball = Object(name="ball", shape=BALL, motion="free", mass="1 g", voxel_size=3 * mm)
     low = vs.Sphere(radius=6 * mm, center=(60 * mm, 10 * mm, -8 * mm))
     named = {

@@ -1,4 +1,4 @@
-"""What is said to overlap where contact keeps surfaces apart."""
+"""Reported overlaps where contact keeps surfaces apart."""
 
 import numpy as np
 import pytest
@@ -43,7 +43,7 @@ def warnings_of(design, mesh, positions):
 
 
 @pytest.mark.parametrize("surface", ["smooth", "voxels"])
-def test_what_contact_has_not_kept_apart_is_reported(surface):
+def test_overlap_despite_contact_is_reported(surface):
     design = blocks(Contact(surface=surface))
     mesh, positions = placed(design, depth=3 * mm)
     (warning,) = warnings_of(design, mesh, positions)
@@ -54,7 +54,7 @@ def test_what_contact_has_not_kept_apart_is_reported(surface):
 @pytest.mark.parametrize(
     "contact", [None, Contact(pairs=[{"of": ["body", "body"], "kind": "none"}])]
 )
-def test_what_nothing_keeps_apart_is_reported_at_any_depth(contact):
+def test_overlap_without_contact_is_reported_at_any_depth(contact):
     design = blocks(contact)
     mesh, positions = placed(design, depth=0.1 * mm)
     (warning,) = warnings_of(design, mesh, positions)

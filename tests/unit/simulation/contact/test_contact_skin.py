@@ -90,11 +90,11 @@ def test_pressures_are_on_the_vertices_of_the_faces(result):
 
 def test_cut_voxels_meet_the_same_surface(reference):
     (contact,) = simulate(pressed_ball("smooth", fill="fraction")).contacts
-    # As full ones, where contact with whole faces is 69 % off.
+    # Tolerance of full ones, where contact with whole faces is 69 % off.
     assert 4 * contact.pressed == pytest.approx(reference["force_N"], rel=0.06)
 
 
-def test_what_overlaps_at_rest_is_judged_by_the_surface_that_touches():
+def test_overlap_at_rest_is_judged_by_the_contact_surface():
     # The ball ends at 0, its voxels below 1.25 mm are empty.
     plane = Object(name="plane", shape=box((-5, -5, -5), (35, 35, 0.5)))
     with pytest.raises(DesignError, match=r"0\.5 mm deep in the body"):

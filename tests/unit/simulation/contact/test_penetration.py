@@ -1,4 +1,4 @@
-"""What results say of a body that is in itself, in its films or in its floor."""
+"""Reports of results about a body that is in itself, in its films or in its floor."""
 
 import json
 import tomllib
@@ -90,7 +90,7 @@ def test_a_body_that_is_free_of_itself_has_no_warning_and_no_depth():
     assert result.warnings == ()
 
 
-def test_a_trial_keeps_what_is_doubtful_and_its_record_too(pressed):
+def test_a_trial_and_its_record_keep_doubts(pressed):
     outcome = evaluate_design(pressed.design)
     assert outcome.status == "ok"
     assert outcome.metrics["penetration"] == pytest.approx(pressed.penetration.depth)

@@ -227,7 +227,7 @@ function wayOf(root: Schema, object: Schema): Schema {
   return options.map((option) => resolve(root, option)).find((one) => one.properties) ?? {};
 }
 
-/** What of contact is not of one object. */
+/** Entries of contact that are not of one object. */
 export function ContactSection() {
   const { root, source } = useForm();
   const given = root.properties?.contact;

@@ -1,4 +1,4 @@
-// Objects to grip: what is written of a new one, of another motion, and of its friction.
+// Objects to grip: the text of a new one, of another motion, and of its friction.
 import { parseQuantity } from "../../../controls/units";
 import type { BodyEvent, Triple } from "../../../protocol";
 import type { Change } from "../edits";
@@ -91,13 +91,13 @@ export function resized(shape: unknown, factor: number): Table | null {
   }
 }
 
-/** How an object moves as it is written. */
+/** Motion of an object as it is written. */
 export function motionOf(object: Table): Motion {
   if (object.motion === "free") return "free";
   return typeof object.motion === "object" && object.motion !== null ? "moved" : "fixed";
 }
 
-/** The same object with another motion, and with the mass that it then needs or not. */
+/** Replace the motion of an object, and its mass, which it then needs or not. */
 export function withMotion(object: Table, motion: Motion, body: BodyEvent | null): Table {
   const { mass, density, motion: _, ...rest } = object;
   switch (motion) {
@@ -152,7 +152,7 @@ export function frictionEdit(
     return [{ path, value: contact === undefined ? { friction } : friction }];
   }
   if (bodies.length > 1) {
-    // The same with each of them, one pair each.
+    // Copies with each of them, one pair each.
     const changed = pairs.map((pair, at) => (of.includes(at) ? { ...pair, friction } : pair));
     const missing = bodies.filter((_, i) => (of[i] ?? -1) < 0);
     const value = [...changed, ...missing.map((body) => ({ of: [body, name], friction }))];

@@ -1,4 +1,4 @@
-// Gripping and lifting as a program over time: what holds closes on an object, then goes up with it.
+// Gripping and lifting as a program over time: grippers close on an object, then go up with it.
 import type { Change } from "../edits";
 import { type Room, written } from "./placing";
 
@@ -8,11 +8,11 @@ type Table = Readonly<Record<string, unknown>>;
 const CLOSING = [0.1, 0.4] as const;
 const LIFTING = [0.5, 0.8] as const;
 const END = 1;
-/** Weight comes on in some steps: what drops onto a floor bounces. */
+/** Weight comes on in some steps: an object that drops onto a floor bounces. */
 const WEIGHT = 0.1;
 /** Contact that changes much within a step halves it by itself. */
 const STEP = "20 ms";
-/** What is left between an object and the floor that it stands on, in voxels. */
+/** Gap between an object and the floor that it stands on, in voxels. */
 const ABOVE_FLOOR = 0.01;
 /** Keys of a solver that any method takes. */
 const OF_ALL = ["refine", "error"] as const;
@@ -24,13 +24,13 @@ const ramp = ([from, to]: readonly [number, number]) => ({
   factor: [0, 1],
 });
 
-/** How high an object is lifted, m: as high as it is, to one digit. */
+/** Height by which an object is lifted, m: its own height, to one digit. */
 export const liftOf = ({ low, high }: Room): number => Number((high[2] - low[2]).toPrecision(1));
 
 /**
  * The changes by which a free object is gripped and lifted; empty where nothing of the design could do it.
  *
- * `object` and `body` are their boxes in m. What has a history or a motion of its own keeps it.
+ * `object` and `body` are their boxes in m. Things with a history or a motion of their own keep it.
  */
 export function lifting(source: Table, object: Room, body: Room, voxel: number): Change[] {
   const clamps = listOf(source, "clamps");
@@ -46,7 +46,7 @@ export function lifting(source: Table, object: Room, body: Room, voxel: number):
     }
     return name;
   };
-  // Under what hangs lower than the object there is no room for a floor: it is held first, and heavy then.
+  // A body that hangs lower than the object leaves no room for a floor: it is held first, and heavy then.
   const stands = source.floor !== undefined || object.low[2] < body.low[2];
   if (stands && source.floor === undefined) {
     const z = written(object.low[2] - ABOVE_FLOOR * voxel);

@@ -10,9 +10,9 @@ import { written, writtenPlace } from "./placing";
 type Table = Readonly<Record<string, unknown>>;
 type Triple = readonly [number, number, number];
 
-/** The room between the two as a part of what is mirrored, across the plane. */
+/** The room between the two as a part of the mirrored body, across the plane. */
 const SHARE = 1.25;
-/** What holds directions or lines that this does not turn over. */
+/** Keys of directions or lines that this does not turn over. */
 const UNKNOWN = ["bodies", "symmetry", "springs", "tendons", "supplies", "connections"] as const;
 const DIRECTED = ["fibers", "remanence"] as const;
 
@@ -25,7 +25,7 @@ const isTable = (value: unknown): value is Table =>
 /** The plane halfway to the image, which moves with the room between the two. */
 interface Plane {
   readonly axis: number;
-  /** Of the face: m where it is a number, and as it is written. */
+  /** Position of the face: m where it is a number, and as it is written. */
   readonly face: number | null;
   readonly formula: string;
   /** 1 where the image lies at larger coordinates. */
@@ -44,14 +44,14 @@ function metersOf(value: unknown): number | null {
   return "value" in read ? read.value : null;
 }
 
-/** A sum as a formula: what is a number first, unless it is 0. */
+/** A sum as a formula: its number first, unless it is 0. */
 function sum(constant: number, sign: 1 | -1, name: string): string {
   const first = Math.abs(constant) < 5e-7 ? "" : `${written(constant)} `;
   if (first) return `= ${first}${sign > 0 ? "+" : "-"} ${name}`;
   return sign > 0 ? `= ${name}` : `= -${name}`;
 }
 
-/** Where the plane itself is. */
+/** Position of the plane itself. */
 function middle({ face, formula, sign, apart }: Plane): string {
   if (face !== null) return sum(face, sign, `${apart}/2`);
   return `= ${formula} ${sign > 0 ? "+" : "-"} ${apart}/2`;
@@ -112,7 +112,7 @@ function regionImage(region: Table, plane: Plane, both: ReadonlySet<string>): Ta
   };
 }
 
-/** Whether all of a design can be mirrored. */
+/** Check if all of a design can be mirrored. */
 export function canMirror(source: Table): boolean {
   const lines = UNKNOWN.some((section) => listOf(source, section).length > 0);
   const parts = listOf(source, "parts");
@@ -127,7 +127,7 @@ export function roomBetween(face: Face, size: Triple): number {
 }
 
 /**
- * What adds the image of a design opposite a face of it, across one axis.
+ * Changes that add the image of a design opposite a face of it, across one axis.
  *
  * `size` is that of the body in m, and `cavities` how many it has. A pressure in the only one becomes that of all,
  * so that one number drives both.
@@ -254,7 +254,7 @@ function loadImages(
   return changes;
 }
 
-/** Where the middle between a body and its image is, as it is written; null where there is none at a place. */
+/** Middle between a body and its image, as it is written; null where there is none at a place. */
 export function planeAt(
   axis: number,
   meters: number,
@@ -274,7 +274,7 @@ export function planeAt(
   return null;
 }
 
-/** A place between a body and its image: what is written of the plane, and the rest in mm. */
+/** A place between a body and its image: the written position of the plane, and the rest in mm. */
 export function placeBetween(
   axis: number,
   center: Triple,

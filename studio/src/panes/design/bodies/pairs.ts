@@ -1,14 +1,14 @@
-// Pairs of contact in the text: what of two things differs from all others, read and written.
+// Pairs of contact in the text: entries of two things that differ from all others, read and written.
 import type { Change } from "../edits";
 
 type Table = Readonly<Record<string, unknown>>;
 export type PairKind = "touching" | "none" | "bonded";
 
-/** How two things meet, as it is written: the last pair of theirs, or what holds for all. */
+/** Contact of two things, as it is written: the last pair of theirs, or the entries for all. */
 export interface Meeting {
   readonly kind: PairKind;
   readonly friction: unknown;
-  /** Whether a pair of their own says so. */
+  /** True if it is written in a pair of their own. */
   readonly own: boolean;
 }
 

@@ -1,4 +1,4 @@
-// Where a new object to grip stands, and how large it is: beside the body, where nothing is yet.
+// Place and size of a new object to grip: beside the body, where nothing is yet.
 import { bytesOf } from "../../../engine/base64";
 import type { BodyEvent, Triple } from "../../../protocol";
 
@@ -12,10 +12,10 @@ export interface Surroundings {
   readonly body: Room;
   /** Other objects. */
   readonly taken: readonly Room[];
-  /** Middle of what is held, if anything is. */
+  /** Middle of the clamped vertices, if there are any. */
   readonly held: Triple | null;
   readonly floor: number | null;
-  /** What is left free between the two, m. */
+  /** Gap between the two, m. */
   readonly gap: number;
 }
 
@@ -29,7 +29,7 @@ const AXES = [0, 1, 2] as const;
 const middleOf = ({ low, high }: Room): Triple =>
   AXES.map((axis) => (low[axis] + high[axis]) / 2) as Triple;
 
-/** What there is around a new object; null before there is a body. */
+/** Surroundings of a new object; null before there is a body. */
 export function surroundingsOf(body: BodyEvent | null, floor: unknown): Surroundings | null {
   if (!body) return null;
   const [low, high] = body.bounds;
@@ -66,7 +66,7 @@ export function sideFor(around: Surroundings | null): number {
   return Number(Math.max(SHARE * longest, LEAST_VOXELS * around.gap).toPrecision(2));
 }
 
-/** The axis along which a new object stands beside the body, and on which side: away from what is held. */
+/** The axis along which a new object stands beside the body, and its side: away from the clamps. */
 function sideOfBody({ body, held, floor }: Surroundings): [0 | 1 | 2, 1 | -1] {
   const middle = middleOf(body);
   const away = held ? AXES.map((axis) => middle[axis] - held[axis]) : [0, 0, -1];

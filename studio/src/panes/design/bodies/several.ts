@@ -3,10 +3,10 @@ import { bytesOf } from "../../../engine/base64";
 import type { BodyEvent, Triple } from "../../../protocol";
 import { boxOf, type Room } from "./placing";
 
-/** What contact calls the body of a design that has no others. */
+/** Name in contact of the body of a design that has no others. */
 export const BODY = "body";
 
-/** Whether a body is that of an entry, or one of those of its design. */
+/** Check if a body is that of an entry, or one of those of its design. */
 export const isOf = (name: string, entry: string | null): boolean =>
   entry !== null && (name === entry || name.startsWith(`${entry}.`));
 
@@ -41,7 +41,7 @@ export function roomOf(name: string, body: BodyEvent): Room | null {
   );
 }
 
-/** Where along x everything ends, with a voxel of room, m. */
+/** End along x of all bodies, with a voxel of room, m. */
 export function beyondOf(body: BodyEvent | null): number {
   if (!body) return 0;
   const objects = body.objects.map((object) => roomOf(object.name, body));

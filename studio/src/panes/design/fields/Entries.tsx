@@ -26,13 +26,13 @@ interface EntryProps {
   wrong: boolean;
   testId?: string;
   depth?: number;
-  /** Whether it is what the picture marks. */
+  /** True if the picture marks it. */
   chosen?: boolean;
-  /** Whether it is open, where another place decides that too. */
+  /** True if it is open, where another place decides that too. */
   open?: { readonly is: boolean; set(open: boolean): void };
-  /** What can be dropped on it: the kind of data, and what takes it. */
+  /** Target of a drop: the kind of data, and the function that takes it. */
   drop?: { readonly kind: string; take(data: string): void };
-  /** Where it can be dragged on another, and others on it. */
+  /** Dragging of it onto others, and of others onto it. */
   drag?: HeadDrag;
   actions: readonly {
     readonly glyph: "up" | "down" | "trash" | "more";
@@ -42,9 +42,9 @@ interface EntryProps {
   children: ReactNode;
 }
 
-/** What the line of an entry does when it is dragged, or something is dragged over it. */
+/** Handlers of the line of an entry when it is dragged, or something is dragged over it. */
 export interface HeadDrag {
-  /** Whether what is dragged can be dropped here now. */
+  /** True if the dragged entry can be dropped here now. */
   readonly takes: boolean;
   begin(): void;
   end(): void;
@@ -336,7 +336,7 @@ export function EntryMap(props: {
   title: string;
   what: string;
   empty: string;
-  /** What the first one is called, where it is new; it may depend on what is added. */
+  /** Name of the first one, where it is new; it may depend on the added value. */
   first: string | ((value: Table) => string);
   /** Stands before the button that adds one. */
   action?: ReactNode;

@@ -12,7 +12,7 @@ export type Named =
   | "objectives"
   | "constraints";
 
-/** What has its name in an entry of a list, and not before its table. */
+/** Lists whose entries hold their names, in place of keys before their tables. */
 const THINGS: ReadonlySet<Named> = new Set(["bodies", "objects"]);
 
 export const NAME = /^[A-Za-z_][\w-]*$/;
@@ -21,7 +21,7 @@ function escaped(text: string): string {
   return text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
 }
 
-/** Split a line into what counts and its comment. */
+/** Split a line into its code and its comment. */
 function splitComment(line: string): [string, string] {
   let quote = "";
   for (let i = 0; i < line.length; i++) {
@@ -56,21 +56,21 @@ function mention(code: string, section: Named, from: string, to: string): string
     const quote = whole[0];
     if (section === "parameters") {
       if (!text.trimStart().startsWith("=")) return whole;
-      // What follows a number is its unit, also where a parameter has the same name.
+      // A name after a number is its unit, also where a parameter has the same name.
       const word = new RegExp(
         `(?<![\\w-])(?<!(?<![\\w-])[\\d.]+\\s*)${escaped(from)}(?![\\w-])`,
         "g",
       );
       return `${quote}${text.replace(word, to)}${quote}`;
     }
-    // What is of a body begins with its name: left.tip.
+    // Names in a body begin with its name: left.tip.
     if (section === "bodies" && text.startsWith(`${from}.`))
       return `${quote}${to}${text.slice(from.length)}${quote}`;
     return text === from ? `${quote}${to}${quote}` : whole;
   });
 }
 
-// What names are spoken of where: a probe called like a shape must not rename the shape.
+// Lines that refer to names: a probe called like a shape must not rename the shape.
 const SPEAKS: Readonly<Record<Named, RegExp | null>> = {
   bodies: /\b(?:body|object|cavity|probe)\s*=/,
   objects: /\bobject\s*=/,

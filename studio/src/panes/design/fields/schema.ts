@@ -1,4 +1,4 @@
-// What the JSON Schema of a design says about one place: which control belongs there.
+// Reading of the JSON Schema of a design at one place: the control that belongs there.
 
 export interface Schema {
   readonly $ref?: string;
@@ -50,7 +50,7 @@ const TAGS: Readonly<Record<string, "shapes" | "materials">> = {
   model: "materials",
 };
 
-/** Follow a reference of the schema; what stands beside the reference wins. */
+/** Follow a reference of the schema; keys beside the reference win. */
 export function resolve(root: Schema, schema: Schema): Schema {
   if (!schema.$ref) return schema;
   const name = schema.$ref.split("/").at(-1) ?? "";
@@ -153,7 +153,7 @@ export function optionFor(root: Schema, options: readonly Schema[], value: unkno
 
 const HELP = new WeakMap<Schema, Readonly<Record<string, string>>>();
 
-/** What the description of a table says of its keys: "name" or "x, y" with indented text below. */
+/** Descriptions of the keys of a table in its own description: "name" or "x, y" with indented text below. */
 export function helpOfKeys(schema: Schema): Readonly<Record<string, string>> {
   const known = HELP.get(schema);
   if (known) return known;
@@ -202,7 +202,7 @@ export function listSections(root: Schema): readonly string[] {
     .map(([name]) => name);
 }
 
-/** What one entry of a list is called: "Clamp" for "clamps", "Body" for "bodies". */
+/** Name of one entry of a list: "Clamp" for "clamps", "Body" for "bodies". */
 export function single(section: string): string {
   return labelOf(section.replace(/ies$/, "ys").slice(0, -1));
 }
@@ -213,7 +213,7 @@ export function labelOf(key: string): string {
   return words.length <= 1 ? words : words[0]?.toUpperCase() + words.slice(1);
 }
 
-/** What an entry of a list in a table of some kind is called: its number, or what it does there. */
+/** Name of an entry of a list in a table of some kind: its number, or its role there. */
 export function entryLabel(kind: string | undefined, index: number): string {
   if (kind === "difference") return index === 0 ? "From" : "Minus";
   return String(index + 1);

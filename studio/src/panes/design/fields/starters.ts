@@ -1,4 +1,4 @@
-// What a place of a design begins with when it is added.
+// Value with which a place of a design begins when it is added.
 import type { KINDS } from "../../../protocol";
 import { controlOf, resolve, type Schema } from "./schema";
 
@@ -7,7 +7,7 @@ export interface Names {
   readonly materials: readonly string[];
 }
 
-/** Of each kind of quantity; a kind that is missing is an error of types. */
+/** First value of each kind of quantity; a kind that is missing is an error of types. */
 const FIRST: Readonly<Record<keyof typeof KINDS, string | number>> = {
   length: "10 mm",
   pressure: "1 kPa",
@@ -101,7 +101,7 @@ function tableStarter(root: Schema, schema: Schema, names: Names): Record<string
   return table;
 }
 
-/** The same keys where the new variant has them too, so that a change of kind keeps its sizes. */
+/** Keep the keys that the new variant has too, so that a change of kind keeps its sizes. */
 export function changeVariant(
   fresh: Readonly<Record<string, unknown>>,
   variant: Schema,
@@ -114,7 +114,7 @@ export function changeVariant(
   return { ...fresh, ...Object.fromEntries(kept) };
 }
 
-/** What a new material is called: by what it is, as all models but the rigid one are of rubber. */
+/** Name of a new material: by its model, as all models but the rigid one are of rubber. */
 export function materialName(material: Readonly<Record<string, unknown>>): string {
   return material.model === "rigid" ? "rigid" : "rubber";
 }

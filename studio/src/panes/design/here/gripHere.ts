@@ -9,21 +9,21 @@ import { freeName } from "../fields/starters";
 type Table = Readonly<Record<string, unknown>>;
 type Triple = [number, number, number];
 
-/** What an object between two walls takes of the room there. */
+/** Share of the room between two walls that an object there takes. */
 const FILLED = 0.9;
-/** A guess for silicone on what is dry, as of the gripper's tutorial: everyone has to measure their own. */
+/** A guess for silicone on dry surfaces, as in the gripper's tutorial: everyone has to measure their own. */
 export const FIRST_FRICTION = 0.8;
-/** As heavy as water, kg/m³. */
+/** Density of water, kg/m³. */
 const DENSITY = 1000;
 /** Rounding of positions in single precision, as a part of a voxel. */
 const NEAR = 1e-3;
 /** Places along a face are rounded to this, m. */
 const SNAP = 1e-3;
 
-/** What is called how: a sphere to grip is a ball. */
+/** Names by kind: a sphere to grip is a ball. */
 export const nameOf = (kind: Primitive): string => (kind === "sphere" ? "ball" : kind);
 
-/** The middle of what stands at the face, m: where it was pressed along its longer side, else in its middle. */
+/** The middle of an object that stands at the face, m: at the press along its longer side, else in its middle. */
 function standing(face: Face, reach: number): Triple {
   const { axis, point, normal, low, high } = face;
   if (axis === null) return point.map((x, i) => x + reach * normal[i]!) as Triple;
@@ -83,7 +83,7 @@ export function gripHere(
   return { name, changes };
 }
 
-/** The same place lower by a distance, as a cylinder stands on its base. */
+/** Lower a place by a distance, as a cylinder stands on its base. */
 function placeLowered(place: readonly unknown[], center: Triple, by: number): unknown[] {
   const [low] = writtenPlace([center[2] - by, 0, 0]);
   return [place[0], place[1], low];

@@ -1,4 +1,4 @@
-// What can be done at a face of the body that was pressed, and how it is written into the design.
+// Actions at a face of the body that was pressed, and their text in the design.
 import type { Parameter } from "../../../protocol";
 import type { Face } from "../../../view/hands/face";
 import { written, writtenPlace } from "../bodies/placing";
@@ -14,7 +14,7 @@ export interface Verb {
   readonly label: string;
   readonly title: string;
   readonly changes: readonly Change[];
-  /** Whether the body is larger afterwards, so that the picture takes it in anew. */
+  /** True if the body is larger afterwards, so that the picture fits it anew. */
   readonly grows?: boolean;
 }
 
@@ -35,11 +35,11 @@ export function coordinate(meters: number, parameters: readonly Parameter[], vox
       [`= -${name}/2`, -value / 2],
     ])
     .filter(([, value]) => Math.abs(value - meters) < NEAR * voxel);
-  // Where two would do, the next change of one of them would move the place wrongly.
+  // If two forms would do, the next change of one of them would move the place wrongly.
   return forms.length === 1 && forms[0] ? forms[0][0] : written(meters);
 }
 
-/** Whether some text of shapes names a parameter in a number along an axis, or in one of no axis. */
+/** Check if some text of shapes names a parameter in a number along an axis, or in one of no axis. */
 function names(value: unknown, name: RegExp, axis: number): boolean {
   if (typeof value === "string") return value.trim().startsWith("=") && name.test(value);
   if (Array.isArray(value)) {
@@ -144,7 +144,7 @@ export function verbsAt(region: Table, normal: Triple, source: Table): Verb[] {
   ];
 }
 
-/** What can be done in a cavity: a pressure, by the name of the chamber that it has or gets. */
+/** Actions in a cavity: a pressure, by the name of the chamber that it has or gets. */
 export function verbsIn(face: Face, name: string, source: Table): Verb[] {
   const chambers = Object.keys((source.chambers as Table | undefined) ?? {});
   const loads = (source.loads as readonly unknown[] | undefined) ?? [];

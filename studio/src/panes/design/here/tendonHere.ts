@@ -7,10 +7,10 @@ import { freeName } from "../fields/starters";
 
 type Table = Readonly<Record<string, unknown>>;
 
-/** How far below the surface the line runs, and how far around it its anchor pulls, in voxels. */
+/** Depth of the line below the surface, and radius of the pull around its anchor, in voxels. */
 const BELOW = 0.5;
 const AROUND = 1.5;
-/** What a new tendon is pulled by. */
+/** Tension of a new tendon. */
 const TENSION = "100 mN";
 
 const listOf = (source: Table, section: string) =>
@@ -27,7 +27,7 @@ const anchorAt = (point: WrittenPlace, voxel: number) => ({
   radius: written(AROUND * voxel),
 });
 
-/** Whether points of the body are those of a tendon: in designs of several bodies they belong to one of them. */
+/** Check if points of the body can be those of a tendon: in designs of several bodies they belong to one of them. */
 export const canHaveTendons = (source: Table) => listOf(source, "bodies").length === 0;
 
 /** A new tendon between two places, straight where it leaves the body. */
@@ -50,7 +50,7 @@ export function tendonBetween(
   };
 }
 
-/** What lets the last tendon go on to another place; null where its end is not a place that was pressed. */
+/** Changes that continue the last tendon to another place; null where its end is not a place that was pressed. */
 export function tendonOn(to: WrittenPlace, voxel: number, source: Table): Change[] | null {
   const last = listOf(source, "tendons").length - 1;
   const through = listOf(source, "tendons")[last]?.through;

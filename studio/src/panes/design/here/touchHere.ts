@@ -1,4 +1,4 @@
-// Contact at a face that was pressed: what the body touches there, and what is bonded to it.
+// Contact at a face that was pressed: objects that the body touches there, and bonds.
 import { bytesOf } from "../../../engine/base64";
 import type { BodyEvent, Parameter } from "../../../protocol";
 import type { Axis, Face } from "../../../view/hands/face";
@@ -14,7 +14,7 @@ import { coordinate, parametersAlong } from "./here";
 type Table = Readonly<Record<string, unknown>>;
 type Triple = readonly [number, number, number];
 
-/** A design as it is written, with what its parameters come to. */
+/** A design as it is written, with the values of its parameters. */
 interface Design {
   readonly source: Table;
   readonly parameters: readonly Parameter[];
@@ -24,7 +24,7 @@ interface Design {
 export interface Offer {
   readonly id: string;
   readonly label: string;
-  /** What it has done, for the toast. */
+  /** Name of the action done, for the toast. */
   readonly done: string;
   readonly changes: readonly Change[];
   /** The object that it adds. */
@@ -38,7 +38,7 @@ const THICK = 2;
 const FILLED = 0.9;
 /** A plate that is pressed goes this part of the body's size into it. */
 const PRESSED = 0.1;
-/** How near what is bonded must be, in voxels, as contact has it. */
+/** Largest distance of bonded surfaces, in voxels, as contact has it. */
 const BOND_REACH = 0.5;
 /** Lengths are written to this, m. */
 const DIGIT = 1e-6;
@@ -56,7 +56,7 @@ function beyond(text: string | number, meters: number, by: number): string | num
   return writtenPlace([meters + by, 0, 0])[0] as string | number;
 }
 
-/** Where the surface of the body ends at a face, as it is written: never inside of it. */
+/** End of the body's surface at a face, as it is written: never inside of it. */
 function levelText(face: Face, axis: Axis, { parameters, source }: Design) {
   const level = face.seat!.level;
   const sign = face.normal[axis] > 0 ? 1 : -1;
@@ -65,12 +65,12 @@ function levelText(face: Face, axis: Axis, { parameters, source }: Design) {
   return { text: isFormula(text) ? text : coordinate(outward, [], face.voxelSize), level: outward };
 }
 
-/** How far a plate stays away from both ends of a face along each axis, m. */
+/** Distances of a plate from both ends of a face along each axis, m. */
 type Ends = readonly (readonly [number, number])[];
 const WHOLE: Ends = [0, 1, 2].map(() => [0, 0] as const);
 
 /**
- * How far a plate that presses stays away from the ends of a face that clamps hold: what cannot move cannot give way.
+ * Distances of a pressing plate from the ends of a face that clamps hold: held vertices cannot give way.
  *
  * Null where vertices elsewhere on the face are held, or nothing would be left.
  */
@@ -121,7 +121,7 @@ export function plateOn(face: Face, design: Design, ends: Ends = WHOLE): Table |
   return { kind: "box", size, center };
 }
 
-/** What contact calls the body that a face is of. */
+/** Name in contact of the body that a face is of. */
 export function ownerOf(face: Face, body: BodyEvent): string {
   const vertex = face.triangles[0] ?? 0;
   const own = body.bodies.find(({ vertices: [a, b] }) => vertex >= a && vertex <= b);
@@ -133,7 +133,7 @@ interface Thing {
   readonly room: Room;
 }
 
-/** What else there is: objects, other bodies, the floor. */
+/** Other things: objects, other bodies, the floor. */
 function others(owner: string, body: BodyEvent, floor: number | null): Thing[] {
   const bodies = body.bodies
     .filter(({ name }) => name !== owner)
@@ -150,7 +150,7 @@ function others(owner: string, body: BodyEvent, floor: number | null): Thing[] {
   return [...bodies, ...objects, { name: FLOOR, room: { low, high } }];
 }
 
-/** How far the boxes of two things are apart at least, m. */
+/** Least distance between the boxes of two things, m. */
 export function apart(a: Room, b: Room): number {
   const gaps = [0, 1, 2].map((i) => Math.max(a.low[i]! - b.high[i]!, b.low[i]! - a.high[i]!, 0));
   return Math.hypot(...gaps);
@@ -181,7 +181,7 @@ function plateOffer(
 export interface Around extends Design {
   readonly face: Face;
   readonly body: BodyEvent;
-  /** What the design comes to, SI. */
+  /** Values of the design, SI. */
   readonly design: Table | null;
 }
 
@@ -191,7 +191,7 @@ const heldOffer = ({ id, label }: Offer): Offer => ({
   label: `${label}: a clamp holds this face`,
 });
 
-/** What the body can touch at a face: something new that lies on it, and what is there already. */
+/** Contacts possible at a face: something new that lies on it, and things already there. */
 export function touchOffers(around: Around): Offer[] {
   const { face, body, source, design } = around;
   const { contact } = source;
@@ -236,7 +236,7 @@ export function touchOffers(around: Around): Offer[] {
 
 const TOUCHES_ITSELF = { label: "itself", done: "The body touches itself" } as const;
 
-/** Whether nothing is lower than a face that looks down. */
+/** Check if nothing is lower than a face that looks down. */
 function isUnderneath(face: Face, body: BodyEvent): boolean {
   if (face.axis !== 2 || face.normal[2] > 0) return false;
   const lowest = Math.min(
@@ -261,7 +261,7 @@ function meets(owner: string, name: string, contact: unknown, id: string): Offer
   };
 }
 
-/** What can be bonded to the body at a face: a plate that lies on it, and what is near enough. */
+/** Bonds possible at a face: a plate that lies on it, and things near enough. */
 export function bondOffers(around: Around): Offer[] {
   const { face, body, source, design } = around;
   const { contact } = source;

@@ -8,7 +8,7 @@ import { edit, replaceText } from "../edits";
 import { NAME, renamed } from "../fields/rename";
 import { useForm } from "../form";
 
-/** What is behind the menu of a parameter: its name, its range and step, and what it means. */
+/** Content of a parameter's menu: its name, its range and step, and its meaning. */
 export function ParameterDetails(props: { parameter: Parameter; onDone(): void }) {
   const { parameter } = props;
   const { source, amounts } = useForm();

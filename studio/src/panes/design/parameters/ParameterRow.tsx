@@ -23,7 +23,7 @@ function writtenValue(parameter: Parameter): number {
   return !parameter.formula && "value" in read ? read.value : parameter.value;
 }
 
-/** A parameter: its value as a number with a slider or as a formula, and a menu of what else. */
+/** A parameter: its value as a number with a slider or as a formula, and a menu of the rest. */
 export function ParameterRow(props: { parameter: Parameter }) {
   const { parameter } = props;
   const { source, diagnostics, amounts } = useForm();
@@ -38,7 +38,7 @@ export function ParameterRow(props: { parameter: Parameter }) {
   const unit = parameter.display_unit;
 
   useEffect(() => {
-    // The document has answered: show what it holds, unless the slider still moves.
+    // The document has answered: show its value, unless the slider still moves.
     if (!sliding.current) hold(null);
   }, [rev]);
 

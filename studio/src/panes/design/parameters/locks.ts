@@ -17,13 +17,13 @@ function currentDocument(): string {
   return document?.path ?? document?.name ?? "";
 }
 
-/** Whether a parameter of the document is locked. */
+/** Check if a parameter of the document is locked. */
 export function useLocked(parameter: string): boolean {
   const document = useStudio((state) => state.document?.path ?? state.document?.name ?? "");
   return useLocks((locks) => locks.of[document]?.includes(parameter) ?? false);
 }
 
-/** The same once, outside of what React draws. */
+/** Check once if it is locked, outside of React's drawing. */
 export function isLocked(parameter: string): boolean {
   return useLocks.getState().of[currentDocument()]?.includes(parameter) ?? false;
 }

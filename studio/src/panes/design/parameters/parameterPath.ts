@@ -1,4 +1,4 @@
-/** Where the value of a parameter is written: a table has it inside. */
+/** Path of the value of a parameter: a table has it inside. */
 export function valuePath(
   source: Readonly<Record<string, unknown>>,
   name: string,

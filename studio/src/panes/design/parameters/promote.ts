@@ -9,11 +9,11 @@ const LEAST = 0.5;
 const MOST = 1.5;
 const NUMBER_AND_UNIT = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*?)\s*$/i;
 const AXES = ["x", "y", "z"];
-/** Keys that say nothing about what the number is. */
+/** Keys that do not describe the number. */
 const SILENT = new Set(["value", "shape", "motion", "of", "region"]);
 const SINGLE: Readonly<Record<string, string>> = { bodies: "body", supplies: "supply" };
 
-/** The words of a place: what it is in, by name or kind, and what of that it is. */
+/** The words of a place: the entry it is in, by name or kind, and its key there. */
 function wordsOf(path: Path, source: Table): string[] {
   const [section, ...rest] = path;
   const words: string[] = [];
@@ -31,7 +31,7 @@ function wordsOf(path: Path, source: Table): string[] {
   return rest.length > 0 ? words : [String(section)];
 }
 
-/** What a parameter of a place is called: letters, digits and _, as formulas know names. */
+/** Name of a parameter of a place: letters, digits and _, as formulas know names. */
 export function parameterName(path: Path, source: Table): string {
   const name = wordsOf(path, source)
     .join("_")
@@ -39,7 +39,7 @@ export function parameterName(path: Path, source: Table): string {
   return /^[A-Za-z]/.test(name) ? name : `p_${name}`;
 }
 
-/** Whether a value of the document is one number, with a unit or without. */
+/** Check if a value of the document is one number, with a unit or without. */
 export function isNumber(value: unknown): boolean {
   return typeof value === "number" || NUMBER_AND_UNIT.test(String(value ?? ""));
 }
@@ -51,7 +51,7 @@ export function promoted(path: Path, value: unknown, source: Table): Change[] {
   ]);
 }
 
-/** The same under a name, where `place` puts the formula. */
+/** Put a value under a name, where `place` puts the formula. */
 export function promotedTo(
   wanted: string,
   value: unknown,

@@ -1,4 +1,4 @@
-// The ways to a new shape: the picker of all kinds, a file, and what most robots begin with.
+// The ways to a new shape: the picker of all kinds, a file, and the first shapes of most robots.
 
 import { useRef } from "react";
 import { MESHES } from "../../../protocol";
@@ -11,11 +11,11 @@ import { type Spot, shapeStarter } from "./shapeStarters";
 
 type Table = Readonly<Record<string, unknown>>;
 
-/** What most robots begin with. */
+/** Shapes with which most robots begin. */
 const STARTS: readonly ShapeKind[] = ["box", "cylinder", "sphere"];
 
 interface Props {
-  /** Where the new shape stands. */
+  /** Place of the new shape. */
   readonly spot: Spot;
   onAdd(shape: Table): void;
 }
@@ -52,7 +52,7 @@ export function AddShape(props: Props & { variants: Readonly<Record<string, Sche
   );
 }
 
-/** Where there is no shape yet: what most robots begin with, one press away. */
+/** First shapes of most robots, one press away, where there is no shape yet. */
 export function FirstShapes(props: Props) {
   return (
     <>

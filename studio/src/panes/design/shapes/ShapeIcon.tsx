@@ -1,4 +1,4 @@
-// A sign for each kind of shape on a grid of 24 pixels: lines, and what of it is filled.
+// A sign for each kind of shape on a grid of 24 pixels: lines, and filled areas.
 import type { ShapeKind } from "./shapeKinds";
 
 const ball = (x: number, y: number, r: number) =>

@@ -9,7 +9,7 @@ import { ShapeIcon } from "./ShapeIcon";
 import { firstFound, foundGroups, SHAPE_GROUPS, type ShapeKind } from "./shapeKinds";
 import "./shapePicker.css";
 
-/** Of the list beside its button, and from the edges of the page, pixels. */
+/** Gap between the list and its button, and the edges of the page, pixels. */
 const GAP = 4;
 const WIDTH = 440;
 const LEAST_HEIGHT = 320;
@@ -96,7 +96,7 @@ function Kinds(props: Props & { opener: HTMLElement; onClose(refocus: boolean): 
     >
       <input
         className="input"
-        // biome-ignore lint/a11y/noAutofocus: it is what was asked for by the press
+        // biome-ignore lint/a11y/noAutofocus: the press asked for it
         autoFocus
         role="combobox"
         aria-expanded="true"

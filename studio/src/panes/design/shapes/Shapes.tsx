@@ -43,7 +43,7 @@ export function Shapes() {
       unfold(name, false);
     }
   };
-  // What moves or combines begins with the shape that is chosen.
+  // A shape that moves or combines others begins with the chosen one.
   const all = Object.keys(shapes);
   const operands = [...all.filter((one) => one === chosen), ...all.filter((one) => one !== chosen)];
   const spot =

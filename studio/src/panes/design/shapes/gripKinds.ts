@@ -9,10 +9,10 @@ export interface KindOfNumber {
   /** Steps at which drags end, and the fine ones of drags and keys with Shift, SI. */
   readonly step: number;
   readonly fine: number;
-  /** What is typed without a unit has this one. */
+  /** Unit of a typed number without one. */
   readonly unit: string;
   text(value: number): string;
-  /** As a design has it. */
+  /** Value as a design has it. */
   written(value: number): unknown;
 }
 

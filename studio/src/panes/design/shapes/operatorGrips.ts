@@ -6,9 +6,9 @@ import { AXES, directionOf, ORIGIN, type Reader, type ShapeGrip, unit } from "./
 
 /** The least factor of a shape that is scaled by hand. */
 const LEAST_FACTOR = 0.01;
-/** Where nothing is drawn yet, a factor has a grip so far from the center, m. */
+/** Distance of a factor's grip from the center, where nothing is drawn yet, m. */
 const REACH = 0.02;
-/** How far a plane is drawn beyond what it mirrors, as a part of that. */
+/** Margin of a plane beyond the mirrored shape, as a part of its size. */
 const BEYOND = 0.1;
 /** The most copies that a shape may have, and that are outlined. */
 const MOST_COPIES = 4096;
@@ -63,13 +63,13 @@ function rotationOf(shape: Reader): readonly Triple[] {
   ];
 }
 
-/** How what is turned moves with its center: by the center, less where the rotation takes it. */
+/** Motion of a turned shape with its center: by the center, less the image of it under the rotation. */
 function turnedAway(shape: Reader): readonly Triple[] {
   const rows = rotationOf(shape);
   return [0, 1, 2].map((k) => rows.map((row, i) => unit(k)[i]! - row[k]!) as Triple);
 }
 
-/** The same of what is scaled. */
+/** Motion of a scaled shape with its center. */
 function scaledAway(shape: Reader): readonly Triple[] {
   const all = factorsOf(shape);
   return IDENTITY.map((own, k) => own.map((x) => x * (1 - all[k]!)) as Triple);
@@ -124,7 +124,7 @@ function factors(shape: Reader, box: Room | null): ShapeGrip[] {
   });
 }
 
-/** How far a box reaches from a point along the axes, m. */
+/** Reach of a box from a point along the axes, m. */
 function farthest(from: Triple, { low, high }: Room): number {
   const sides = [0, 1, 2].map((i) => Math.max(high[i]! - from[i]!, from[i]! - low[i]!));
   return Math.max(...sides, 1e-4);
@@ -141,7 +141,7 @@ function plane(shape: Reader, box: Room | null): ShapeGrip[] {
     : shape.point("point");
   const from = middle.map((x, i) => (i === axis ? 0 : x)) as Triple;
   const way = unit(axis);
-  // Of two copies one stays, and what is drawn of both is no other place of one.
+  // One of the two copies stays, and the picture of both is no other place of one.
   const shift = shape.solved.keep === true ? ORIGIN : (way.map((x) => 2 * x) as Triple);
   return [
     {
@@ -167,7 +167,7 @@ function rectangle(axis: number, at: number, { low, high }: Room): Triple[] {
   return [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1), corner(0, 0)];
 }
 
-/** How far apart copies are along an axis, and how many there are. */
+/** Distance between copies along an axis, and their number. */
 function copiesAlong(shape: Reader, axis: number, box: Room): ShapeGrip[] {
   const count = shape.point("count")[axis]!;
   const spacing = shape.point("spacing")[axis]!;

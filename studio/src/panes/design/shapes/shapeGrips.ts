@@ -1,4 +1,4 @@
-// What of a shape is moved and sized by hand in the picture: for each kind its numbers, and where the
+// Grips that move and size a shape by hand in the picture: for each kind its numbers, and where the
 // grips for them stand. Those of shapes that change others are in operatorGrips.ts.
 import type { Parameter, Triple } from "../../../protocol";
 import type { Room } from "../bodies/placing";
@@ -19,14 +19,14 @@ type Table = Readonly<Record<string, unknown>>;
 /** The shortest length of a shape that is sized by hand, m. */
 const SHORTEST = 1e-4;
 
-/** Where each kind is placed: points of it, the first of those that are written. */
+/** Points that place each kind, the first of those that are written. */
 const PLACES: Readonly<Record<string, readonly string[]>> = {
   ...{ box: ["center", "corner"], "rounded-box": ["center", "corner"] },
   ...{ sphere: ["center"], ellipsoid: ["center"], torus: ["center"] },
   ...{ cylinder: ["base"], tube: ["base"], cone: ["base"], prism: ["base"], revolve: ["base"] },
   ...{ "half-space": ["point"], translate: ["by"] },
 };
-/** Of these both ends move. */
+/** Kinds of which both ends move. */
 const ENDS: Readonly<Record<string, readonly string[]>> = { capsule: ["start", "end"] };
 
 const plus = (a: Triple, b: Triple, by: number): Triple =>
@@ -35,7 +35,7 @@ const plus = (a: Triple, b: Triple, by: number): Triple =>
 /**
  * The grips of a named shape.
  *
- * `source` is the document as it is written, `design` what it comes to in SI, and `box` that of the shape where it
+ * `source` is the document as it is written, `design` its values in SI, and `box` that of the shape where it
  * is drawn, m; none where the shape has neither a place nor a size of its own.
  */
 export function shapeGrips(
@@ -176,7 +176,7 @@ function upright(shape: Reader, round: boolean): ShapeGrip[] {
   return [height, radius];
 }
 
-/** A number that a drag comes to: on whole steps, and within what it may be. */
+/** Value of a number after a drag: on whole steps, and within its bounds. */
 export function snappedValue(grip: ShapeGrip, value: number, step: number): number {
   const { least, most } = grip.number;
   const snapped = Math.min(Math.max(Math.round(value / step) * step, least), most);

@@ -35,7 +35,7 @@ export const SHAPE_GROUPS: readonly ShapeGroup[] = [
   { title: "Files and formulas", kinds: ["mesh", "expression"] },
 ];
 
-/** The groups with those kinds that a search leaves: by name, by group, or by what is said of them. */
+/** The groups with those kinds that a search leaves: by name, by group, or by description. */
 export function foundGroups(
   search: string,
   groups: readonly ShapeGroup[],

@@ -1,4 +1,4 @@
-// A shape as its grips see it: as it is written, as it comes out, and what a grip is.
+// A shape as its grips see it: as it is written, and its values; and the fields of a grip.
 import type { Parameter, Triple } from "../../../protocol";
 import type { Change } from "../edits";
 import { isLocked } from "../parameters/locks";
@@ -13,20 +13,20 @@ export type Way =
   | { readonly around: Triple | null }
   | { readonly about: Triple };
 
-/** How the picture of a shape changes while a grip is held: stretched along its way alone, across an axis or in all, or turned. */
+/** Change of a shape's picture while a grip is held: stretched along its way, across an axis or in all, or turned. */
 export type Stretch = "along" | "across" | "all" | "turn" | "none";
 
 export interface ShapeGrip {
   readonly id: string;
-  /** What it changes, in words. */
+  /** Name of its number, in words. */
   readonly label: string;
   /** Stands before the number. */
   readonly sign: string;
   readonly moves: boolean;
   readonly way: Way;
-  /** What stays where it is, m. */
+  /** Fixed point, m. */
   readonly from: Triple;
-  /** Where the number ends along the way from there, m; grips that move have none. */
+  /** End of the number along the way from there, m; grips that move have none. */
   readonly reach: number;
   readonly kind: GripKind;
   /** The number, SI, and how much it grows for each meter that the grip goes, or radian on a ring. */
@@ -34,11 +34,11 @@ export interface ShapeGrip {
   readonly rate: number;
   readonly stretch: Stretch;
   readonly number: WrittenNumber;
-  /** Where one that moves stands, m; default: in the middle of the shape. */
+  /** Place of one that moves, m; default: in the middle of the shape. */
   readonly at?: Triple;
-  /** How the shape moves for each unit of the number; default: along its way where it moves. */
+  /** Motion of the shape for each unit of the number; default: along its way where it moves. */
   readonly shift?: Triple;
-  /** Lines that show what the number does, m. */
+  /** Lines that show the meaning of the number, m. */
   outline?(value: number): readonly (readonly Triple[])[];
 }
 

@@ -1,4 +1,4 @@
-// What a shape of each kind begins with: lengths in sides of a cube, and places about its middle.
+// First values of a shape of each kind: lengths in sides of a cube, and places about its middle.
 import type { Triple } from "../../../protocol";
 import { type Room, written, writtenPlace } from "../bodies/placing";
 import type { ShapeKind } from "./shapeKinds";
@@ -6,7 +6,7 @@ import STARTERS from "./shapeStarters.json";
 
 type Table = Readonly<Record<string, unknown>>;
 
-/** Where a new shape stands, m: its side, its middle, and the shapes that it may be made of. */
+/** Place of a new shape, m: its side, its middle, and the shapes that it may be made of. */
 export interface Spot {
   readonly side: number;
   /** None for the first shape, which begins at the origin as its kind does. */

@@ -1,10 +1,10 @@
-// The shapes of a design as a tree: what parts and regions use stands at the top, what a shape
-// is made of below it.
+// The shapes of a design as a tree: shapes of parts and regions stand at the top, operands of a shape
+// below it.
 
 export interface ShapeNode {
   readonly name: string;
   readonly depth: number;
-  /** What it stands below: the names and places on the way to it, no two of which are the same. */
+  /** Names and places on the way to it, no two of which are the same. */
   readonly within: string;
   /** It stands with its fields at another place of the tree. */
   readonly again: boolean;
@@ -42,7 +42,7 @@ export function shapeTree(shapes: Readonly<Record<string, unknown>>): ShapeNode[
     }
   };
   for (const name of Object.keys(shapes)) if (!used.has(name)) visit(name, 0, "");
-  // What is left refers to itself in a circle, which the diagnostics tell.
+  // The rest refers to itself in a circle, which the diagnostics report.
   for (const name of Object.keys(shapes)) if (!seen.has(name)) visit(name, 0, "");
   return found;
 }

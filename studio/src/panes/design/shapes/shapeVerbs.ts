@@ -1,4 +1,4 @@
-// What can be done with a shape: cut, join, hollow, mirror, repeat, make a part; and how it is written.
+// Actions with a shape: cut, join, hollow, mirror, repeat, make a part; and their text in the design.
 import type { Triple } from "../../../protocol";
 import { type Room, written, writtenPlace } from "../bodies/placing";
 import type { Change } from "../edits";
@@ -56,7 +56,7 @@ function namesIn(value: unknown): string[] {
   return Object.entries(value).flatMap(([key, inner]) => (key === "kind" ? [] : namesIn(inner)));
 }
 
-/** Whether a part, an object, a region or a shape speaks of a shape. */
+/** Check if a part, an object, a region or a shape uses a shape. */
 export function isUsed(name: string, source: Table): boolean {
   const { shapes, parameters: _, materials: __, ...rest } = source;
   const others = Object.entries((shapes as Table | undefined) ?? {}).filter(
@@ -77,7 +77,7 @@ export function shapeVerbs(
   if (typeof own !== "object" || own === null) return [];
   const names = Object.keys(shapes);
   const parts = listOf(source, "parts");
-  // The shape keeps its name, so that all that speak of it go on with what it becomes.
+  // The shape keeps its name, so that all its users go on with the new one.
   const whole = freeName(`${name}-whole`, names);
   const become = (value: Table): Change[] => [
     { path: ["shapes", whole], value: own },
@@ -151,7 +151,7 @@ export function shapeVerbs(
   ];
 }
 
-/** Join a shape to another, cut it out of that, or keep what both have in common; the other keeps its name. */
+/** Join a shape to another, cut it out of that, or keep the common part of both; the other keeps its name. */
 export function joined(name: string, shape: string, shapes: Table): ShapeVerb[] {
   const whole = freeName(`${shape}-whole`, Object.keys(shapes));
   const own = shapes[shape] as Table;
@@ -174,7 +174,7 @@ export function joined(name: string, shape: string, shapes: Table): ShapeVerb[] 
   }));
 }
 
-/** Whether a shape is made of another, at any depth: joined to that, it would be made of itself. */
+/** Check if a shape is made of another, at any depth: joined to that, it would be made of itself. */
 export function isMadeOf(name: string, of: string, shapes: Table): boolean {
   const seen = new Set<string>();
   const reaches = (one: string): boolean => {
@@ -186,7 +186,7 @@ export function isMadeOf(name: string, of: string, shapes: Table): boolean {
   return reaches(name);
 }
 
-/** A tool in the middle of the body: what cuts goes through it, what joins stands on its top. */
+/** A tool in the middle of the body: a cutting one goes through it, a joined one stands on its top. */
 function toolFor(
   tool: Tool,
   kind: "difference" | "union",

@@ -31,7 +31,7 @@ export function typedChanges(
   return { changes: number.changes(value) };
 }
 
-/** Rounding of what is typed at a bound. */
+/** Rounding of a typed number at a bound. */
 const SLACK = 1e-12;
 
 function outside(least: number, most: number, text: (value: number) => string): string {

@@ -16,7 +16,7 @@ export interface WrittenNumber {
   readonly least: number;
   readonly most: number;
   changes(value: number): Change[];
-  /** The same for a formula, which always goes to the place itself. */
+  /** Changes for a formula, which always goes to the place itself. */
   formula(text: string): Change[];
 }
 

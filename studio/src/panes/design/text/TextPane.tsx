@@ -8,9 +8,9 @@ import { provideTyping } from "../../../store/typing";
 import { makeEditor, showDiagnostics, showText } from "./editor";
 import "./text.css";
 
-/** How long typing must rest before the text is tried, ms; Ctrl+Enter does not wait. */
+/** Pause in typing before the text is tried, ms; Ctrl+Enter does not wait. */
 const REST = 700;
-/** How long the answer to a text that was sent may take before another text is shown, ms. */
+/** Longest wait for the answer to a sent text before another text is shown, ms. */
 const ANSWER = 1500;
 
 export default function TextPane() {
@@ -29,7 +29,7 @@ function Text() {
   const document = useStudio((state) => state.document);
   const box = useRef<HTMLDivElement>(null);
   const view = useRef<EditorView | null>(null);
-  // What was typed and not yet sent.
+  // Typed text that was not yet sent.
   const pending = useRef<string | null>(null);
   const sent = useRef<{ text: string; at: number } | null>(null);
   const shown = useRef<typeof document>(null);
@@ -82,13 +82,13 @@ function Text() {
 
   useEffect(() => {
     if (!view.current || !document || document === shown.current) return;
-    // What is typed just now is newer than this answer.
+    // Text typed just now is newer than this answer.
     if (pending.current !== null) return;
     const asked = sent.current;
     if (asked && document.text !== asked.text) {
       const left = asked.at + ANSWER - performance.now();
       if (left > 0) {
-        // An answer to what was sent before: that to the newest text is still to come.
+        // An answer to an earlier text: that to the newest text is still to come.
         const later = setTimeout(() => lookAgain((n) => n + 1), left);
         return () => clearTimeout(later);
       }

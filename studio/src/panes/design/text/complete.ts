@@ -14,7 +14,7 @@ import {
 } from "../fields/schema";
 import { type Place, placeAt, type Step } from "./place";
 
-/** The table of keys that a path leads to, with what its kind is known to be. */
+/** The table of keys at a path, with the keys of its kind where that is known. */
 export function tableAt(root: Schema, path: readonly Step[], read: unknown): Schema | null {
   const schema = schemaAt(root, path, read);
   if (!schema) return null;
@@ -44,7 +44,7 @@ function namesIn(read: Readonly<Record<string, unknown>>, section: string): stri
   return Object.keys((read[section] as object | undefined) ?? {});
 }
 
-/** What may stand for a value, as far as it is known. */
+/** Possible values, as far as they are known. */
 export function valueOffers(
   hello: HelloEvent,
   place: Pick<Place, "path" | "word" | "quoted">,
@@ -170,7 +170,7 @@ export interface Help {
   readonly text: string;
 }
 
-/** What the schema says of the word at a position of the text. */
+/** Description in the schema of the word at a position of the text. */
 export function helpAt(hello: HelloEvent, text: string, position: number): Help | null {
   let end = position;
   while (end < text.length && /[\w-]/.test(text[end] ?? "")) end++;

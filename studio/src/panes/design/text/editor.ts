@@ -162,7 +162,7 @@ export function makeEditor(parent: HTMLElement, text: string, hooks: EditorHooks
           ...defaultKeymap,
           indentWithTab,
         ]),
-        // What is edited takes the focus anyway; audits of scrolled regions look for the number.
+        // The edited text takes the focus anyway; audits of scrolled regions look for the number.
         EditorView.contentAttributes.of({ "aria-label": "Text of the design", tabindex: "0" }),
         EditorView.updateListener.of((update) => {
           const remote = update.transactions.some((one) => one.annotation(fromDocument));
@@ -210,7 +210,7 @@ export function showText(view: EditorView, text: string): void {
   view.dispatch({ changes: difference(before, text), annotations: fromDocument.of(true) });
 }
 
-/** Underline what is wrong, at its place. */
+/** Underline errors, at their places. */
 export function showDiagnostics(view: EditorView, diagnostics: readonly Diagnostic[]): void {
   const { doc } = view.state;
   const marks = diagnostics.map((one): Mark => {

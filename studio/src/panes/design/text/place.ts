@@ -1,18 +1,18 @@
-// Where in a design a position of its text is: a tolerant reader of TOML that stops there, so that
+// Place in a design of a position of its text: a tolerant reader of TOML that stops there, so that
 // completion and help work while the text is not yet right.
 
 export type Step = string | number;
 
 export interface Place {
   readonly at: "key" | "value" | "header" | "comment";
-  /** Of the table for a key, of the value itself for a value. */
+  /** Path of the table for a key, of the value itself for a value. */
   readonly path: readonly Step[];
-  /** Where the word under the position begins. */
+  /** Begin of the word under the position. */
   readonly from: number;
   /** The word up to the position. */
   readonly word: string;
   readonly quoted: boolean;
-  /** What the text holds so far, as far as it was read: tables and texts. */
+  /** Content of the text so far, as far as it was read: tables and texts. */
   readonly read: Readonly<Record<string, unknown>>;
 }
 

@@ -8,7 +8,7 @@ import { type Axis, isDone, textOn, valueOn } from "../trials";
 
 const OPEN: readonly [number, number] = [-Infinity, Infinity];
 
-/** A slider for each quantity of which trials have different values: what a design must meet. */
+/** A slider for each quantity in which trials differ: requirements for a design. */
 export function Requirements(props: {
   trials: readonly TrialEvent[];
   axes: readonly Axis[];
@@ -52,7 +52,7 @@ export function Requirements(props: {
   );
 }
 
-/** What is asked of a quantity, in words. */
+/** Required range of a quantity, in words. */
 export function rangeText(axis: Axis, [low, high]: readonly [number, number]): string {
   const [least, most] = [textOn(low, axis, 3), textOn(high, axis, 3)];
   if (low === -Infinity && high === Infinity) return "any";

@@ -5,7 +5,7 @@ import type { CurrentStudy } from "../current";
 import { choose, pin, select, take, useSelection } from "../selection";
 import { isDone, textOn, valueOn } from "../trials";
 
-/** The chosen trial in a line, and what can be done with it. */
+/** The chosen trial in a line, and actions with it. */
 export function TrialCard(props: { current: CurrentStudy }) {
   const { id, study, axes } = props.current;
   const selected = useSelection((selection) => selection.selected);

@@ -13,20 +13,20 @@ export interface TrialFrameProps {
   trial: TrialEvent;
   /** Side of the frame, pixels. */
   size: number;
-  /** The longest side of what all pictures show, m; 0 to fill each frame. */
+  /** The longest side of all pictured bodies, m; 0 to fill each frame. */
   longest: number;
-  /** What the first objective comes to, in words. */
+  /** Value of the first objective, in words. */
   value: string;
-  /** Of the line below the picture. */
+  /** Color of the line below the picture. */
   color: string;
   best: boolean;
   dimmed: boolean;
   selected: boolean;
   pinned: boolean;
   hovered: boolean;
-  /** Whether the caption is shown, and not only spoken. */
+  /** True if the caption is shown, and not only spoken. */
   captioned: boolean;
-  /** Where it stands on a map, pixels, and which lie over which. */
+  /** Place on a map, pixels, and the order of overlapping ones. */
   left?: number;
   top?: number;
   rank?: number;
@@ -51,7 +51,7 @@ export const TrialFrame = memo((props: TrialFrameProps) => {
     };
   }, [name, done]);
   const unloaded = picture?.url !== undefined && picture.url !== "" && !picture.atRest;
-  // What the caption shows is read from there.
+  // The content of the caption is read from there.
   const unseen = captioned ? "" : ` ${trial.index}, ${done ? props.value : trial.status}`;
   const notes = [props.best ? "best" : "", unloaded && !captioned ? "unloaded" : ""];
   const words = [`Design${unseen}`, ...notes].filter(Boolean).join(", ");

@@ -1,4 +1,4 @@
-// How much a parameter says about an objective, by the trials that there are.
+// Importance of a parameter for an objective, by the trials that there are.
 import type { TrialEvent } from "../../../protocol";
 import { type Axis, isDone, rangeOf, valueOn } from "../trials";
 

@@ -2,10 +2,10 @@
 import { create } from "zustand";
 
 export interface Picture {
-  /** Of a blob; empty where there is none. */
+  /** Address of a blob; empty where there is none. */
   readonly url: string;
   readonly atRest: boolean;
-  /** How long and high what it shows is, m; 0 where that is not known. */
+  /** Width and height of the pictured body, m; 0 where they are not known. */
   readonly width: number;
   readonly height: number;
   /** Why there is none, as a sentence. */
@@ -91,7 +91,7 @@ async function fetchPicture(name: string): Promise<Picture> {
   }
 }
 
-/** The longest side of what pictures show, m; 0 where none is known. */
+/** The longest side of all pictured bodies, m; 0 where none is known. */
 export function longestSide(pictures: readonly Picture[]): number {
   return Math.max(0, ...pictures.map(({ width, height }) => Math.max(width, height)));
 }

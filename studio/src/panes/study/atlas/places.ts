@@ -1,4 +1,4 @@
-// Where the pictures of trials stand on a map of two quantities.
+// Places of the pictures of trials on a map of two quantities.
 import type { TrialEvent } from "../../../protocol";
 import { padded } from "../chart/ticks";
 import { type Axis, isDone, rangeOf, valueOn } from "../trials";
@@ -18,7 +18,7 @@ export interface Map2 {
   toY(value: number): number;
 }
 
-/** Where the middles of pictures may stand, pixels. */
+/** Range for the middles of pictures, pixels. */
 export interface Box {
   readonly left: number;
   readonly right: number;
@@ -68,7 +68,7 @@ export function placed(trials: readonly TrialEvent[], x: Axis, y: Axis, box: Box
 const COVERED = 0.45;
 
 /**
- * Where trials share few values along x, those that would cover each other stand beside each other
+ * If trials share few values along x, those that would cover each other stand beside each other
  * within their column: the first of them, which are the best, at its middle.
  */
 function sideBySide(places: readonly Place[], { left, right, rail }: Box): Place[] {

@@ -171,7 +171,7 @@ export interface FrameProps {
   toY(value: number): number;
 }
 
-/** How a label names its unit: "rise (mm)". */
+/** Label with its unit: "rise (mm)". */
 export function axisTitle(label: string, kind: string): string {
   const unit = unitText(shownUnit(siUnit(kind)));
   return unit ? `${label} (${unit})` : label;
