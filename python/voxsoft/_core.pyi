@@ -510,6 +510,10 @@ class Answer:
     @property
     def positions(self) -> NDArray[np.float64]: ...
     @property
+    def all_positions(self) -> NDArray[np.float64]:
+        """Positions of all vertices, those of the frames of rigid objects last."""
+
+    @property
     def velocities(self) -> NDArray[np.float64]: ...
     @property
     def time(self) -> float: ...

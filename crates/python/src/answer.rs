@@ -54,6 +54,8 @@ impl From<Status> for PyStatus {
 pub struct PyAnswer {
     pub status: PyStatus,
     pub positions: Py<PyArray2<f64>>,
+    /// Positions of all vertices, those of the frames of rigid objects last.
+    pub all_positions: Py<PyArray2<f64>>,
     pub velocities: Py<PyArray2<f64>>,
     pub time: f64,
     pub residual: f64,

@@ -499,6 +499,7 @@ impl PyProblem {
         Ok(PyAnswer {
             status: answer.status.into(),
             positions: from_rows(py, &positions[..own]).unbind(),
+            all_positions: from_rows(py, positions).unbind(),
             velocities: from_rows(py, &answer.state.velocities[..own]).unbind(),
             time: answer.state.time,
             residual: answer.residual,

@@ -204,11 +204,6 @@ _REFUSED: Final[tuple[tuple[str, tuple[str, ...], Reason], ...]] = (
     ),
     (
         "contact",
-        ("modes",),
-        Reason("is not known to {who}", "leave contact and objects out"),
-    ),
-    (
-        "contact",
         ("scikit-fem",),
         Reason(_CONTACT.what, "compare with CalculiX: apt install calculix-ccx"),
     ),
@@ -218,13 +213,6 @@ _REFUSED: Final[tuple[tuple[str, tuple[str, ...], Reason], ...]] = (
         "supplies",
         ("live motion", "page", "outside codes"),
         _NO_SUPPLIES,
-    ),
-    (
-        "supplies",
-        ("modes",),
-        Reason(
-            "are not known to {who}", "give the chambers pressure loads of the same value instead"
-        ),
     ),
     ("activations over time", ("page", "live motion"), _GROWTH_OVER_TIME),
     (

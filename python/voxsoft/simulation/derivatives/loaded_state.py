@@ -171,7 +171,7 @@ class LoadedState:
 
     def natural_frequency(self) -> float:
         """Compute the lowest natural frequency, Hz."""
-        return float(modes_of(self.setup, self.positions, 1).frequencies[0])
+        return float(modes_of(self.setup.problem, self.positions, 1).frequencies[0])
 
     def pushed_triangles(self) -> Iterator[tuple[NDArray[np.int32], float]]:
         """Yield triangles of open surfaces under pressure, (t, 3), and the pressure in Pa.

@@ -16,8 +16,24 @@ from voxsoft.simulation.results.fields import remember
 from voxsoft.simulation.results.result import Result
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.simulation.solving.choice import kind_of
-from voxsoft.simulation.solving.equilibrium import too_large_a_tangent
+from voxsoft.simulation.solving.equilibrium import (
+    ArcLengthControl,
+    LoadControl,
+    Statics,
+    VolumeControl,
+    find_equilibrium,
+    too_large_a_tangent,
+)
 
+#: Controls of statics by the word for them in a result.
+_CONTROLS: Final[dict[str, type[Statics]]] = {
+    "load": LoadControl,
+    "arc-length": ArcLengthControl,
+    "volume": VolumeControl,
+}
+#: Distance from the positions of a result within which its equilibrium is found again, in voxels:
+#: far above the tolerance of equilibria, and below any change of a frequency that is shown.
+_SAME: Final = 1e-3
 #: Default number of modes.
 DEFAULT_COUNT: Final = 6
 
@@ -46,8 +62,10 @@ def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
     """Find the slowest eigenmodes of a loaded body.
 
     Solves ``K φ = ω² M φ`` with the tangent of the elastic forces and loads at the equilibrium, and
-    the masses of the vertices, by subspace iteration. Pressures keep their value, and nothing is
-    damped. With planes of symmetry the modes are those of the whole body, antisymmetric ones too.
+    the masses of the vertices, by subspace iteration. Pressure loads keep their value, and nothing
+    is damped. Surfaces in contact stay in contact where they press, and slide or stick as they do
+    at rest; supplies push back as their volume changes, at constant temperature. With planes of
+    symmetry the modes are those of the whole body, antisymmetric ones too.
 
     Parameters
     ----------
@@ -64,8 +82,7 @@ def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
     Raises
     ------
     SimulationError
-        The result is no stable equilibrium, the design has contact or supplies, or the tangent does
-        not fit in memory.
+        The result is no stable equilibrium, or the tangent does not fit in memory.
 
     Examples
     --------
@@ -87,13 +104,40 @@ def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
     refuse(result.design, "modes")
     setup = Setup(result.design, result.mesh)
     remember(setup.problem, result.peaks)
-    return modes_of(setup, result.positions, count)
+    found = modes_of(*_loaded(setup, result), count)
+    # Without the frames of rigid objects, which have vertices after the body's.
+    return Modes(found.frequencies, found.shapes[:, : len(result.positions)])
 
 
-def modes_of(setup: Setup, positions: NDArray[np.float64], count: int) -> Modes:
-    """Find the slowest eigenmodes at an equilibrium of a setup without contact."""
+def _loaded(setup: Setup, result: Result) -> tuple[_core.Problem, NDArray[np.float64]]:
+    """Return the problem of a setup with its memory at a result, and the positions of all vertices.
+
+    Contact forces are no function of positions: the load path is followed again.
+
+    Raises
+    ------
+    SimulationError
+        The path ends elsewhere.
+    """
+    if setup.touching is None and setup.fluids is None:
+        return setup.problem, result.positions
+    control = _CONTROLS.get(result.solver["way"], LoadControl)
+    kept = {key: each for key, each in result.solver.items() if key in control.model_fields}
+    _, report = find_equilibrium(setup, control(**kept), None)
+    off = float(np.abs(report.answer.positions - result.positions).max())
+    if not off <= _SAME * setup.design.voxel_size:
+        raise SimulationError(
+            "modes",
+            "the equilibrium of this result, with its contact or supplies, is not found again",
+            'solve it with method = "statics"',
+        )
+    return report.answer.problem, report.answer.all_positions
+
+
+def modes_of(problem: _core.Problem, positions: NDArray[np.float64], count: int) -> Modes:
+    """Find the slowest eigenmodes at an equilibrium of a problem, with the contact it remembers."""
     try:
-        squares, shapes = _core.modes(setup.problem, positions, count, memory=memory_limit())
+        squares, shapes = _core.modes(problem, positions, count, memory=memory_limit())
     except MemoryError as error:
         (needed,) = error.args
         what = too_large_a_tangent(len(positions), needed)
