@@ -123,6 +123,7 @@ if TYPE_CHECKING:
     )
     from voxsoft.simulation.checks.check import check
     from voxsoft.simulation.derivatives.gradient import gradient
+    from voxsoft.simulation.derivatives.voxel_gradient import gradient_by_voxel
     from voxsoft.study import Study
     from voxsoft.voxels import Voxels
 
@@ -197,6 +198,7 @@ _HOMES = {
         "check",
         "follow",
         "gradient",
+        "gradient_by_voxel",
         "modes",
         "simulate",
         "simulate_many",

@@ -655,6 +655,22 @@ def adjoint(
     *,
     memory: int = ...,
 ) -> NDArray[np.float64]: ...
+def block_slopes(
+    problem: Problem,
+    positions: NDArray[np.float64],
+    gradients: NDArray[np.float64],
+    *,
+    memory: int = ...,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Slopes by the fractions of stiffness and mass of each block, (k, v) each."""
+
+def block_masses(problem: Problem) -> NDArray[np.float64]: ...
+def block_energies(problem: Problem, positions: NDArray[np.float64]) -> NDArray[np.float64]: ...
+def with_fractions(
+    problem: Problem, stiffness: NDArray[np.float64], mass: NDArray[np.float64]
+) -> Problem:
+    """Copy a problem with other fractions of each block, (v,), each times that of the mesh."""
+
 def modes(
     problem: Problem, positions: NDArray[np.float64], count: int, *, memory: int = ...
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...

@@ -30,9 +30,26 @@ pub fn adjoint<'py>(
     gradients: PyReadonlyArray3<'_, f64>,
     memory: u64,
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-    let positions = problem.positions(&positions)?;
+    let (positions, own) = (problem.positions(&positions)?, problem.own());
+    let gradients = gradients_of(&gradients, own, positions.len())?;
+    let inner = problem.now();
+    let states = gate::run_owned(py, move |cancel| {
+        let mut stop = || cancel.load(Ordering::Relaxed);
+        voxsoft_statics::adjoint(&inner, &positions, &gradients, memory, &mut stop)
+    })?
+    .map_err(to_python)?;
+    let of_body = states.iter().flat_map(|state| &state[..own]);
+    let flat: Vec<f64> = of_body.flatten().copied().collect();
+    PyArray1::from_vec(py, flat).reshape([states.len(), own, 3])
+}
+
+/// Gradients (k, n, 3) by the positions of the `own` vertices of a body, zero on the others of `all`.
+pub(crate) fn gradients_of(
+    gradients: &PyReadonlyArray3<'_, f64>,
+    own: usize,
+    all: usize,
+) -> PyResult<Vec<Vec<Vec3>>> {
     let view = gradients.as_array();
-    let (all, own) = (positions.len(), problem.own());
     if view.shape()[1..] != [own, 3] {
         let message = format!(
             "gradients: shape {:?}, expected (k, {own}, 3)",
@@ -46,16 +63,7 @@ pub fn adjoint<'py>(
         rows.resize(all, [0.0; 3]);
         rows
     };
-    let gradients: Vec<Vec<Vec3>> = view.outer_iter().map(each).collect();
-    let inner = problem.now();
-    let states = gate::run_owned(py, move |cancel| {
-        let mut stop = || cancel.load(Ordering::Relaxed);
-        voxsoft_statics::adjoint(&inner, &positions, &gradients, memory, &mut stop)
-    })?
-    .map_err(to_python)?;
-    let of_body = states.iter().flat_map(|state| &state[..own]);
-    let flat: Vec<f64> = of_body.flatten().copied().collect();
-    PyArray1::from_vec(py, flat).reshape([states.len(), own, 3])
+    Ok(view.outer_iter().map(each).collect())
 }
 
 /// Maps an error of an adjoint solution to Python; a `MemoryError` carries the bytes needed.

@@ -3,6 +3,7 @@ use pyo3::prelude::*;
 
 mod answer;
 mod arrays;
+mod blocks;
 mod contact;
 mod contact_answer;
 mod contact_field;
@@ -63,6 +64,10 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     player::add_constants(module)?;
     module.add_function(wrap_pyfunction!(equilibrium::equilibrium, module)?)?;
     module.add_function(wrap_pyfunction!(equilibrium::adjoint, module)?)?;
+    module.add_function(wrap_pyfunction!(blocks::block_slopes, module)?)?;
+    module.add_function(wrap_pyfunction!(blocks::block_masses, module)?)?;
+    module.add_function(wrap_pyfunction!(blocks::block_energies, module)?)?;
+    module.add_function(wrap_pyfunction!(blocks::with_fractions, module)?)?;
     module.add_function(wrap_pyfunction!(modes::modes, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::sensitivities, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::recording, module)?)?;

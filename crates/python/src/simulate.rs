@@ -1,4 +1,6 @@
-//! `_core.Problem` and its XPBD solvers. Long because one Python class collects the operations on a problem, each a method.
+//! `_core.Problem` and its XPBD solvers.
+//!
+//! Long because all methods of one Python class stand in one block.
 
 use std::sync::Arc;
 
@@ -8,7 +10,8 @@ use pyo3::prelude::*;
 use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
-    Body, Fluid, Hex8, Load, Material, Membrane, Mesh, Problem, ProblemError, State, elastic,
+    Body, Fluid, Hex8, Load, Material, Membrane, Mesh, PerBlock, Problem, ProblemError, State,
+    elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Status, Trial, relax, simulate};
 
@@ -30,6 +33,8 @@ pub struct PyProblem {
     pub(crate) materials: Arc<Vec<Material>>,
     pub(crate) problem: Arc<Handle>,
     pub(crate) touching: Option<Arc<Touching>>,
+    /// Fractions of the blocks, if they are not those of the mesh.
+    pub(crate) fractions: Option<Arc<PerBlock>>,
 }
 
 #[pymethods]
@@ -100,7 +105,11 @@ impl PyProblem {
             parts.clamps.truncate(own);
             parts.touch = Some(touching.parts.clone());
         }
-        Self::assemble(py, mesh, materials, &parts)
+        let made = Self::assemble(py, mesh, materials, &parts)?;
+        match &self.fractions {
+            Some(fractions) => made.filled(Arc::clone(fractions)),
+            None => Ok(made),
+        }
     }
 
     #[getter]
@@ -387,6 +396,7 @@ impl PyProblem {
                 materials: Arc::new(materials),
                 problem: Arc::new(Handle::new(problem)),
                 touching,
+                fractions: None,
             })
         })?
         .map_err(to_python)
@@ -406,6 +416,7 @@ impl PyProblem {
             materials: Arc::clone(&self.materials),
             problem: Arc::new(Handle::new(problem)),
             touching: self.touching.clone(),
+            fractions: self.fractions.clone(),
         }
     }
 

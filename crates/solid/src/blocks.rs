@@ -17,12 +17,12 @@ use crate::body::{
 use crate::lattice::cube;
 use crate::loads::external_force::Vertices;
 use crate::vector::{Vec3, dot, sub};
-use crate::{Body, Edge, Material, Mesh, Problem, ProblemError, Tet};
+use crate::{Body, Edge, Hex8, Material, Mesh, Problem, ProblemError, Tet};
 
 /// A number for the stiffness of each block and one for its mass, in the numbering of [`Mesh::tet_block`].
 ///
-/// As fractions they multiply what the block of the mesh holds, 1 for the mesh as it is. As slopes they are derivatives
-/// by these fractions.
+/// Fractions multiply stiffness and mass of the block of the mesh, 1 for the mesh as it is; slopes are derivatives by
+/// these fractions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PerBlock {
     /// Numbers of the stiffness.
@@ -32,7 +32,7 @@ pub struct PerBlock {
 }
 
 impl PerBlock {
-    /// The same number for all of so many blocks.
+    /// One number for all of so many blocks.
     pub fn uniform(blocks: usize, number: f64) -> Self {
         Self {
             stiffness: vec![number; blocks],
@@ -41,7 +41,7 @@ impl PerBlock {
     }
 }
 
-/// What each block of a mesh brings to its body.
+/// Parts that each block of a mesh brings to its body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocks {
     count: usize,
@@ -163,6 +163,47 @@ impl Blocks {
         sums
     }
 
+    /// The elastic energy of each block in J at a fraction of one of its stiffness, without layers and attachments: the
+    /// slope of the energy by these fractions at the same positions.
+    pub fn energies(&self, body: &Body, positions: &[Vec3]) -> Vec<f64> {
+        let positions = &*body.ties().seen(positions);
+        let edge = |edge: &Edge| edge.evaluate(positions).0.powi(2) / 2.0;
+        let tet = |tet: &Tet| tet.evaluate(positions).0.powi(2) / 2.0;
+        let hex8 = |hex8: &Hex8| {
+            let energy = hex8.energy(body.material_of(hex8), positions);
+            energy / hex8.fraction
+        };
+        self.shared(body, edge, tet, hex8)
+    }
+
+    /// Sums over the parts of each block of numbers of edges, tetrahedra and voxels at a stiffness of one.
+    fn shared(
+        &self,
+        body: &Body,
+        edge: impl Fn(&Edge) -> f64,
+        tet: impl Fn(&Tet) -> f64,
+        hex8: impl Fn(&Hex8) -> f64,
+    ) -> Vec<f64> {
+        let mut sums = vec![0.0; self.count];
+        let edges: Vec<f64> = body.edges().iter().map(edge).collect();
+        let tets: Vec<f64> = body.tets().iter().map(tet).collect();
+        let hex8s: Vec<f64> = body.hex8s().iter().map(hex8).collect();
+        for (parts, each) in [(&self.edges, &edges), (&self.tets, &tets)] {
+            for part in parts {
+                sums[part.block as usize] += part.value * each[part.of as usize];
+            }
+        }
+        // Small voxels of one element have an equal share of it each.
+        let mut sharing = vec![0u8; hex8s.len()];
+        (0..self.hex8s.len()).for_each(|small| sharing[body.element_of(small)] += 1);
+        for part in &self.hex8s {
+            let element = body.element_of(part.of as usize);
+            let share = part.value / f64::from(sharing[element]);
+            sums[part.block as usize] += share * hex8s[element];
+        }
+        sums
+    }
+
     /// Slopes of `μ · forces` by the fractions of all blocks, in J for adjoint states `μ` in m: of internal forces by
     /// those of the stiffness, of weights under the final values of all loads by those of the mass. The problem may have
     /// any fractions.
@@ -170,7 +211,6 @@ impl Blocks {
         let body = problem.body();
         let positions = &*body.ties().seen(positions);
         let adjoint = &*body.ties().seen(adjoint);
-        let mut slopes = PerBlock::uniform(self.count, 0.0);
         let along = |vertices: &[u32], gradients: &[Vec3]| -> f64 {
             let pairs = vertices.iter().zip(gradients);
             pairs.map(|(v, g)| dot(adjoint[*v as usize], *g)).sum()
@@ -180,31 +220,18 @@ impl Blocks {
             let [a, b] = edge.vertices.map(|v| adjoint[v as usize]);
             -stretch * dot(gradient, sub(a, b))
         };
-        let edges: Vec<f64> = body.edges().iter().map(edge).collect();
         let tet = |tet: &Tet| {
             let (change, gradients) = tet.evaluate(positions);
             -change * along(&tet.vertices, &gradients)
         };
-        let tets: Vec<f64> = body.tets().iter().map(tet).collect();
-        let hex8s = body.hex8s().iter().map(|hex8| {
+        let hex8 = |hex8: &Hex8| {
             let forces = hex8.forces(body.material_of(hex8), positions);
             along(&hex8.vertices, &forces) / hex8.fraction
-        });
-        let hex8s: Vec<f64> = hex8s.collect();
-        // Small voxels of one element have an eighth of it each.
-        let mut sharing = vec![0u8; hex8s.len()];
-        (0..self.hex8s.len()).for_each(|small| sharing[body.element_of(small)] += 1);
-        let stiffness = &mut slopes.stiffness;
-        for (parts, each) in [(&self.edges, &edges), (&self.tets, &tets)] {
-            for part in parts {
-                stiffness[part.block as usize] += part.value * each[part.of as usize];
-            }
-        }
-        for part in &self.hex8s {
-            let element = body.element_of(part.of as usize);
-            let share = part.value / f64::from(sharing[element]);
-            stiffness[part.block as usize] += share * hex8s[element];
-        }
+        };
+        let mut slopes = PerBlock {
+            stiffness: self.shared(body, edge, tet, hex8),
+            mass: vec![0.0; self.count],
+        };
         let on = Vertices {
             rest: body.rest(),
             positions,

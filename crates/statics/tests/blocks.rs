@@ -6,7 +6,7 @@ use common::{block, rubber, settled, vertices_where};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
     Blocks, Body, Clamp, HyperelasticMaterial, LatticeMaterial, Load, Material, Mesh, PerBlock,
-    Problem, ProblemError,
+    Problem, ProblemError, elastic,
 };
 use voxsoft_statics::{Settings, block_slopes};
 
@@ -210,6 +210,13 @@ fn fractions_of_one_change_nothing_and_others_what_they_name() {
         );
         assert_eq!(same.body().hex8s(), body.hex8s());
         assert!(near(beam.blocks.masses().iter().sum(), body.total_mass()));
+        let moved = beam.positions(&beam.problem);
+        let energies: f64 = beam.blocks.energies(body, &moved).iter().sum();
+        let energy = elastic::energy(body, &moved);
+        assert!(
+            (energies / energy - 1.0).abs() < 1e-12,
+            "{energies} {energy}"
+        );
         let mut fractions = PerBlock::uniform(count, 1.0);
         fractions.mass[3] = 2.0;
         let heavier = with(&fractions).unwrap().body().total_mass() - body.total_mass();

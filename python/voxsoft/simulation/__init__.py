@@ -4,6 +4,7 @@ from voxsoft.metrics import Place
 from voxsoft.simulation.checks.check import CheckReport, check
 from voxsoft.simulation.checks.penetration import Overlap, Penetration, find_penetration
 from voxsoft.simulation.derivatives.gradient import gradient
+from voxsoft.simulation.derivatives.voxel_gradient import VoxelSlopes, gradient_by_voxel
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.results.result import Recording, Result, Status
 from voxsoft.simulation.results.vibration import Modes, modes
@@ -37,6 +38,7 @@ __all__ = [
     "Setup",
     "Simulator",
     "Status",
+    "VoxelSlopes",
     "Workspace",
     "balance",
     "check",
@@ -45,6 +47,7 @@ __all__ = [
     "find_penetration",
     "follow",
     "gradient",
+    "gradient_by_voxel",
     "modes",
     "named_regions",
     "relax",

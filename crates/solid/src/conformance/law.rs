@@ -39,7 +39,7 @@ pub enum Law {
     Repetition,
     /// Changes of loads and grabs during a run take effect, and nothing else does.
     Changes,
-    /// A product is linear in the vector, and overwrites what was there.
+    /// A product is linear in the vector, and overwrites former numbers.
     Linearity,
     /// The diagonal is that of the products with unit vectors.
     Diagonal,

@@ -101,22 +101,14 @@ def gradient(
     >>> slopes["parts.0.material.young"] < 0 < slopes["loads.0.value"]
     True
     """
-    _check_state(result)
-    refuse(result.design, "gradient")
-    chosen = _targets(result.design, targets)
-    for target in chosen.values():
-        _check_slope(target)
+    base, chosen = equilibrium_of(result, targets)
+    setup = base.setup
     names = [parameters] if isinstance(parameters, str) else list(parameters)
-    setup = Setup(result.design, result.mesh)
-    taut = tuple(result.tendons[each.name].tension > 0.0 for each in setup.tendons)
-    base = _State(setup, result.positions, taut=taut)
-    _check_positions(base)
-    _check_way(setup, result)
     varied = [_variation(base, name) for name in names]
     if has_contact(result.design):
         with readable_errors(len(base.positions)):
             return path_gradient(setup, result, chosen, dict(zip(names, varied, strict=True)))
-    slopes = np.array([_slope(base, target) for target in chosen.values()])
+    slopes = slopes_by_positions(base, chosen)
     adjoints = adjoint_states(setup.problem, base.positions, slopes)
     return {
         target_name: {
@@ -125,6 +117,28 @@ def gradient(
         }
         for (target_name, target), adjoint in zip(chosen.items(), adjoints, strict=True)
     }
+
+
+def equilibrium_of(
+    result: Result, targets: str | Sequence[str] | Mapping[str, Target]
+) -> tuple[EquilibriumState, dict[str, Target]]:
+    """Return the state of a result that has derivatives, and the targets with their names."""
+    _check_state(result)
+    refuse(result.design, "gradient")
+    chosen = _targets(result.design, targets)
+    for target in chosen.values():
+        _check_slope(target)
+    setup = Setup(result.design, result.mesh)
+    taut = tuple(result.tendons[each.name].tension > 0.0 for each in setup.tendons)
+    base = EquilibriumState(setup, result.positions, taut=taut)
+    _check_positions(base)
+    _check_way(setup, result)
+    return base, chosen
+
+
+def slopes_by_positions(state: LoadedState, targets: Mapping[str, Target]) -> Floats:
+    """Return ``∂J/∂x`` of each target, (k, n, 3)."""
+    return np.array([_slope(state, target) for target in targets.values()])
 
 
 def _check_slope(target: Target) -> None:
@@ -139,7 +153,7 @@ def _slope(state: LoadedState, target: Target) -> Floats:
 
 
 @dataclass(frozen=True)
-class _State(LoadedState):
+class EquilibriumState(LoadedState):
     """A setup and positions at which its forces and metrics are evaluated.
 
     A stiff tendon has stretched by so little that a difference would leave it slack: tendons that
@@ -181,7 +195,7 @@ class _State(LoadedState):
 class _Variation:
     """States with a number a little lower and higher, at the same positions of free vertices."""
 
-    states: tuple[_State, ...]
+    states: tuple[EquilibriumState, ...]
     weights: tuple[float, ...]
     offsets: tuple[float, ...]
 
@@ -205,7 +219,7 @@ class _Variation:
         )
 
 
-def _variation(base: _State, name: str) -> _Variation:
+def _variation(base: EquilibriumState, name: str) -> _Variation:
     design = base.setup.design
     value = number_of(design, name)
     step = STEP * _scale(design, name, value)
@@ -245,7 +259,7 @@ def _check_memory(design: Design, varied: Sequence[Design], name: str) -> None:
             )
 
 
-def _state_with(base: _State, design: Design, name: str) -> _State:
+def _state_with(base: EquilibriumState, design: Design, name: str) -> EquilibriumState:
     before = base.setup
     mesh = before.mesh if _shapes(design) == _shapes(before.design) else base.reshaped(design, name)
     if design.floor != before.design.floor:
@@ -259,7 +273,7 @@ def _state_with(base: _State, design: Design, name: str) -> _State:
             "move the ends of the clamp's region away from half a voxel",
         )
     shift = held_positions(setup) - held_positions(before)
-    return _State(setup, base.positions + np.where(held, shift, 0.0), taut=base.taut)
+    return EquilibriumState(setup, base.positions + np.where(held, shift, 0.0), taut=base.taut)
 
 
 def _shapes(design: Design) -> tuple[object, ...]:
@@ -339,7 +353,7 @@ def _check_way(setup: Setup, result: Result) -> None:
             )
 
 
-def _check_positions(state: _State) -> None:
+def _check_positions(state: EquilibriumState) -> None:
     """Raise unless clamped vertices are at their prescribed positions."""
     setup = state.setup
     held = held_axes(setup)
