@@ -78,7 +78,7 @@ def test_fractions_of_all_voxels_are_the_modulus_and_the_density():
     ("metric", "what"),
     [("reaction", "depends on the material"), ("volume", "does not change")],
 )
-def test_what_positions_do_not_decide_is_refused(metric, what):
+def test_a_metric_of_the_material_is_refused(metric, what):
     design = families.beam(length="30 mm").with_values(f"parts.0.material={SOFT}")
     result = solved(design)
     with pytest.raises(SimulationError, match=what):

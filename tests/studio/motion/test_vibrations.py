@@ -25,6 +25,11 @@ BALL = """
 name = "ball"
 shape = { kind = "sphere", radius = "5 mm", center = [0, 0, "-1 m"] }
 """
+#: Straight under three times the load at which it buckles: nothing pushes it to a side.
+BUCKLED = BEAM.replace(
+    'kind = "gravity"',
+    'kind = "force"\nregion = { x = ["40 mm", "40 mm"] }\nvalue = ["-30 mN", 0, 0]',
+)
 
 
 def positions_of(frame):
@@ -89,19 +94,25 @@ def test_modes_are_drawn_about_the_equilibrium_until_another_action(fresh_studio
     assert 0.9 * found.amplitude < farthest <= found.amplitude * (1.0 + 1e-3)
 
 
-def test_a_body_in_contact_says_why_it_has_none(fresh_studio, tmp_path):
-    file = tmp_path / "lying.toml"
-    file.write_text(BEAM + BALL)
+def test_a_buckled_body_says_why_it_has_no_modes(fresh_studio, tmp_path):
+    files = tmp_path / "lying.toml", tmp_path / "buckled.toml"
+    files[0].write_text(BEAM + BALL)
+    files[1].write_text(BUCKLED)
 
     async def scenario():
+        found = []
         async with fresh_studio.page() as page:
-            await opened(page, file)
-            await page.send("rest")
-            await page.shown(lambda s: s.state == "at-rest")
-            await page.send("vibrate", mode=0)
-            return await page.until("vibration", lambda v: v.trouble)
+            for file in files:
+                await opened(page, file)
+                await page.send("rest")
+                await page.shown(lambda s: s.state == "at-rest")
+                await page.send("vibrate", mode=0)
+                found.append(await page.until("vibration", lambda v: v.trouble or v.frequencies))
+        return found
 
-    trouble = run(scenario())
-    assert trouble.trouble == "objects: is not known to modes"
-    assert "contact" in trouble.hint
+    swings, trouble = run(scenario())
+    assert not swings.trouble
+    assert swings.frequencies[0] > 0.0
+    assert trouble.trouble == "modes: the body moves freely, or its equilibrium is not stable"
+    assert "lower the load" in trouble.hint
     assert trouble.frequencies == []

@@ -37,9 +37,9 @@ class VoxelSlopes:
     Attributes
     ----------
     stiffness : ndarray of float64, shape (v,)
-        By the fraction that counts for the stiffness of each voxel of the mesh.
+        Slope by the fraction that counts for the stiffness of each voxel of the mesh.
     mass : ndarray of float64, shape (v,)
-        By the fraction that counts for its mass, and so for its weight.
+        Slope by the fraction that counts for its mass, and so for its weight.
     """
 
     stiffness: Floats
