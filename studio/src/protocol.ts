@@ -1079,7 +1079,8 @@ export interface BodyBond {
  * `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
  * shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text;
  * `touches` tells whether anything of the design may touch. `bodies` is empty where there is one.
- * `floor` is the height of the floor in m; null where there is none.
+ * `floor` is the height of the floor in m; null where there is none. `refused` has a sentence for
+ * each use that refuses the design (`voxsoft.simulation.compatibility`).
  */
 export interface BodyEvent {
   t: "body";
@@ -1113,6 +1114,7 @@ export interface BodyEvent {
   planes: BodyPlane[];
   floor: number | null;
   bonds: BodyBond[];
+  refused: Record<string, string>;
 }
 
 /**

@@ -365,6 +365,24 @@ def refuse(design: Design, use: str) -> None:
         raise USES[use].error.listing(found)
 
 
+def sentences_of_refusals(design: Design) -> dict[str, str]:
+    """Return a sentence for each use that refuses a design, by the name of the use.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> sentences_of_refusals(families.beam())
+    {}
+    """
+    found = {}
+    for use in USES:
+        for first in refusals(design, use):
+            place = f"{first.where} " if first.where else ""
+            found[use] = f"{place}{first.what}: {first.hint}."
+            break
+    return found
+
+
 def refused_together(design: Design) -> Iterator[ErrorDetail]:
     """Find the entries of a design that rubber which softens, another feature of it, refuses."""
     if has_feature(design, "softening"):

@@ -32,6 +32,7 @@ const BODY: BodyEvent = {
     floor: null,
     bonds: [],
     not_live: "",
+    refused: {},
     touches: false,
     parts: [],
     seconds: 0,

@@ -77,6 +77,13 @@ describe("export", () => {
       options: { unit: "mm", deformed: true },
     });
   });
+  it("refuses a live page of a design that pages do not know, with the reason", () => {
+    const live = FORMATS.find((one) => one.live);
+    if (!live) throw new Error("no live page");
+    expect(obstacle(live, options, true)).toBeNull();
+    const why = "supplies[0] are not known to exported pages yet: leave the supplies out.";
+    expect(obstacle(live, options, true, { page: why })).toBe(why);
+  });
   it("describes the purpose of each file in a sentence", () => {
     for (const format of FORMATS) expect(format.purpose).toMatch(/^[A-Z].*\.$/);
   });

@@ -94,6 +94,10 @@ describe("setup", () => {
     const ranged = choices([RANGED], DRAFT);
     expect(obstacle(ranged, 1, DRAFT, SAMPLERS)).toBeNull();
     expect(obstacle(ranged, 0, DRAFT, SAMPLERS)).toMatch(/objective/);
+    const along = { ...DRAFT, sampler: "gradient" };
+    const why = { gradient: "bodies are not known to gradients yet: solve one of them." };
+    expect(obstacle(ranged, 1, DRAFT, SAMPLERS, why)).toBeNull();
+    expect(obstacle(ranged, 1, along, SAMPLERS, why)).toBe(why.gradient);
     expect(obstacle(choices([parameter("cap")], DRAFT), 1, DRAFT, SAMPLERS)).toMatch(
       /at least one/,
     );

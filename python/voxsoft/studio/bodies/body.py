@@ -24,6 +24,7 @@ from voxsoft.mesh import Mesh
 from voxsoft.shapes.sampling import corners_of
 from voxsoft.simulation import Setup
 from voxsoft.simulation.checks.check import CheckReport, examine
+from voxsoft.simulation.compatibility import sentences_of_refusals
 from voxsoft.simulation.loads import read
 from voxsoft.simulation.setup.contact import has_contact
 from voxsoft.simulation.setup.large_voxels import evenly_small
@@ -220,6 +221,7 @@ class StudioBody:
             ],
             floor=None if setup.design.floor is None else setup.design.floor.z,
             bonds=self.bonds,
+            refused=sentences_of_refusals(setup.design),
         )
 
     def _probes(self) -> list[events.BodyProbe]:

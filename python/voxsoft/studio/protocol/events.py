@@ -475,7 +475,8 @@ class Body(Event):
     `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
     shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text;
     `touches` tells whether anything of the design may touch. `bodies` is empty where there is one.
-    `floor` is the height of the floor in m; null where there is none.
+    `floor` is the height of the floor in m; null where there is none. `refused` has a sentence for
+    each use that refuses the design (`voxsoft.simulation.compatibility`).
     """
 
     topology: int
@@ -508,6 +509,7 @@ class Body(Event):
     planes: list[BodyPlane] = field(default_factory=list)
     floor: float | None = None
     bonds: list[BodyBond] = field(default_factory=list)
+    refused: dict[str, str] = field(default_factory=dict)
 
 
 class GrabState(Entry):

@@ -44,7 +44,7 @@ async function savePicture(scale: number): Promise<void> {
 /** Each way to take the result away, with its purpose. */
 export default function ExportPane() {
   const open = useStudio((state) => state.document !== null);
-  const touches = useStudio((state) => (state.body?.not_live ?? "") !== "");
+  const refused = useStudio((state) => state.body?.refused);
   const [options, setOptions] = useState<Options>({ unit: null, shape: "rest", scale: 2 });
   const [busy, setBusy] = useState<string | null>(null);
   const start = async (format: Format) => {
@@ -65,7 +65,7 @@ export default function ExportPane() {
   return (
     <div className="pane export" data-testid="export-list">
       {FORMATS.map((format) => {
-        const trouble = obstacle(format, options, open, touches);
+        const trouble = obstacle(format, options, open, refused);
         return (
           <section key={format.id} className="export-row" data-testid={`export-${format.id}`}>
             <div>

@@ -59,12 +59,10 @@ export function obstacle(
   format: Format,
   options: Options,
   open: boolean,
-  touches = false,
+  refused: Readonly<Record<string, string>> = {},
 ): string | null {
   if (!open) return "Open a design first.";
-  if (format.live && touches) {
-    return "A live page knows contact of rubber alone: choose a rubber, or leave objects and [contact] out.";
-  }
+  if (format.live && refused.page) return refused.page;
   if (format.asksUnit && options.unit === null) {
     return "Choose the unit: the file itself does not tell it.";
   }

@@ -27,7 +27,6 @@ export interface MaterialItemProps {
   part: PartChoice | null;
   parts: readonly PartChoice[];
   materials: readonly MaterialFacts[];
-  source: Readonly<Record<string, unknown>>;
   open: boolean;
   onOpen(open: boolean): void;
   onUse(): void;
@@ -36,7 +35,7 @@ export interface MaterialItemProps {
 
 export function MaterialItem(props: MaterialItemProps) {
   const { of: one, part, open } = props;
-  const refused = part ? refusal(one, part, props.source) : "The design has no part of its own.";
+  const refused = part ? refusal(one, part) : "The design has no part of its own.";
   const used = props.parts.filter((each) => isUsed(one, each));
   const mixed = part && !refused ? mixes(one, part, props.parts, props.materials) : "";
   return (

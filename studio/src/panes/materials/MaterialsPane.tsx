@@ -105,7 +105,6 @@ export default function MaterialsPane() {
             part={part}
             parts={parts}
             materials={known.materials}
-            source={source}
             open={open === one.name}
             onOpen={(is) => setOpen(is ? one.name : null)}
             onUse={() => part && giveMaterial(one, part.index)}

@@ -10,7 +10,7 @@ export function giveMaterial(one: MaterialFacts, index: number): void {
   const source = document?.source ?? {};
   const part = partsOf(source)[index];
   if (!document || !part) return;
-  const refused = refusal(one, part, source);
+  const refused = refusal(one, part);
   if (refused) {
     toast({ level: "warning", what: refused, hint: "", about: "material" });
     return;

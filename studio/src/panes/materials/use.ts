@@ -41,13 +41,9 @@ export function isUsed(one: MaterialFacts, part: PartChoice): boolean {
 }
 
 /** Why a part cannot have a material; null where it can. */
-export function refusal(one: MaterialFacts, part: PartChoice, source: Table): string | null {
-  const lattice = one.live === "explicit";
+export function refusal(one: MaterialFacts, part: PartChoice): string | null {
   if (part.fibers && one.live !== "implicit")
     return `The fibers of ${part.name} need a hyperelastic material around them.`;
-  const refines = Array.isArray(source.refine) && source.refine.length > 0;
-  if (refines && lattice)
-    return "The design has local refinement, which is known for rubber and not for a spring lattice.";
   return null;
 }
 

@@ -59,6 +59,7 @@ export default function StudyPane() {
   const document = useStudio((state) => state.document);
   const samplers = useStudio((state) => state.hello?.samplers) ?? [];
   const cores = useStudio((state) => state.hello?.cores) ?? 1;
+  const refused = useStudio((state) => state.body?.refused);
   const draft = useStudyDraft();
   const form = useFormOfDocument();
   const job = useJob("study");
@@ -75,7 +76,7 @@ export default function StudyPane() {
   const chosen = all.filter((one) => one.on);
   const objectives = Object.keys((form.source.objectives as object | undefined) ?? {}).length;
   const trouble = document.valid
-    ? obstacle(all, objectives, draft, samplers)
+    ? obstacle(all, objectives, draft, samplers, refused)
     : "Fix the errors of the design first.";
   const grid = gridSize(chosen);
   const sampler = samplerOf(chosen, draft);

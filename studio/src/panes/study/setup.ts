@@ -78,6 +78,7 @@ export function obstacle(
   objectives: number,
   draft: StudyDraft,
   samplers: readonly Sampler[],
+  refused: Readonly<Record<string, string>> = {},
 ): string | null {
   const chosen = all.filter((one) => one.on);
   const name = samplerOf(chosen, draft);
@@ -93,6 +94,7 @@ export function obstacle(
     const without = chosen.find((one) => countOf(one.sweep) === null);
     if (without) return `${without.parameter.name}: a grid needs a step.`;
   } else if (!(draft.budget >= 1)) return "Give a budget of at least one design.";
+  if (name === "gradient" && refused.gradient) return refused.gradient;
   if (name === "gradient" && chosen.some((one) => one.sweep.step !== null)) {
     return "gradient needs ranges without steps; empty their steps.";
   }
