@@ -143,7 +143,9 @@ mass = "50 g"
 [contact]
 friction = 1
 """
-    found = vs.modes(solved(tmp_path, text), 6).frequencies
+    swings = vs.modes(solved(tmp_path, text), 6)
+    assert np.linalg.norm(swings.shapes, axis=2).max(axis=1) == pytest.approx(1.0)
+    found = swings.frequencies
     stiffness, mass = 100e3 * 4e-4 / 0.02, 0.05 + 0.008 / 3  # a third of the spring's own mass
     # The block is shorter by 1.2 % under the weight, and stiffer by as much and more.
     assert has(found, np.sqrt(stiffness / mass) / (2 * np.pi), 0.03)

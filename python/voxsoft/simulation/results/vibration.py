@@ -105,8 +105,10 @@ def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
     setup = Setup(result.design, result.mesh)
     remember(setup.problem, result.peaks)
     found = modes_of(*_loaded(setup, result), count)
-    # Without the frames of rigid objects, which have vertices after the body's.
-    return Modes(found.frequencies, found.shapes[:, : len(result.positions)])
+    # Without the frames of rigid objects, which have vertices after the body's and may move more.
+    shapes = found.shapes[:, : len(result.positions)]
+    largest = np.linalg.norm(shapes, axis=2).max(axis=1)
+    return Modes(found.frequencies, shapes / np.where(largest > 0.0, largest, 1.0)[:, None, None])
 
 
 def _loaded(setup: Setup, result: Result) -> tuple[_core.Problem, NDArray[np.float64]]:
