@@ -3,9 +3,11 @@ use std::sync::atomic::Ordering;
 
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
+use voxsoft_solid::Problem;
 
 use crate::equilibrium::to_python;
 use crate::gate;
+use crate::sensitivity::contact_mut;
 use crate::simulate::PyProblem;
 
 /// Squares of angular frequencies (k,) in 1/s², and mode shapes (k, n, 3) of unit modal mass in kg^-1/2.
@@ -24,7 +26,10 @@ pub fn modes<'py>(
 ) -> PyResult<Vibrations<'py>> {
     let positions = problem.positions(&positions)?;
     let vertices = positions.len();
-    let inner = problem.now();
+    let mut inner = Problem::clone(&problem.now());
+    if let Some(contact) = contact_mut(&mut inner) {
+        contact.stick_firmly();
+    }
     let found = gate::run_owned(py, move |cancel| {
         let mut stop = || cancel.load(Ordering::Relaxed);
         voxsoft_statics::modes(&inner, &positions, count, memory, &mut stop)

@@ -71,7 +71,7 @@ impl PyProblem {
     }
 }
 
-fn contact_mut(problem: &mut Problem) -> Option<&mut SurfaceContact> {
+pub(crate) fn contact_mut(problem: &mut Problem) -> Option<&mut SurfaceContact> {
     problem.contact_mut()?.found_by_mut().downcast_mut()
 }
 

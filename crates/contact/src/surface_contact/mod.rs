@@ -367,6 +367,13 @@ impl SurfaceContact {
         self
     }
 
+    /// Raises the slip penalty to its largest, that of contact: the tangent at an equilibrium then has friction that
+    /// sticks as firmly as surfaces keep apart, as small vibrations need. Forces there hardly change, for creep is
+    /// within its tolerance.
+    pub fn stick_firmly(&mut self) {
+        self.state.stick = STICK[1];
+    }
+
     /// Surfaces in contact, their friction and bonds.
     pub fn description(&self) -> &Description {
         &self.description
