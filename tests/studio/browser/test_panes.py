@@ -172,7 +172,7 @@ class TestDesign:
         design.page.keyboard.press("End")
         design.page.keyboard.type("\ndir")
         offered = design.page.locator(".cm-tooltip-autocomplete")
-        offered.get_by_text("direction").wait_for()
+        offered.get_by_text("direction", exact=True).wait_for()
 
     def test_a_template_and_a_file_can_be_opened(self, own_server, open_tab, tmp_path):
         tab = open_tab(own_server.address, mode="design")
