@@ -1,23 +1,24 @@
 //! Floor, and other supports of single vertices: clamps and hands.
 
-use voxsoft_solid::Grab;
 use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Grab, Problem};
 
-use super::Implicit;
+use super::QuasiNewton;
 use super::objective::Value;
+use crate::motion::run::Run;
 
 /// Stiffness of the floor under a vertex that rests on it, over the inertia of the vertex.
 const FLOOR_STIFFNESS: f64 = 1e8;
 
-impl Implicit {
+impl QuasiNewton {
     /// Moves vertices of clamps and floor to their targets.
-    pub(super) fn place(&self, time: f64, positions: &mut [Vec3]) {
-        self.problem.place_clamps(time, 1.0, positions);
-        let Some(floor) = self.problem.floor() else {
+    pub(super) fn place(&self, problem: &Problem, time: f64, positions: &mut [Vec3]) {
+        problem.place_clamps(time, 1.0, positions);
+        let Some(floor) = problem.floor() else {
             return;
         };
         for (vertex, x) in positions.iter_mut().enumerate() {
-            if !self.problem.held()[vertex][2] {
+            if !problem.held()[vertex][2] {
                 x[2] = if self.carried[vertex] {
                     floor.z
                 } else {
@@ -28,7 +29,7 @@ impl Implicit {
     }
 
     /// Springs on free coordinates.
-    pub(super) fn springs(&self, inertia: f64, grabs: &[Grab]) -> Vec<f64> {
+    pub(super) fn springs(&self, run: &Run, inertia: f64, grabs: &[Grab]) -> Vec<f64> {
         let Some(lagged) = &self.lagged else {
             return Vec::new();
         };
@@ -40,7 +41,7 @@ impl Implicit {
                 }
             }
         }
-        let masses = self.problem.body().masses();
+        let masses = run.problem.body().masses();
         for (vertex, _) in self.carried.iter().enumerate().filter(|(_, c)| **c) {
             if let Some(row) = lagged.row_of(vertex, 2) {
                 springs[row] += FLOOR_STIFFNESS * inertia * masses[vertex];
@@ -51,14 +52,19 @@ impl Implicit {
 
     /// Updates the active set of the floor: catches vertices below it and releases those that it pulls; returns true if
     /// any changed.
-    pub(super) fn touch_floor(&mut self, positions: &mut [Vec3], value: &Value) -> bool {
-        let Some(floor) = self.problem.floor() else {
+    pub(super) fn touch_floor(
+        &mut self,
+        problem: &Problem,
+        positions: &mut [Vec3],
+        value: &Value,
+    ) -> bool {
+        let Some(floor) = problem.floor() else {
             return false;
         };
-        let slack = 1e-9 * self.problem.body().size();
+        let slack = 1e-9 * problem.body().size();
         let mut changed = false;
         for (vertex, x) in positions.iter_mut().enumerate() {
-            if self.problem.held()[vertex][2] {
+            if problem.held()[vertex][2] {
                 continue;
             }
             let keep = floor.keeps(self.carried[vertex], x[2], value.net[vertex][2], slack);

@@ -25,13 +25,13 @@ use voxsoft_solid::State;
 use voxsoft_solid::vector::{Vec3, add, scale};
 
 /// Fraction `γ` of the first stage in the first step of a motion: both stages have the same `σ`.
-pub(crate) const FIRST_PART: f64 = 1.0 - FRAC_1_SQRT_2;
+pub const FIRST_PART: f64 = 1.0 - FRAC_1_SQRT_2;
 /// Ratio of the second stage to the first, `(1 − γ)/γ`.
-pub(crate) const SECOND_OVER_FIRST: f64 = 1.0 + SQRT_2;
+pub const SECOND_OVER_FIRST: f64 = 1.0 + SQRT_2;
 
 /// Stage of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Stage {
+pub enum Stage {
     /// First stage of the first step.
     First,
     /// Second stage of the first step.
@@ -41,7 +41,7 @@ pub(crate) enum Stage {
 }
 
 /// Start of a step: its rate and extrapolated state.
-pub(crate) struct Start {
+pub struct Start {
     /// Rate `σ` in 1/s.
     pub rate: f64,
     /// Weights `a₁` and `a₂`.

@@ -1,15 +1,16 @@
 //! Quasi-Newton minimization of the potential of a time step.
 
+use voxsoft_solid::Problem;
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
 use voxsoft_solid::matrix::determinant;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
-use voxsoft_solid::{Ask, Problem};
 
 use super::contact::{make_rigid, restore};
 use super::lagged::Lagged;
 use super::line::{Line, Outcome, Then};
 use super::objective::{Objective, Value};
-use super::quasi_newton::{QuasiNewtonMemory, product};
+use super::pairs::{QuasiNewtonMemory, product};
+use crate::motion::integrator::Asker;
 
 /// Factors of [`Tolerance`].
 const MOVE_OF_STEP: f64 = 1e-2;
@@ -87,7 +88,7 @@ impl Search<'_> {
         positions: &mut Vec<Vec3>,
         value: &mut Value,
         most: u32,
-        go_on: &mut dyn FnMut(Ask) -> bool,
+        asker: &mut Asker<'_>,
     ) -> (End, u32) {
         let problem = self.objective.problem;
         let mut trial = Vec::with_capacity(positions.len());
@@ -96,7 +97,7 @@ impl Search<'_> {
         let mut extremes = Extremes::of(problem, positions);
         let mut last = f64::INFINITY;
         for taken in 0..most {
-            if !go_on(Ask::Within) {
+            if !asker(None) {
                 return (End::Cancelled, taken);
             }
             self.lagged.turn(problem, positions, self.carried);

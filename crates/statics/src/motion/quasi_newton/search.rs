@@ -1,0 +1,121 @@
+//! The quick search within the loop of steps.
+
+use voxsoft_solid::vector::{Vec3, add};
+use voxsoft_solid::{Problem, State, elastic};
+
+use super::QuasiNewton;
+use super::objective::Goal;
+use super::pressures::Pressures;
+use crate::motion::integrator::{Asker, InnerSearch, Stop};
+use crate::motion::run::{Now, Run, Step};
+
+impl InnerSearch for QuasiNewton {
+    const FORGETS: bool = true;
+
+    fn start(&mut self, run: &mut Run, at_rest: bool) {
+        let body = run.problem.body();
+        self.pressures = if at_rest {
+            // Zero, without the rounding of a volume.
+            Pressures::new(body)
+        } else {
+            Pressures::at(body, &run.state.positions)
+        };
+        self.met = false;
+        self.carried.fill(false);
+        self.memory.clear();
+        // The tangent is that of the state from which the next step starts, independent of earlier ones.
+        if let Some(lagged) = &mut self.lagged {
+            lagged.forget();
+        }
+        self.excess = 0.0;
+    }
+
+    /// A step that begins in contact does not.
+    fn may_look_back(&self) -> bool {
+        !self.met
+    }
+
+    fn solve(
+        &mut self,
+        run: &mut Run,
+        step: &Step,
+        asker: &mut Asker<'_>,
+    ) -> Result<Vec<Vec3>, Stop> {
+        let start = &step.start;
+        let free: Vec<Vec3> = start
+            .positions
+            .iter()
+            .zip(&start.velocities)
+            .map(|(x, v)| std::array::from_fn(|i| x[i] + v[i] / step.braked))
+            .collect();
+        let dead = (!run.problem.is_conservative()).then(|| {
+            let mut forces = vec![[0.0; 3]; free.len()];
+            run.problem
+                .add_loads(&run.state.positions, step.time, &mut forces);
+            forces
+        });
+        let mut within = self.pressures.start(run.problem.body());
+        if let Some(viscosity) = &mut run.viscosity {
+            let from = &run.state.positions;
+            viscosity.start(run.problem.body(), from, step.length, &mut within);
+        }
+        let inertia = step.inertia();
+        let goal = Goal {
+            time: step.time,
+            inertia,
+            free: &free,
+            grabs: &step.grabs,
+            dead: dead.as_deref(),
+            within: &within,
+        };
+        let (mut positions, value) = self.minimize(run, goal, asker)?;
+        self.keep_momentum(run, inertia, &mut positions, &value);
+        self.found = value;
+        Ok(positions)
+    }
+
+    fn look(&mut self, run: &Run, _step: &Step, next: &State) -> Now {
+        let found = &mut self.found;
+        Now {
+            internal: std::mem::take(&mut found.elastic),
+            external: std::mem::take(&mut found.external),
+            elastic: found.energy,
+            kinetic: next.kinetic_energy(run.problem.body().masses()),
+            ..Now::default()
+        }
+    }
+
+    /// A formula that looks two steps back makes bodies that meet rebound too fast.
+    fn takes_again(&mut self, _run: &Run, outcome: &Result<(State, Now), Stop>) -> bool {
+        let again = self.met && !matches!(outcome, Err(Stop::Cancelled));
+        // The tangent has the contact stiffness of the final state, and would resist bodies that have yet to come there.
+        if let (true, Some(lagged)) = (again, &mut self.lagged) {
+            lagged.forget();
+        }
+        again
+    }
+
+    fn accept_contact(&mut self, problem: &mut Problem, next: &State) -> bool {
+        let contact = problem.contact_mut();
+        contact.is_none_or(|contact| contact.commit_partial(&next.positions))
+    }
+
+    fn accept(&mut self, _run: &mut Run, _next: &State) {
+        self.pressures.take(&self.found.pressures);
+    }
+
+    /// Pressures and viscous stress may not have converged: only the elastic forces decide.
+    fn residual_at_rest(&self, run: &Run, _residual: f64) -> f64 {
+        let positions = &run.state.positions;
+        let mut net = vec![[0.0; 3]; positions.len()];
+        elastic::add_forces(run.problem.body(), positions, &mut net);
+        for (force, load) in net.iter_mut().zip(&run.now.external) {
+            *force = add(*force, *load);
+        }
+        run.residual_of(net)
+    }
+
+    fn settled(&self) -> bool {
+        self.settled
+    }
+}

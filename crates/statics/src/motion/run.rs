@@ -1,0 +1,192 @@
+//! State of a motion between two steps, and a step to be found.
+
+use voxsoft_solid::breakdown::{Breakdown, travel_limit};
+use voxsoft_solid::loads::grabs::{Grabs, shortest_edge};
+use voxsoft_solid::vector::{Vec3, axpy, sub};
+use voxsoft_solid::{Damping, Grab, LiveStatus, Problem, State, Viscosity};
+
+use super::scheme::{Stage, Start};
+
+/// Settings of a motion by implicit steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImplicitSettings {
+    /// Length of a step in s.
+    pub step: f64,
+    /// Damping of all motion.
+    pub damping: Damping,
+    /// Retardation time in s of Kelvin–Voigt damping: the deviatoric stress of a hyperelastic voxel becomes
+    /// `s + τ ds/dt`.
+    pub retardation: f64,
+    /// Tolerance of rest: of the relative residual force, and of the kinetic energy over the elastic energy.
+    pub tolerance: f64,
+}
+
+impl Default for ImplicitSettings {
+    fn default() -> Self {
+        Self {
+            step: 1.0 / 60.0,
+            damping: Damping::Critical,
+            retardation: 0.0,
+            tolerance: 1e-4,
+        }
+    }
+}
+
+impl ImplicitSettings {
+    /// Damping rate of the first step in 1/s.
+    fn first_rate(&self) -> f64 {
+        match self.damping {
+            Damping::Rate(rate) => rate,
+            Damping::Critical => 0.0,
+        }
+    }
+}
+
+/// Forces and energies at a state.
+#[derive(Default, Clone)]
+pub struct Now {
+    /// Internal forces: all but loads, N.
+    pub internal: Vec<Vec3>,
+    /// Viscous part of these, N; empty without viscous stress, or where nobody asks.
+    pub viscous: Vec<Vec3>,
+    /// Loads, grabs included, N.
+    pub external: Vec<Vec3>,
+    /// Reactions of supports, inertia included, N; empty where nobody asks.
+    pub reactions: Vec<Vec3>,
+    /// Elastic energy in J.
+    pub elastic: f64,
+    /// Kinetic energy in J.
+    pub kinetic: f64,
+}
+
+/// A motion between two steps.
+pub struct Run {
+    /// Problem without inertia.
+    pub problem: Problem,
+    pub settings: ImplicitSettings,
+    pub grabs: Grabs,
+    pub viscosity: Option<Viscosity>,
+    pub state: State,
+    pub now: Now,
+    /// State one step ago.
+    pub before: Option<State>,
+    /// Stage of the motion that comes next.
+    pub stage: Stage,
+    /// Present rate of damping in 1/s.
+    pub damping_rate: f64,
+    /// Length of the next step in s: that of the settings, or halved.
+    pub step: f64,
+    /// Successful steps since the last halving.
+    pub good: u32,
+    pub steps: u64,
+    pub back_offs: u32,
+    pub residual: f64,
+    pub status: LiveStatus,
+    pub breakdown: Option<Breakdown>,
+    pub travel_limit: f64,
+    pub shortest_edge: f64,
+}
+
+impl Run {
+    /// Starts a motion of a problem from a state.
+    pub fn new(problem: Problem, settings: ImplicitSettings, start: State) -> Self {
+        let problem = problem.with_held_loads();
+        let mut run = Self {
+            grabs: Grabs::new(&problem),
+            viscosity: Viscosity::of_viscous(problem.body(), settings.retardation),
+            now: Now::default(),
+            before: None,
+            stage: Stage::First,
+            damping_rate: 0.0,
+            step: settings.step,
+            good: 0,
+            steps: 0,
+            back_offs: 0,
+            residual: f64::INFINITY,
+            status: LiveStatus::Moving,
+            breakdown: None,
+            travel_limit: travel_limit(&problem),
+            shortest_edge: shortest_edge(&problem),
+            state: State::at_rest(problem.body()),
+            problem,
+            settings,
+        };
+        run.start_from(start);
+        run
+    }
+
+    /// Goes on from another state, with a memory as at the start.
+    pub fn start_from(&mut self, start: State) {
+        if let Some(viscosity) = &mut self.viscosity {
+            viscosity.restart();
+        }
+        if let Some(contact) = self.problem.contact_mut() {
+            contact.reset(&start.positions);
+        }
+        self.problem.start_loads();
+        self.problem.begin(start.time);
+        self.state = start;
+        self.now = Now::default();
+        self.before = None;
+        self.stage = Stage::First;
+        self.damping_rate = self.settings.first_rate();
+        (self.step, self.good) = (self.settings.step, 0);
+        self.residual = f64::INFINITY;
+        self.wake();
+    }
+
+    /// Wakes the run after a change of loads or grabs: the body may move again.
+    pub fn wake(&mut self) {
+        if self.status == LiveStatus::Diverged {
+            self.step = self.settings.step;
+            self.back_offs = 0;
+        }
+        self.status = LiveStatus::Moving;
+        self.breakdown = None;
+    }
+
+    /// Resets the memory of contact to the last accepted state.
+    pub fn rollback(&mut self) {
+        if let Some(contact) = self.problem.contact_mut() {
+            contact.rollback();
+        }
+    }
+
+    /// Extrapolates the motion over `step` seconds: with its acceleration since the state `before`, if that is given.
+    pub fn extrapolated(&self, step: f64, before: Option<&State>) -> Vec<Vec3> {
+        let mut positions = self.state.positions.clone();
+        for (x, v) in positions.iter_mut().zip(&self.state.velocities) {
+            axpy(x, step, *v);
+        }
+        if let Some(before) = before {
+            let ratio = 0.5 * step * step / (self.state.time - before.time);
+            let velocities = self.state.velocities.iter().zip(&before.velocities);
+            for (x, (v, old)) in positions.iter_mut().zip(velocities) {
+                axpy(x, ratio, sub(*v, *old));
+            }
+        }
+        positions
+    }
+}
+
+/// A step to be found.
+pub struct Step {
+    /// Length in s.
+    pub length: f64,
+    /// Time at the end in s.
+    pub time: f64,
+    /// True for the formula of second order, which looks back at the state before.
+    pub second_order: bool,
+    pub start: Start,
+    /// Sum of its rate and the damping rate, 1/s.
+    pub braked: f64,
+    /// Grabs with their anchors at the end of the step.
+    pub grabs: Vec<Grab>,
+}
+
+impl Step {
+    /// Inertia per mass `κ` in 1/s².
+    pub fn inertia(&self) -> f64 {
+        self.start.rate * self.braked
+    }
+}

@@ -1,0 +1,134 @@
+//! Stepper interface of implicit motions.
+
+use voxsoft_solid::breakdown::Breakdown;
+use voxsoft_solid::loads::grabs::still_state;
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Ask, Grab, LiveStatus, Look, Method, Problem, ProblemError, State, Stepper};
+
+use super::integrator::{InnerSearch, Integrator, Stop};
+use super::run::Run;
+
+/// Shortest and longest step allowed, in s.
+pub(super) const STEPS: [f64; 2] = [1e-6, 0.1];
+
+impl<S: InnerSearch> Stepper for Integrator<S> {
+    fn method(&self) -> Method {
+        Method::Implicit
+    }
+
+    fn problem(&self) -> &Problem {
+        &self.run.problem
+    }
+
+    fn state(&self) -> &State {
+        &self.run.state
+    }
+
+    fn step(&self) -> f64 {
+        self.run.step
+    }
+
+    fn prefer_step(&mut self, seconds: f64) {
+        let step = seconds.clamp(STEPS[0], STEPS[1]);
+        if step != self.run.settings.step {
+            self.run.settings.step = step;
+            self.run.step = step;
+        }
+    }
+
+    fn advance_while(&mut self, steps: u32, go_on: &mut dyn FnMut(Ask) -> bool) -> Look {
+        for _ in 0..steps {
+            if self.run.status != LiveStatus::Moving {
+                break;
+            }
+            match self.take_whole_step(&mut |_| go_on(Ask::Within)) {
+                Ok(()) => self.judge(),
+                Err(Stop::Cancelled) => break,
+                Err(stop) => {
+                    self.run.status = LiveStatus::Diverged;
+                    self.run.breakdown = Some(self.run.place_of(&stop));
+                }
+            }
+            if !go_on(Ask::After) {
+                break;
+            }
+        }
+        let run = &self.run;
+        Look {
+            status: run.status,
+            time: run.state.time,
+            substep: run.step,
+            substeps: run.steps,
+            back_offs: run.back_offs,
+            residual: run.residual,
+            elastic: run.now.elastic,
+            kinetic: run.now.kinetic,
+            breakdown: run.breakdown,
+            settled: self.search.settled(),
+        }
+    }
+
+    fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError> {
+        let run = &mut self.run;
+        run.grabs.set_load(&mut run.problem, load, factor)?;
+        if let Some(copy) = self.search.copy() {
+            run.grabs.set_load(copy, load, factor)?;
+        }
+        self.wake();
+        Ok(())
+    }
+
+    fn grab(
+        &mut self,
+        number: u32,
+        vertex: u32,
+        target: Vec3,
+        stiffness: f64,
+    ) -> Result<(), ProblemError> {
+        let run = &mut self.run;
+        if run.problem.body().ties().has(vertex) {
+            let what = "grab";
+            return Err(ProblemError::OnTied { what, vertex });
+        }
+        let positions = &run.state.positions;
+        run.grabs
+            .grab(positions, number, vertex, target, stiffness)?;
+        self.wake();
+        Ok(())
+    }
+
+    fn release(&mut self, number: u32) -> bool {
+        let released = self.run.grabs.release(number);
+        if released {
+            self.wake();
+        }
+        released
+    }
+
+    fn grabs(&self) -> &[(u32, Grab)] {
+        self.run.grabs.all()
+    }
+
+    fn reset(&mut self) {
+        self.run.grabs.release_all();
+        (self.run.steps, self.run.back_offs) = (0, 0);
+        self.start_from(State::at_rest(self.run.problem.body()), true);
+    }
+
+    fn seek(&mut self, positions: Vec<Vec3>, time: f64) -> Result<(), ProblemError> {
+        let state = still_state(&self.run.problem, positions, time)?;
+        self.run.grabs.release_all();
+        self.start_from(state, false);
+        Ok(())
+    }
+}
+
+impl Run {
+    /// Place of the failure that ends a run.
+    pub fn place_of(&self, stop: &Stop) -> Breakdown {
+        match stop {
+            Stop::Gone(place) => *place,
+            _ => Breakdown::farthest(&self.problem, &self.state.positions, self.state.time),
+        }
+    }
+}
