@@ -967,6 +967,15 @@ class Live:
 
     def reset(self) -> None: ...
     def seek(self, positions: NDArray[np.float64], time: float = 0.0) -> None: ...
+    def resume(
+        self,
+        positions: NDArray[np.float64],
+        velocities: NDArray[np.float64],
+        time: float,
+        memory: Memory,
+    ) -> None:
+        """Go on from a state with the memory that the problem had there."""
+
     def positions(self) -> NDArray[np.float64]: ...
     def velocities(self) -> NDArray[np.float64]: ...
     def memory(self) -> Memory:

@@ -27,7 +27,7 @@ impl Handle {
     }
 }
 
-/// Memory of a problem, a value: softening, tendons, fluids and contact at one state.
+/// Memory of a problem, a value: softening, tendons, fluids, contact and viscous stress at one state.
 #[pyclass(frozen, eq, name = "Memory", module = "voxsoft._core")]
 #[derive(PartialEq)]
 pub struct PyMemory(pub(crate) Memory);

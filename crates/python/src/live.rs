@@ -11,7 +11,7 @@ use pyo3::types::PyBytes;
 use voxsoft_frames::FrameHead;
 use voxsoft_player::{converging, stepper};
 use voxsoft_solid::vector::{Vec3, norm, sub};
-use voxsoft_solid::{Ask, Grab, Method, Problem, Stepper};
+use voxsoft_solid::{Ask, Grab, Method, Problem, State, Stepper};
 use voxsoft_xpbd::Dynamics;
 
 use crate::answer::PyAdvance;
@@ -220,6 +220,25 @@ impl PyLive {
             .map_err(to_python)
     }
 
+    /// Goes on from a state with the memory that the problem had there.
+    fn resume(
+        &self,
+        py: Python<'_>,
+        positions: PyReadonlyArray2<'_, f64>,
+        velocities: PyReadonlyArray2<'_, f64>,
+        time: f64,
+        memory: PyRef<'_, PyMemory>,
+    ) -> PyResult<()> {
+        let state = State {
+            positions: rows("positions", &positions)?,
+            velocities: rows("velocities", &velocities)?,
+            time,
+        };
+        let memory = memory.0.clone();
+        self.with(py, |live| live.resume(state, &memory))?
+            .map_err(to_python)
+    }
+
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let positions = self.with(py, |live| live.state().positions.clone())?;
         Ok(from_rows(py, &positions))
@@ -232,7 +251,7 @@ impl PyLive {
 
     /// Memory at the last state: all data that depend on the load path.
     fn memory(&self, py: Python<'_>) -> PyResult<PyMemory> {
-        self.with(py, |live| PyMemory(live.problem().memory()))
+        self.with(py, |live| PyMemory(live.memory()))
     }
 
     /// Displayed vertices of the body, in ascending order.

@@ -11,7 +11,7 @@ use crate::{
     Body, Clamp, Contact, Floor, Fluid, History, Load, LoadKind, ProblemError, Rigid, Term,
 };
 
-pub use memory::Memory;
+pub use memory::{Memory, Past};
 
 /// A body with clamps, loads, and optionally a floor, fluid or contact.
 #[derive(Debug, Clone)]
@@ -29,6 +29,8 @@ pub struct Problem {
     conservative: bool,
     /// The time in s of the present free stretches.
     time: f64,
+    /// History of viscous stress in a motion by implicit steps.
+    viscosity: Option<crate::Viscosity>,
 }
 
 impl Problem {
@@ -83,6 +85,7 @@ impl Problem {
             held,
             conservative,
             time: f64::INFINITY,
+            viscosity: None,
         })
     }
 
@@ -295,13 +298,6 @@ impl Problem {
             *tendon = tendon.taut();
         }
         Cow::Owned(problem)
-    }
-
-    /// Tests whether the solution depends on the load path.
-    pub fn depends_on_way(&self) -> bool {
-        let contact = self.contact().is_some_and(Contact::depends_on_way);
-        let softens = self.body.hex8_term().soften();
-        contact || softens || self.loads.iter().any(|load| load.kind.depends_on_way())
     }
 
     /// This problem with the friction bounds of its tendons held during a step, so that these have a potential.

@@ -3,7 +3,7 @@
 use crate::breakdown::Breakdown;
 use crate::loads::grabs::Grab;
 use crate::vector::Vec3;
-use crate::{Problem, ProblemError, State};
+use crate::{Memory, Problem, ProblemError, State};
 
 /// Damping of the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,4 +119,13 @@ pub trait Stepper: Send {
 
     /// Continues from other positions (m), without velocity, at `time` (s). Grabs are released.
     fn seek(&mut self, positions: Vec<Vec3>, time: f64) -> Result<(), ProblemError>;
+
+    /// The memory at the state: that of the problem, and the past of a motion whose next step depends on it.
+    fn memory(&self) -> Memory {
+        self.problem().memory()
+    }
+
+    /// Continues from another state, velocities included, with the memory ([`Stepper::memory`]) that a stepper of the
+    /// same problem had there: to the same bits each time. Grabs are released; loads stay as they are set.
+    fn resume(&mut self, state: State, memory: &Memory) -> Result<(), ProblemError>;
 }

@@ -10,8 +10,8 @@ use voxsoft_solid::conformance::{Law, check_solver, check_stepper};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Ask, Attachment, History, LatticeMaterial, PointForces, Spring, Springs};
 use voxsoft_solid::{
-    Body, Clamp, Damping, Floor, Grab, Load, Look, Method, Motion, Observer, Problem, ProblemError,
-    Solution, Solver, State, Status, Stepper,
+    Body, Clamp, Damping, Floor, Grab, Load, Look, Memory, Method, Motion, Observer, Problem,
+    ProblemError, Solution, Solver, State, Status, Stepper,
 };
 use voxsoft_statics::{Control, Implicit, ImplicitSettings, LinearSolver, Settings, Transient};
 
@@ -255,6 +255,10 @@ impl Stepper for FaultyStepper {
 
     fn seek(&mut self, positions: Vec<Vec3>, time: f64) -> Result<(), ProblemError> {
         self.0.seek(positions, time)
+    }
+
+    fn resume(&mut self, state: State, memory: &Memory) -> Result<(), ProblemError> {
+        self.0.resume(state, memory)
     }
 }
 

@@ -208,3 +208,47 @@ def test_slow_motion_of_softening_rubber_follows_the_path_of_equilibria():
     # Viscous drag of 20/s lags behind by 20/ω² = 0.02 s of a way that takes 1 s.
     assert seen == pytest.approx(expected, abs=0.03 * max(expected))
     assert moved.positions == pytest.approx(path.results[-1].positions, abs=0.03 * max(expected))
+
+
+#: Designs whose states depend on the way to them, and whether each of their steps converges: one
+#: that does not goes on to within its tolerance, as its tangent depends on the steps before.
+WITH_MEMORY = {
+    "relaxing": (prony(BEAM), False),
+    "relaxing in contact": (prony(DESIGNS["contact"]), True),
+    "relaxing near nothing": (prony(BEAM.replace(objects=[AWAY])), True),
+    "softening": (DESIGNS["softening"], True),
+}
+
+
+@pytest.mark.parametrize("damping", ["critical", 0.0])
+@pytest.mark.parametrize("name", WITH_MEMORY)
+def test_motion_from_a_restored_observation_repeats_bit_for_bit(name, damping):
+    design, converges = WITH_MEMORY[name]
+
+    def go_on(simulator, steps=6):
+        return [simulator.step() for _ in range(steps)]
+
+    def bits(seen):
+        return [(each.time, each.positions.tobytes(), each.velocities.tobytes()) for each in seen]
+
+    simulator = vs.Simulator(design, damping=damping, retardation="1 ms")
+    for _ in range(4):
+        seen = simulator.step({"force": (0.0, 0.0, 0.005)})
+    plain = go_on(simulator)
+    assert simulator.restore(seen) is seen is simulator.state
+    first = go_on(simulator)
+    simulator.restore(seen)
+    assert bits(go_on(simulator)) == bits(first)
+    other = vs.Simulator(design, damping=damping, retardation="1 ms")
+    other.restore(seen)
+    assert bits(go_on(other)) == bits(first)
+    if converges:
+        assert bits(plain) == bits(first)
+    # The size of the whole motion, of which a search leaves a hundredth of a step.
+    moved = np.abs(plain[-1].positions - plain[-1].result.mesh.vertices).max()
+    assert np.abs(first[-1].positions - plain[-1].positions).max() < 2e-3 * moved
+
+
+def test_observations_of_another_design_are_refused():
+    with pytest.raises(vs.errors.SimulationError, match="same design"):
+        vs.Simulator(DESIGNS["softening"]).restore(vs.Simulator(BEAM).state)

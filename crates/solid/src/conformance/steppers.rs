@@ -57,7 +57,23 @@ impl Check<'_> {
         self.subject.holds(law, "a reset leaves the time", origin)?;
         stepper.advance(STEPS);
         let again = Self::state_bits(&*stepper) == first;
-        self.subject.holds(law, "other bits after a reset", again)
+        self.subject.holds(law, "other bits after a reset", again)?;
+        stepper.reset();
+        stepper.advance(STEPS / 50);
+        let (state, memory) = (stepper.state().clone(), stepper.memory());
+        let mut both = [stepper, (self.make)()];
+        let mut seen = Vec::new();
+        for index in [0, 1, 1] {
+            let stepper = &mut *both[index];
+            if let Err(error) = stepper.resume(state.clone(), &memory) {
+                return self.subject.broken(law, error.to_string());
+            }
+            stepper.advance(STEPS / 10);
+            seen.push(Self::state_bits(stepper));
+        }
+        let same = seen.iter().all(|bits| *bits == seen[0]);
+        self.subject
+            .holds(law, "other bits from one state and memory", same)
     }
 
     fn threads(&self) -> Outcome {

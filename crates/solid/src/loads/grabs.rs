@@ -152,25 +152,38 @@ pub fn still_state(
     positions: Vec<Vec3>,
     time: f64,
 ) -> Result<State, ProblemError> {
+    checked_state(
+        problem,
+        State {
+            velocities: vec![[0.0; 3]; positions.len()],
+            positions,
+            time,
+        },
+    )
+}
+
+/// The state, if it is one of the problem's.
+pub fn checked_state(problem: &Problem, state: State) -> Result<State, ProblemError> {
     let expected = problem.body().rest().len();
-    let got = positions.len();
-    if got != expected {
-        let what = "positions";
-        return Err(ProblemError::Length {
-            what,
-            got,
-            expected,
-        });
+    let lengths = [
+        ("positions", state.positions.len()),
+        ("velocities", state.velocities.len()),
+    ];
+    for (what, got) in lengths {
+        if got != expected {
+            return Err(ProblemError::Length {
+                what,
+                got,
+                expected,
+            });
+        }
     }
-    if !time.is_finite() || positions.iter().flatten().any(|x| !x.is_finite()) {
+    let mut numbers = state.positions.iter().chain(&state.velocities).flatten();
+    if !state.time.is_finite() || numbers.any(|x| !x.is_finite()) {
         let what = "positions or time";
         return Err(ProblemError::NotFinite { what });
     }
-    Ok(State {
-        velocities: vec![[0.0; 3]; got],
-        positions,
-        time,
-    })
+    Ok(state)
 }
 
 /// The time (s) after which loads, motions, fluid and materials of a problem no longer vary.

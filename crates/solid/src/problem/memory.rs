@@ -6,7 +6,7 @@ use crate::fluid::FluidMemory;
 use crate::loads::TendonMemory;
 use crate::loads::external_force::Vertices;
 use crate::vector::Vec3;
-use crate::{Contact, ContactMemory, Load, LoadKind, Tendon};
+use crate::{Contact, ContactMemory, Load, LoadKind, State, Tendon, Viscosity};
 
 /// The path-dependent data of a problem: [`crate::Problem::memory`] reads them and [`crate::Problem::remember`]
 /// restores them.
@@ -22,9 +22,39 @@ pub struct Memory {
     pub fluid: Option<FluidMemory>,
     /// Contact between surfaces.
     pub contact: Option<ContactMemory>,
+    /// Viscous stress of hyperelastic voxels in a motion by implicit steps.
+    pub viscosity: Option<Viscosity>,
+    /// The last steps of a motion by implicit steps.
+    pub past: Option<Past>,
+}
+
+/// The past of a motion by implicit steps, on which the next step depends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Past {
+    /// The state one step ago.
+    pub before: Option<State>,
+    /// The rate of damping in 1/s.
+    pub damping_rate: f64,
+    /// The length of a step in s.
+    pub step: f64,
+    /// Successful steps since the last halving.
+    pub good: u32,
+    /// The response of hyperelastic voxels within the last step, with its viscous stress.
+    pub within: Option<Vec<Within>>,
+    /// Internal forces at the state, N.
+    pub internal: Vec<Vec3>,
+    /// Elastic energy at the state, J.
+    pub elastic: f64,
 }
 
 impl Problem {
+    /// Tests whether the solution depends on the load path.
+    pub fn depends_on_way(&self) -> bool {
+        let contact = self.contact().is_some_and(Contact::depends_on_way);
+        let softens = self.body.hex8_term().soften();
+        contact || softens || self.loads.iter().any(|load| load.kind.depends_on_way())
+    }
+
     /// Its memory: the data that depend on the load path.
     pub fn memory(&self) -> Memory {
         let tendons = self.loads.iter().filter_map(|load| match &load.kind {
@@ -37,6 +67,8 @@ impl Problem {
             tendons: tendons.collect(),
             fluid: self.fluid.as_ref().map(|fluid| fluid.memory().clone()),
             contact: self.contact().map(Contact::memory),
+            viscosity: self.viscosity.clone(),
+            past: None,
         }
     }
 
@@ -54,6 +86,9 @@ impl Problem {
         }
         if let (Some(contact), Some(kept)) = (self.contact_mut(), &memory.contact) {
             contact.remember(kept);
+        }
+        if let (Some(viscosity), Some(kept)) = (&mut self.viscosity, &memory.viscosity) {
+            viscosity.clone_from(kept);
         }
     }
 
@@ -85,6 +120,31 @@ impl Problem {
     /// response.
     pub fn set_within(&mut self, within: Option<Vec<Within>>) {
         self.body_mut().set_within(within);
+    }
+
+    /// Starts the history of viscous stress, with the retardation time in s of Kelvin–Voigt damping: the body has been at
+    /// its positions for ever.
+    pub fn start_viscosity(&mut self, retardation: f64) {
+        self.viscosity = Viscosity::of_viscous(&self.body, retardation);
+    }
+
+    /// Tests whether a motion has viscous stress.
+    pub fn is_viscous(&self) -> bool {
+        self.viscosity.is_some()
+    }
+
+    /// Adds the viscous stress over a step of `step` seconds from `positions` to the response of hyperelastic voxels.
+    pub fn begin_viscosity(&mut self, positions: &[Vec3], step: f64, within: &mut [Within]) {
+        if let Some(viscosity) = &mut self.viscosity {
+            viscosity.start(&self.body, positions, step, within);
+        }
+    }
+
+    /// Accepts the end of that step for the history of viscous stress.
+    pub fn end_viscosity(&mut self, positions: &[Vec3], step: f64) {
+        if let Some(viscosity) = &mut self.viscosity {
+            viscosity.end(&self.body, positions, step);
+        }
     }
 
     /// Clears the memory of tendons and of materials that soften.

@@ -47,6 +47,11 @@ impl Hex8s {
         self.within = within;
     }
 
+    /// The response of every voxel within a time step; `None` for the elastic response.
+    pub fn within(&self) -> Option<&[Within]> {
+        self.within.as_deref()
+    }
+
     /// Tests whether the response is elastic, not that within a time step.
     pub(crate) fn is_elastic(&self) -> bool {
         self.within.is_none()

@@ -69,6 +69,9 @@ pub trait InnerSearch: Send {
     /// Starts over from the state of the run; `at_rest` if that is the rest pose at time zero.
     fn start(&mut self, run: &mut Run, at_rest: bool);
 
+    /// Takes over the memory that the problem of the run has got after a start.
+    fn resume(&mut self, _run: &mut Run) {}
+
     /// Takes note of a change of loads or grabs.
     fn wake(&self, _run: &mut Run) {}
 
@@ -280,9 +283,7 @@ impl<S: InnerSearch> Integrator<S> {
         let factor_of = |load: &Load| load.history.at(next.time);
         run.problem.accept_loads(&next.positions, &factor_of);
         let step = next.time - run.state.time;
-        if let Some(viscosity) = &mut run.viscosity {
-            viscosity.end(run.problem.body(), &next.positions, step);
-        }
+        run.problem.end_viscosity(&next.positions, step);
         self.search.accept(run, &next);
         run.grabs.follow(ANCHOR_SPEED * step * run.shortest_edge);
         if run.settings.damping == Damping::Critical {

@@ -3,7 +3,7 @@
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::loads::grabs::{Grabs, shortest_edge};
 use voxsoft_solid::vector::{Vec3, axpy, sub};
-use voxsoft_solid::{Damping, Grab, LiveStatus, Problem, State, Viscosity};
+use voxsoft_solid::{Damping, Grab, LiveStatus, Past, Problem, State};
 
 use super::scheme::{Stage, Start};
 
@@ -65,7 +65,6 @@ pub struct Run {
     pub problem: Problem,
     pub settings: ImplicitSettings,
     pub grabs: Grabs,
-    pub viscosity: Option<Viscosity>,
     pub state: State,
     pub now: Now,
     /// State one step ago.
@@ -93,7 +92,6 @@ impl Run {
         let problem = problem.with_held_loads();
         let mut run = Self {
             grabs: Grabs::new(&problem),
-            viscosity: Viscosity::of_viscous(problem.body(), settings.retardation),
             now: Now::default(),
             before: None,
             stage: Stage::First,
@@ -117,9 +115,7 @@ impl Run {
 
     /// Goes on from another state, with a memory as at the start.
     pub fn start_from(&mut self, start: State) {
-        if let Some(viscosity) = &mut self.viscosity {
-            viscosity.restart();
-        }
+        self.problem.start_viscosity(self.settings.retardation);
         if let Some(contact) = self.problem.contact_mut() {
             contact.reset(&start.positions);
         }
@@ -133,6 +129,34 @@ impl Run {
         (self.step, self.good) = (self.settings.step, 0);
         self.residual = f64::INFINITY;
         self.wake();
+    }
+
+    /// Last steps, of a run that has taken one.
+    pub fn past(&self) -> Past {
+        Past {
+            before: self.before.clone(),
+            damping_rate: self.damping_rate,
+            step: self.step,
+            good: self.good,
+            within: self.problem.body().hex8_term().within().map(<[_]>::to_vec),
+            internal: self.now.internal.clone(),
+            elastic: self.now.elastic,
+        }
+    }
+
+    /// Takes over the last steps of another run of the problem, which has led to the state.
+    pub fn take_past(&mut self, past: &Past) {
+        self.before.clone_from(&past.before);
+        self.stage = Stage::Later;
+        self.damping_rate = past.damping_rate;
+        (self.step, self.good) = (past.step.min(self.settings.step), past.good);
+        self.problem.set_within(past.within.clone());
+        self.now = Now {
+            internal: past.internal.clone(),
+            elastic: past.elastic,
+            kinetic: self.state.kinetic_energy(self.problem.body().masses()),
+            ..Now::default()
+        };
     }
 
     /// Wakes the run after a change of loads or grabs: the body may move again.

@@ -1,12 +1,15 @@
 //! Stepper interface of implicit motions.
 
 use voxsoft_solid::breakdown::Breakdown;
-use voxsoft_solid::loads::grabs::still_state;
+use voxsoft_solid::loads::grabs::{checked_state, still_state};
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Ask, Grab, LiveStatus, Look, Method, Problem, ProblemError, State, Stepper};
+use voxsoft_solid::{
+    Ask, Grab, LiveStatus, Look, Memory, Method, Problem, ProblemError, State, Stepper,
+};
 
 use super::integrator::{InnerSearch, Integrator, Stop};
 use super::run::Run;
+use super::scheme::Stage;
 
 /// Shortest and longest step allowed, in s.
 pub(super) const STEPS: [f64; 2] = [1e-6, 0.1];
@@ -119,6 +122,29 @@ impl<S: InnerSearch> Stepper for Integrator<S> {
         let state = still_state(&self.run.problem, positions, time)?;
         self.run.grabs.release_all();
         self.start_from(state, false);
+        Ok(())
+    }
+
+    fn memory(&self) -> Memory {
+        let run = &self.run;
+        Memory {
+            past: (run.stage == Stage::Later).then(|| run.past()),
+            ..run.problem.memory()
+        }
+    }
+
+    fn resume(&mut self, state: State, memory: &Memory) -> Result<(), ProblemError> {
+        let run = &mut self.run;
+        let state = checked_state(&run.problem, state)?;
+        run.grabs.release_all();
+        run.start_from(state);
+        self.search.start(run, false);
+        run.problem.remember(memory);
+        if let Some(past) = &memory.past {
+            run.take_past(past);
+        }
+        self.search.resume(run);
+        self.search.wake(run);
         Ok(())
     }
 }

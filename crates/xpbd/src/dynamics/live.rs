@@ -1,10 +1,10 @@
 //! Interactive run that continues between calls, with changes of loads and grabs.
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
-use voxsoft_solid::loads::grabs::{Grabs, loads_end, shortest_edge, still_state};
+use voxsoft_solid::loads::grabs::{Grabs, checked_state, loads_end, shortest_edge, still_state};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Ask, Grab, LiveStatus, Look, Method, Problem, ProblemError, State, Stepper, elastic,
+    Ask, Grab, LiveStatus, Look, Memory, Method, Problem, ProblemError, State, Stepper, elastic,
 };
 
 use super::{Arrays, Dynamics, Subject, Window, arrays_of, at_rest, strips_of, substeps_of};
@@ -278,6 +278,23 @@ impl Stepper for Live {
     fn seek(&mut self, positions: Vec<Vec3>, time: f64) -> Result<(), ProblemError> {
         let state = still_state(&self.problem, positions, time)?;
         self.grabs.release_all();
+        self.start_from(state);
+        Ok(())
+    }
+
+    fn resume(&mut self, state: State, memory: &Memory) -> Result<(), ProblemError> {
+        let state = checked_state(&self.problem, state)?;
+        self.grabs.release_all();
+        self.problem.remember(memory);
+        // Anew, as the old arrays keep the damping and viscous stress of another motion.
+        let subject = Subject {
+            problem: &self.problem,
+            settings: &self.settings,
+            grabs: &[],
+        };
+        self.arrays = arrays_of(subject, strips_of(subject));
+        self.substep = self.first_substep;
+        (self.back_offs, self.stuck) = (0, 0);
         self.start_from(state);
         Ok(())
     }

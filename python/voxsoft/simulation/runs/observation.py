@@ -128,6 +128,8 @@ class Observation:
     _setup: Setup = field(compare=False)
     _commands: LoadCommands = field(compare=False)
     _values: Mapping[int, Value] = field(compare=False)
+    #: Seconds by which the state is later than its time.
+    _ahead: float = field(compare=False)
 
     def __repr__(self) -> str:
         return f"<Observation at {self.time:g} s: {self.status}>"

@@ -144,24 +144,7 @@ class Simulator:
         Observation
             The unloaded body, with the same bits as that of a new simulator.
         """
-        mesh, settings = self._setup.mesh, self._settings
-        # A new core object, because a step that was halved stays so in the old one.
-        self._live = _core.Live(
-            self._of_size_one.problem,
-            mesh.triangles.astype(np.uint32),
-            np.zeros(len(mesh.triangles), np.uint8),
-            mesh.voxel_size or 0.0,
-            time_step=settings.time_step,
-            damping=settings.damping if isinstance(settings.damping, float) else None,
-            retardation=settings.retardation,
-            tolerance=settings.tolerance,
-            converged=converges_each_step(self.design),
-        )
-        if self._live.method == "implicit":
-            self._live.prefer_step(settings.time_step)
-            parts = ceil(settings.time_step / self._live.substep * (1.0 - 1e-9))
-            self._live.prefer_step(settings.time_step / parts)
-        self._values: dict[int, Value] = {}
+        self._start()
         self._command(self._commands.at_first)
         self._steps, self._time, self._ahead = 0, 0.0, 0.0
         self._state = self._observe(None)
@@ -201,6 +184,63 @@ class Simulator:
         self._steps += 1
         self._state = self._observe(report)
         return self._state
+
+    def restore(self, seen: Observation) -> Observation:
+        """Go back to an observation: its state, its time, its loads and its memory.
+
+        Friction, gas and liquid, softening and viscous stress of rubber go on as they were. Motion
+        from here on has the same bits each time, in any simulator of the design with the same
+        settings. With contact, supplies or softening these are the bits of a motion that was not
+        interrupted; without, both agree to the tolerance of a step.
+
+        Parameters
+        ----------
+        seen
+            An observation of this simulator or of another one of the same design.
+
+        Returns
+        -------
+        Observation
+            ``seen``, the last observation from now on.
+
+        Raises
+        ------
+        SimulationError
+            An observation of another design.
+        """
+        if seen._setup.design != self.design:
+            raise SimulationError(
+                "simulator",
+                f"cannot go back to an observation of {seen._setup.design.name}",
+                "restore observations of the same design only",
+            )
+        self._start()
+        self._command(seen._values)
+        moment = seen._moment
+        self._live.resume(moment.positions, moment.velocities, moment.time, moment.memory)
+        self._steps, self._time, self._ahead = seen.steps, moment.time, seen._ahead
+        self._state = seen
+        return seen
+
+    def _start(self) -> None:
+        """Make a run at rest: a new one, because a step that was halved stays so in the old one."""
+        mesh, settings = self._setup.mesh, self._settings
+        self._live = _core.Live(
+            self._of_size_one.problem,
+            mesh.triangles.astype(np.uint32),
+            np.zeros(len(mesh.triangles), np.uint8),
+            mesh.voxel_size or 0.0,
+            time_step=settings.time_step,
+            damping=settings.damping if isinstance(settings.damping, float) else None,
+            retardation=settings.retardation,
+            tolerance=settings.tolerance,
+            converged=converges_each_step(self.design),
+        )
+        if self._live.method == "implicit":
+            self._live.prefer_step(settings.time_step)
+            parts = ceil(settings.time_step / self._live.substep * (1.0 - 1e-9))
+            self._live.prefer_step(settings.time_step / parts)
+        self._values: dict[int, Value] = {}
 
     def _command(self, values: Mapping[int, Value]) -> None:
         """Apply changed loads; others are left alone, as they would wake a body at rest."""
@@ -261,6 +301,7 @@ class Simulator:
             _setup=self._setup,
             _commands=self._commands,
             _values=dict(self._values),
+            _ahead=self._ahead,
         )
 
     def _judged(

@@ -60,7 +60,7 @@ impl Run {
 
     /// Viscous part of internal forces (N) at `positions`; empty without viscous stress.
     fn viscous_part(&self, positions: &[Vec3], internal: &[Vec3]) -> Vec<Vec3> {
-        if self.viscosity.is_none() {
+        if !self.problem.is_viscous() {
             return Vec::new();
         }
         let mut elastic = vec![[0.0; 3]; positions.len()];

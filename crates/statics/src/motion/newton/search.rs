@@ -86,13 +86,14 @@ impl Newton {
 
     /// Sets the viscous stress of hyperelastic voxels over a step from the state.
     fn begin_viscosity(&mut self, run: &mut Run, step: f64) {
-        let Some(viscosity) = &mut run.viscosity else {
+        if !run.problem.is_viscous() {
             return;
-        };
+        }
         let body = run.problem.body();
         let materials = body.hex8s().iter().map(|hex8| body.material_of(hex8));
         let mut within: Vec<Within> = materials.map(Within::elastic).collect();
-        viscosity.start(body, &run.state.positions, step, &mut within);
+        run.problem
+            .begin_viscosity(&run.state.positions, step, &mut within);
         self.equilibrium.problem.set_within(Some(within.clone()));
         run.problem.set_within(Some(within));
     }
@@ -145,10 +146,14 @@ impl InnerSearch for Newton {
     }
 
     fn start(&mut self, run: &mut Run, _at_rest: bool) {
-        if run.viscosity.is_some() {
+        if run.problem.is_viscous() {
             run.problem.set_within(None);
         }
         begin_fluid(run);
+        self.resume(run);
+    }
+
+    fn resume(&mut self, run: &mut Run) {
         // A tangent of the size of the last one fits in memory too.
         if let Ok(equilibrium) = moving(&run.problem, &self.inertia, self.memory) {
             self.equilibrium = equilibrium;
@@ -224,7 +229,7 @@ impl InnerSearch for Newton {
 
     /// The viscous stress has yet to decay.
     fn residual_at_rest(&self, run: &Run, residual: f64) -> f64 {
-        if run.viscosity.is_none() {
+        if !run.problem.is_viscous() {
             return residual;
         }
         let mut net = run.now.external.clone();

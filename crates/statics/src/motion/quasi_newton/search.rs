@@ -4,6 +4,7 @@ use voxsoft_solid::vector::{Vec3, add};
 use voxsoft_solid::{Problem, State, elastic};
 
 use super::QuasiNewton;
+use super::contact::touches;
 use super::objective::Goal;
 use super::pressures::Pressures;
 use crate::motion::integrator::{Asker, InnerSearch, Stop};
@@ -28,6 +29,12 @@ impl InnerSearch for QuasiNewton {
             lagged.forget();
         }
         self.excess = 0.0;
+    }
+
+    fn resume(&mut self, run: &mut Run) {
+        // Contact that is remembered may have other pairs.
+        self.lagged = None;
+        self.met = touches(&run.problem, &run.state.positions);
     }
 
     /// A step that begins in contact does not.
@@ -55,10 +62,8 @@ impl InnerSearch for QuasiNewton {
             forces
         });
         let mut within = self.pressures.start(run.problem.body());
-        if let Some(viscosity) = &mut run.viscosity {
-            let from = &run.state.positions;
-            viscosity.start(run.problem.body(), from, step.length, &mut within);
-        }
+        run.problem
+            .begin_viscosity(&run.state.positions, step.length, &mut within);
         let inertia = step.inertia();
         let goal = Goal {
             time: step.time,
