@@ -64,7 +64,7 @@ test-rust:
 test-python: install
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not slow and not browser"
 
-# `make test` drives Chromium along the main ways, from a new user's to the exported page; these are the others.
+# `make test` drives Chromium through the viewer and the exported page; these are all other ways.
 test-browser: install
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "browser and not slow" tests/studio/browser
 

@@ -71,7 +71,11 @@ def tampered(file, before, after):
             id="confirmed",
             marks=pytest.mark.slow,
         ),
-        pytest.param(["optimize", CYLINDER, *RANDOM, "--budget", 6], id="optimize"),
+        pytest.param(
+            ["optimize", CYLINDER, *RANDOM, "--budget", 6],
+            id="optimize",
+            marks=pytest.mark.slow,  # a study as the sweep is
+        ),
         pytest.param(
             ["calibrate", BEAM, DATA, *FIT, "--name", "job"],
             id="calibrate",
@@ -80,6 +84,7 @@ def tampered(file, before, after):
         pytest.param(
             ["compare", CYLINDER, *SMALL, *ONE_SPLIT],
             id="compare",
+            marks=pytest.mark.slow,
         ),
     ],
 )
@@ -178,6 +183,7 @@ def meshed(tmp_path):
     return home
 
 
+@pytest.mark.slow
 def test_meshes_and_cards_go_with_the_folder(meshed):
     done("run", meshed / "design.toml", "--out", "r")
     done("sweep", meshed / "design.toml", "--out", "s", "--workers", 1)
@@ -224,6 +230,7 @@ def fit(jobs_done):
     return Path(shutil.copytree(jobs_done / "fit", "fit"))
 
 
+@pytest.mark.slow
 def test_a_result_that_was_changed_is_reported(beam):
     tampered(beam / "summary.json", '"sag": ', '"sag": 1')
     assert (
@@ -261,6 +268,7 @@ def test_a_resolved_design_that_was_changed_is_reported(beam):
     }
 
 
+@pytest.mark.slow
 def test_a_trial_that_was_changed_is_reported():
     done("sweep", CYLINDER, *FEW, "--out", "s", "--workers", 1)
     tampered("s/table.csv", ",ok,", ",diverged,")
@@ -316,6 +324,7 @@ def test_a_job_that_cannot_be_repeated_is_reported(beam):
     assert done("again", "nowhere", code=2)
 
 
+@pytest.mark.slow
 def test_a_job_of_the_studio_before_job_toml_is_repeated(tmp_path):
     """The studio kept its jobs as job.json, with the text of the design and of the tables."""
     text = families.family_text("paper-beam")

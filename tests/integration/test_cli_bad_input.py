@@ -187,6 +187,7 @@ def test_a_truncated_mesh_is_not_readable():
     assert "is cut short" in outcome.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 def test_interrupt_keeps_finished_trials_and_says_how_to_resume():
     # Voxels of 2.5 mm make each design slow enough to be caught in the middle.

@@ -55,6 +55,7 @@ def test_a_fit_leaves_a_card_that_a_design_can_use():
     assert design.material_of(design.parts[0]) == card.material
 
 
+@pytest.mark.slow
 def test_words_for_people_and_a_chosen_model():
     outcome = call("fit", ECOFLEX, "--model", "ogden-1", "--name", "mine", "--out", "there")
     assert outcome.exit_code == 0, outcome.stderr

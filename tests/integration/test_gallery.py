@@ -40,6 +40,7 @@ def test_the_page_has_one_place_for_the_robots(gallery):
     assert (DOCS / gallery.PAGE).read_text(encoding="utf-8").count(gallery.PLACE) == 1
 
 
+@pytest.mark.slow
 def test_a_robot_is_shown_with_live_page_command_figure_and_text(gallery, magnetic):
     entry, page, result = magnetic
     assert result["status"] == "ok"

@@ -17,6 +17,7 @@ def gripped(result, name):
     return found
 
 
+@pytest.mark.slow
 def test_a_pinched_plate_hangs_on_friction():
     result = vs.simulate(vs.load("examples/pinch.toml"))
     assert result.status == "ok"

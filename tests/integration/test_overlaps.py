@@ -56,6 +56,7 @@ def test_a_gripper_in_its_ball_and_in_itself_is_reported():
     assert depths[0] == depths[1]
 
 
+@pytest.mark.slow
 def test_chambers_that_meet_are_distinguished_from_the_load_where_they_do():
     free = json.loads(call("run", *PNEUNET, "--json", "--error", "off").stdout)
     assert free["penetration"] == 0.0
@@ -66,6 +67,7 @@ def test_chambers_that_meet_are_distinguished_from_the_load_where_they_do():
     assert "contact is not simulated. Try: lower the load" in line
 
 
+@pytest.mark.slow
 def test_best_designs_that_overlap_are_not_green():
     outcome = call("sweep", DATA / "pushed.toml", "--workers", "1")
     printed = [line for line in outcome.stderr.splitlines() if line.startswith("warning: rank")]

@@ -122,6 +122,7 @@ def test_a_kept_equilibrium_that_is_damaged_is_solved_again(tmp_path, solved):
     assert solved == [2.0, 3.0, 4.0]
 
 
+@pytest.mark.slow
 def test_contact_goes_its_way_again_to_the_same_table(tmp_path, solved):
     folder, whole, over = tmp_path / "killed", tmp_path / "whole", OVER["rubbed"]
     file = killed(RUBBED, folder)

@@ -39,6 +39,7 @@ def test_thicker_walls_rise_less(sweep):
     assert rises[1] > rises[2] > rises[3] > 0
 
 
+@pytest.mark.slow
 def test_a_search_finds_the_best_of_the_grid(sweep, tmp_path):
     found = Study(folder=tmp_path / "search").optimize("tpe", 48)
     assert found.best.parameters == sweep.best.parameters

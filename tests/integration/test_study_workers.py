@@ -61,6 +61,7 @@ def test_a_broken_executor_ends_the_study_and_keeps_its_trials(make, mark):
     assert len(study.grid(workers=1).trials) == 18
 
 
+@pytest.mark.slow
 def test_dask_replaces_a_worker_that_is_killed(make, tmp_path):
     distributed = pytest.importorskip("distributed")
     study = make(slow)

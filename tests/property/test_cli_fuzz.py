@@ -21,7 +21,7 @@ DATA = (ROOT / "examples" / "data" / "paper_beams" / "ecoflex-00-30.csv").read_b
 CODES = {0, 2, 3, 4, 5}
 
 THOROUGH = settings(
-    max_examples=int(os.environ.get("VOXSOFT_FUZZ", "8")),
+    max_examples=int(os.environ.get("VOXSOFT_FUZZ", "4")),
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow],
 )

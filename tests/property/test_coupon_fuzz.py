@@ -45,6 +45,7 @@ CURVES = given(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=3, deadline=None)
 @CURVES
 def test_fits_of_any_curve(strains, seed, mode, size):

@@ -13,7 +13,7 @@ COARSEST, FINEST = 6, 14
 BLOCK = 100
 SECONDS_PER_BLOCK = 240
 #: Designs of the quick test; those of all blocks are tried with the slow ones.
-QUICK = 8
+QUICK = 4
 
 
 def random_design(seed):

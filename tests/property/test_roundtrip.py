@@ -209,7 +209,7 @@ def roundtrip(model, folder, most=None):
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.__name__)
 def test_roundtrip_of_some_forms(model, tmp_path, monkeypatch, record_property):
     monkeypatch.chdir(tmp_path)
-    record_property("forms", roundtrip(model, tmp_path, most=4))
+    record_property("forms", roundtrip(model, tmp_path, most=2))
 
 
 @pytest.mark.slow

@@ -498,6 +498,7 @@ def test_the_derivative_by_a_temperature_where_there_is_one():
         gradient(turned.results[-1], target, ["activations.0.value"])
 
 
+@pytest.mark.slow
 def test_half_a_body_grows_over_time_as_the_whole():
     ramp = vs.History(time=("0 s", "0.2 s"), factor=(0, 1))
     whole = bilayer(0.0, activations=[Strain(part="upper", value=0.02, history=ramp)])

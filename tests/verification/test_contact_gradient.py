@@ -83,6 +83,7 @@ def test_a_plate_without_friction():
     check(pressed(PLATE, 0.0), {"side": SIDE}, ["depth", "loads.0.value.0"])
 
 
+@pytest.mark.slow
 def test_a_plate_that_sticks():
     design = pressed(PLATE, 0.9)
     check(design, {"force": FORCE, "energy": ENERGY}, ["E", "depth"])

@@ -55,6 +55,7 @@ def test_strips_of_any_thickness_bend_as_beams(thickness):
     assert sag(strip(thickness * mm)) == pytest.approx(timoshenko(thickness * mm), rel=0.03)
 
 
+@pytest.mark.slow
 def test_the_sag_changes_smoothly_as_a_surface_crosses_a_voxel():
     thicknesses = np.linspace(10, 15, 26) * mm
     sags = np.array([sag(strip(t)) for t in thicknesses])

@@ -74,6 +74,7 @@ def test_uniform_strain_is_the_same_on_two_sizes():
     assert np.ptp(stress) < 1e-6 * stress.max()
 
 
+@pytest.mark.slow
 def test_most_of_the_gain_for_a_part_of_the_unknowns(both):
     large, small = vs.simulate(block()), vs.simulate(block(), refine=2)
     off = abs(growth(large) - growth(small))

@@ -73,6 +73,7 @@ def test_the_error_is_at_the_chamber(run):
     assert errors[near].sum() > 0.8 * errors.sum() > near.mean() * errors.sum()
 
 
+@pytest.mark.slow
 def test_refined_voxels_at_the_error_replace_uniformly_small_ones(run):
     small = growth(vs.simulate(Setup.of(block(), refine=2)))
     design = refined(run)
@@ -118,12 +119,14 @@ def test_a_share_is_a_part(run, share):
         refined(run, share)
 
 
+@pytest.mark.slow
 def test_two_sizes_are_not_refined_again():
     twice = block(refine=[Refinement(region=vs.Region(z=(0, 8 * mm)))])
     with pytest.raises(DesignError, match="refine: is there already"):
         refined(vs.simulate(twice))
 
 
+@pytest.mark.slow
 def test_the_command_adds_to_earlier_refinement(run, tmp_path):
     first = Refinement(region=vs.Region(z=(0, 8 * mm)))
     vs.save(block(refine=[first]), tmp_path / "twice.toml")

@@ -46,7 +46,7 @@ def test_the_neutral_angle_does_not_depend_on_the_voxels(wall, voxel):
     assert neutral_angle((53.7, 55.7), **tube) == pytest.approx(NEUTRAL, abs=0.15)
 
 
-@pytest.mark.parametrize("degrees", [45.0, 70.0])
+@pytest.mark.parametrize("degrees", [45.0, pytest.param(70.0, marks=pytest.mark.slow)])
 def test_a_braid_shortens_below_the_neutral_angle_and_lengthens_above(degrees):
     tube = {"modulus": 0.5 * MPa, "pressure": 5 * kPa}
     along, around, twist = found(halved(wound_tube((degrees, -degrees), **tube)))

@@ -20,6 +20,7 @@ def pinched(end_time=0.2, **changes):
     return vs.simulate(PINCH.replace(solver=solver, **changes))
 
 
+@pytest.mark.slow
 def test_objects_carried_by_friction_alone_are_held():
     result = pinched()
     (grip,) = grips_of(result)

@@ -231,6 +231,7 @@ class Heard:
         self.failure = sentence
 
 
+@pytest.mark.slow
 def test_a_free_object_is_solved_over_time_as_a_film_of_poses():
     design = load(PINCH)
     design = design.replace(solver=design.solver.replace(end_time=0.1))

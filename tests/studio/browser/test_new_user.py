@@ -43,6 +43,7 @@ def studio(tmp_path):
     server.stdout.close()
 
 
+@pytest.mark.browser
 @pytest.mark.parametrize("size", ["wide", pytest.param("narrow", marks=pytest.mark.slow)])
 def test_from_the_open_page_to_an_exported_actuator(studio, open_tab, alone, tmp_path, size):
     tab = open_tab(studio, size=SIZES[size], mode="design")

@@ -146,6 +146,7 @@ def test_a_page_knows_where_the_body_is_in_itself_at_first():
     assert notes_of(apart.show().text)["overlap"] is None
 
 
+@pytest.mark.slow
 def test_a_page_of_a_result_knows_where_its_objects_are_at_first():
     pinch = vs.load(Path(__file__).parents[3] / "examples" / "pinch.toml")
     result = vs.simulate(pinch.replace(solver={"method": "dynamics", "end_time": "0.1 s"}))

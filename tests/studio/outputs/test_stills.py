@@ -199,6 +199,7 @@ def test_only_the_page_of_this_studio_may_ask(studio, study):
     assert httpx.get(f"{studio.origin}/still", params={"of": "bars"}).status_code == 403
 
 
+@pytest.mark.slow
 def test_solving_ends_when_nobody_waits(fresh_studio, monkeypatch):
     make_study(fresh_studio.session.runs / "bars")
     solving, ended = threading.Event(), threading.Event()

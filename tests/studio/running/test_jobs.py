@@ -196,6 +196,7 @@ def test_a_run_leaves_its_folder_and_its_picture(studio):
     run(scenario())
 
 
+@pytest.mark.slow
 def test_a_calibration_overlays_its_shapes_and_leaves_a_card(make_studio, tmp_path):
     beam = tmp_path / "beam.toml"
     beam.write_text(BEAM)

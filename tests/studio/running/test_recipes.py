@@ -105,6 +105,7 @@ def test_a_run_is_done_again_with_the_same_rise(tmp_path):
     assert recipe.seed is None
 
 
+@pytest.mark.slow
 def test_the_design_of_a_kept_state_can_be_solved_again(tmp_path):
     design = DesignSource(text=families.family_text("paper-cylinder"))
     write_job(with_copies(RunSpec(design=design, kept=True), tmp_path), tmp_path)

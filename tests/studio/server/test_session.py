@@ -440,7 +440,7 @@ def test_whatever_is_sent_is_answered_or_closed_and_the_session_lives(fresh_stud
             await page.until("stat")
 
     @settings(
-        max_examples=8, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+        max_examples=4, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
     )
     @given(messages)
     def fuzz(batch):

@@ -147,7 +147,7 @@ def of_material(**changes):
     [
         (96, {"symmetry": [{"plane": "y"}]}),
         (20, {"floor": {"z": "-2 mm"}}),
-        (20, {"contact": {"friction": 0.2}}),
+        pytest.param(20, {"contact": {"friction": 0.2}}, marks=pytest.mark.slow),
         (72, {"tendons": [TENDON], "loads": []}),
         (0, {"parts": [{"shape": "whole", "material": "ecoflex-00-30-lattice"}]}),
         (0, {"parts": of_material(mullins={"r": 1.5, "m": "2 kPa", "beta": 0.1})}),
@@ -159,7 +159,7 @@ def of_material(**changes):
                 ]
             },
         ),
-        (
+        pytest.param(
             16,
             {
                 "shapes": HOLLOW,
@@ -167,6 +167,7 @@ def of_material(**changes):
                 "supplies": [{"chamber": "c", "kind": "volume", "value": "0.2 mL"}],
                 "loads": [],
             },
+            marks=pytest.mark.slow,
         ),
         (
             0,
@@ -225,6 +226,7 @@ def test_small_voxels_of_one_body_of_two():
     assert 1e-5 < off < 2e-3
 
 
+@pytest.mark.slow
 def test_uses_of_one_size_take_small_voxels_everywhere():
     design = bar([x(0, 0)], probes={"end": {"x": ["40 mm", "40 mm"]}})
     every = design.replace(refine=(), solver={"refine": 2})

@@ -55,6 +55,7 @@ def test_the_true_stress_lies_in_the_spread(name, noise):
         assert each.low <= nominal_stress(law, 1.5, each.mode) <= each.high
 
 
+@pytest.mark.slow
 def test_the_warning_vanishes_once_the_other_modes_are_tested():
     alone = fitted("treloar", "uniaxial")
     equibiaxial = alone.untested[0]

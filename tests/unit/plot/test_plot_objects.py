@@ -136,6 +136,7 @@ def test_a_floor_is_drawn_below_bodies_and_within_the_range_of_objects(beside):
     assert (np.ptp(below, axis=-1) > 30).sum() > 5_000
 
 
+@pytest.mark.slow
 def test_a_mesh_is_drawn_with_the_surroundings_that_are_given(beside):
     def drawn(**options):
         return np.asarray(255 * plot_body(beside.mesh, **options).axes[0].images[0]._A)

@@ -70,8 +70,14 @@ def points_on(surface, level, nodes=96):
     return np.concatenate(found) % 1.0
 
 
-@SURFACES
-@pytest.mark.parametrize("level", [pytest.param(0.0, marks=pytest.mark.slow), 0.4])
+@pytest.mark.parametrize(
+    ("surface", "level"),
+    [
+        pytest.param(kind, level, marks=[pytest.mark.slow] * ((kind, level) != (Gyroid, 0.4)))
+        for kind in WAVES
+        for level in (0.0, 0.4)
+    ],
+)
 def test_distances_and_volumes_of_walls_are_true_at_any_thickness(surface, level):
     known = cKDTree(points_on(surface, level), boxsize=1.0)
     places = np.random.default_rng(1).uniform(0, 1, (8_000, 3))

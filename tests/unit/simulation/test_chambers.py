@@ -176,6 +176,7 @@ def test_python_names_them_too():
     assert vs.simulate(design).chamber_volumes["core"] > 1e-6
 
 
+@pytest.mark.slow
 def test_a_study_says_that_an_index_has_switched(tmp_path):
     """The tip goes the other way from w = 8 mm on, because 0 means the other chamber there."""
     file = tmp_path / "two.toml"
@@ -190,6 +191,7 @@ def test_a_study_says_that_an_index_has_switched(tmp_path):
     assert "another cavity in 1 of 4 trials" in " ".join(shown.stderr.split())
 
 
+@pytest.mark.slow
 def test_a_study_by_name_or_of_one_order_is_quiet(tmp_path):
     named = vs.Study(two(), folder=tmp_path / "named").grid(workers=1)
     assert (named.counts["ok"], named.warnings) == (4, ())

@@ -174,7 +174,7 @@ def test_relaxing_rubber_rests_as_elastic_rubber_but_later():
     assert seen.probes["tip"][2] == pytest.approx(expected, rel=5e-3)
 
 
-@pytest.mark.parametrize("kind", ["relaxing", "retarded"])
+@pytest.mark.parametrize("kind", ["relaxing", pytest.param("retarded", marks=pytest.mark.slow)])
 def test_viscous_vibrations_with_contact_are_those_of_explicit_steps(kind):
     force = BEAM.loads[0].replace(value=(0, 0, "2 mN"))
     elastic = BEAM.replace(loads=[force])

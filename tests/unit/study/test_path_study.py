@@ -46,6 +46,7 @@ def stored(tmp_path_factory):
     return folder, run(study_in(folder))
 
 
+@pytest.mark.slow
 def test_a_trial_has_the_path_and_the_number_that_counts(stored):
     folder, found = stored
     assert found.counts["ok"] == 2

@@ -72,6 +72,7 @@ def test_fractions_tell_all_of_them_apart(file):
     assert not [each for each in result.warnings if each.where == "study"]
 
 
+@pytest.mark.slow
 def test_the_command_says_it_before_and_after(file):
     found = CliRunner().invoke(app, ["sweep", str(file), "--out", "out"])
     assert found.exit_code == 0, found.output

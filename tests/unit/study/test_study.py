@@ -102,6 +102,7 @@ def test_two_objectives_make_a_pareto_front(make, threads):
     ]
 
 
+@pytest.mark.slow
 def test_constraints_mark_trials_and_reach_the_sampler(make, threads):
     light = {"mass": {"metric": "mass", "max": "4 kg"}}
     result = make(constraints=light).grid(executor=threads)
@@ -272,6 +273,7 @@ def test_the_definition_lies_beside_the_trials(tmp_path):
     assert '"seed": 4' in (tmp_path / "study" / "study.json").read_text()
 
 
+@pytest.mark.slow
 def test_an_optuna_storage_takes_the_place_of_the_folder(make, threads, tmp_path):
     url = f"sqlite:///{tmp_path / 'studies.db'}"
     first = make({"y": (1, 5)}, storage=url).grid(executor=threads)

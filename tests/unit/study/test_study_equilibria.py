@@ -69,6 +69,7 @@ def test_a_study_keeps_the_state_of_each_design_that_came_to_rest(tmp_path):
     assert found.state is None  # these are measured anew
 
 
+@pytest.mark.slow
 def test_a_study_keeps_all_that_was_found_of_a_design_with_contact(tmp_path, closed):
     study = Study(CLOSED, {"squeeze": [SQUEEZE]}, folder=tmp_path)
     with ThreadPoolExecutor(1) as threads:
@@ -84,6 +85,7 @@ def test_a_study_keeps_all_that_was_found_of_a_design_with_contact(tmp_path, clo
     np.testing.assert_array_equal(result.contact_field.pressure, closed.contact_field.pressure)
 
 
+@pytest.mark.slow
 def test_stored_states_are_a_small_part_of_a_motion(tmp_path):
     result = simulate(CLOSED, frames=True, record_interval=0.01)
     Equilibria(tmp_path).keep("a", Equilibrium.of(result))

@@ -89,6 +89,7 @@ def test_a_design_without_contact_has_no_such_field(tmp_path):
         plot_body(found, "contact_pressure")
 
 
+@pytest.mark.slow
 def test_the_command_line_tells_and_draws_it(dragged, tmp_path):
     file = tmp_path / "dragged.toml"
     save(dragged.design, file)
@@ -100,6 +101,7 @@ def test_the_command_line_tells_and_draws_it(dragged, tmp_path):
     assert (tmp_path / "run" / "contact.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_colors_go_up_to_the_largest_pressure_of_a_small_place():
     """Most of a body is pressed by nothing; 99 % of its area end far below that."""
     fine = simulate(pressed(voxel_size=1 * mm, objects=[], loads=[vs.Gravity()]))

@@ -132,6 +132,7 @@ def test_the_command_line_prints_them(result, tmp_path):
     assert shown["grip"] == pytest.approx(result.metrics["grip"], abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_study_strives_for_them(tmp_path):
     design = vs.Design(
         name="press",

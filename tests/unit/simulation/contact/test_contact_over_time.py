@@ -92,6 +92,7 @@ def test_a_pinched_object_slips_at_its_bound():
     assert fallen[-1] < -1 * mm
 
 
+@pytest.mark.slow
 def test_an_object_that_slides_out_of_a_grip_falls_freely():
     block = bar(16 * mm)
     # Its upper edge passes the faces of the pads, which bulge out over it.

@@ -20,7 +20,7 @@ from voxsoft.voxels import Voxels
 EXAMPLES = sorted(Path("examples").glob("*.toml"))
 
 #: Examples of many voxels.
-LARGE = {"bellows", "starfish", "wound_tube"}
+LARGE = {"bellows", "starfish", "wound_bender", "wound_tube"}
 PUSHED = Path(__file__).parents[3] / "data" / "pushed.toml"
 
 
