@@ -1206,10 +1206,11 @@ export interface Chamber {
   share: number | null;
 }
 
-/** Something by its name, and its state in words. */
+/** Something by its name, and its state in words; `estimate` has its error bars in words. */
 export interface Summarized {
   name: string;
   words: string;
+  estimate: string;
 }
 
 /**

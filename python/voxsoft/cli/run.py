@@ -139,19 +139,28 @@ def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
         name = plain(name_of_cavity(result.mesh, index))
         bar = bars.volumes[index] if bars and bars.volumes else None
         say(f"{name}: {before} grew to {quantity(now, 'volume')}{_with(bar)}")
+        pressure = bars.pressures[index] if bars and bars.pressures else None
+        if pressure is not None and not pressure.is_exact:
+            say(f"{name}: under {quantity(pressure.value, 'pressure')}{_with(pressure)}")
     design = result.design
     metrics = {name: objective.metric for name, objective in design.objectives.items()}
     metrics |= {name: constraint.metric for name, constraint in design.constraints.items()}
     for name, metric in metrics.items():
         bar = bars.metrics.get(name) if bars else None
         say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[metric].kind)}{_with(bar)}")
-    _show_reactions(result)
+    _show_factors(result, bars)
+    _show_reactions(result, bars)
     for name, tendon in result.tendons.items():
-        say(f"{plain(name)}: {tendon.words}")
+        pull = bars.tendons[name]["tension"] if bars and name in bars.tendons else None
+        say(f"{plain(name)}: {tendon.words}{_with(pull)}")
     for supply in result.supplies:
         say(plain(supply.sentence))
     for contact in result.contacts:
-        say(plain(contact.sentence))
+        say(f"{plain(contact.sentence)}{_contact_in_words(bars, contact.of)}")
+    for name, held in (bars.objects if bars else {}).items():
+        for key in ("grip_force", "hold_margin"):
+            if key in held:
+                say(f"{plain(name)}: {key.replace('_', ' ')}{_with(held[key])}")
     say(_stress_line(result))
     say(_stretch_line(result))
     for found in result.warnings:
@@ -163,15 +172,38 @@ def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
     say(f"wrote {plain(str(folder))}")
 
 
-def _show_reactions(result: Result) -> None:
+def _show_factors(result: Result, bars: ErrorBars | None) -> None:
+    """Show which part of the loads a run carries where that is an answer, and its limit."""
+    for name in ("load_factor", "limit_factor"):
+        value: float | None = getattr(result, name)
+        if value is not None and (name == "limit_factor" or value != 1.0):
+            bar = getattr(bars, name) if bars else None
+            say(f"{name.replace('_', ' ')}: {quantity(value, 'number')}{_with(bar)}")
+
+
+def _show_reactions(result: Result, bars: ErrorBars | None) -> None:
     forces = result.clamp_reactions
     if forces:
         rounding = _ROUNDING * max(abs(each) for force in forces.values() for each in force)
-        rows = [
-            [name, *("0" if abs(each) <= rounding else quantity(each, "force") for each in force)]
-            for name, force in forces.items()
-        ]
+        rows = []
+        for name, force in forces.items():
+            shown = ["0" if abs(each) <= rounding else quantity(each, "force") for each in force]
+            rows.append([name, *shown])
+            if bars is not None and name in bars.reactions:
+                rows.append(["  estimate", *map(str, bars.reactions[name])])
         show_table("Reactions of clamps", ["clamp", "x", "y", "z"], rows)
+
+
+def _contact_in_words(bars: ErrorBars | None, of: tuple[str, str]) -> str:
+    """Write the contact force of a pair with its errors; the sum of sizes for a body on itself."""
+    from voxsoft.comparison.error_bar import vector_in_words
+
+    found = bars.contacts.get(of) if bars else None
+    if found is None:
+        return ""
+    if of[0] == of[1]:
+        return f", estimate {found['pressed']}"
+    return f", estimate {vector_in_words([found[axis] for axis in 'xyz'])}"
 
 
 def _voxels(result: Result) -> str:

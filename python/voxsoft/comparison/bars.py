@@ -9,22 +9,23 @@ the same body. So small bodies get finer voxels and large ones coarser.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from voxsoft.comparison.contact_patch import REGULAR_PATCH, voxels_across
 from voxsoft.comparison.error_bar import ErrorBar, ErrorBars
+from voxsoft.comparison.number import Number, Numbers
+from voxsoft.comparison.numbers import asked_of, numbers_of
 from voxsoft.comparison.other_voxels import TIMES_AS_LONG, cost_on_voxels, on_voxels
 from voxsoft.comparison.richardson import Estimate, discretization_error
-from voxsoft.design import Constraint, Design, Objective
+from voxsoft.design import Design
 from voxsoft.design.discretization.discretize import voxels_of
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Lattice
-from voxsoft.metrics import METRICS
 from voxsoft.simulation import Result, Setup, simulate
 from voxsoft.simulation.setup.contact import has_contact
 from voxsoft.simulation.solving.choice import kind_of, settings_at_rest
@@ -67,6 +68,7 @@ def error_bars(
     progress: Callable[[int, float, float], None] | None = None,
     announce: Announce | None = None,
     solve: Solve | None = None,
+    frequencies: int = 0,
 ) -> ErrorBars:
     """Estimate the discretization errors of a run by further runs on other voxels.
 
@@ -81,6 +83,8 @@ def error_bars(
     solve
         Solves the design on other voxels, given the run on voxels twice as large if that is known;
         default: :func:`voxsoft.simulate`.
+    frequencies
+        Number of natural frequencies that get a bar too, see :func:`voxsoft.modes`; default: none.
 
     Returns
     -------
@@ -107,7 +111,7 @@ def error_bars(
     refusal = _refusal(result)
     if refusal is not None:
         return ErrorBars.none(*refusal)
-    search = _Search(result, progress, announce, solve)
+    search = _Search(result, progress, announce, solve, frequencies)
     return search.until_accurate() if _wants_accuracy(result.design) else search.pair()
 
 
@@ -146,10 +150,36 @@ class _Run:
     result: Result
     #: Voxel size in m; with several bodies the design's, to which all sizes keep their ratio.
     size: float
+    _numbers: Numbers | None = None
 
     @cached_property
+    def setup(self) -> Setup:
+        return Setup(self.result.design, self.result.mesh)
+
+    @property
     def voxels(self) -> int:
-        return Setup(self.result.design, self.result.mesh).elements
+        return self.setup.elements
+
+    @cached_property
+    def patch(self) -> float | None:
+        """Voxels across the narrowest contact patch; None without contact."""
+        return voxels_across(self.result)
+
+    def numbers(self, frequencies: int) -> Numbers:
+        if self._numbers is None:
+            self._numbers = numbers_of(self.setup, self.result, frequencies)
+        return self._numbers
+
+    def doubts(self, finer: _Run) -> list[str]:
+        """Say why the errors of this run and a finer one may be no regular ones."""
+        found = []
+        if not self.is_like(finer) or self.wall < REGULAR_WALL:
+            found.append("the voxels are not the same body or have walls of one voxel")
+        if self.patch is not None and self.patch < REGULAR_PATCH:
+            across = f"{self.patch:.2g}"
+            plural = "" if across == "1" else "s"
+            found.append(f"the contact patch is {across} voxel{plural} across")
+        return found
 
     @cached_property
     def wall(self) -> int:
@@ -191,9 +221,10 @@ class _Search:
         progress: Callable[[int, float, float], None] | None,
         announce: Announce | None,
         solve: Solve | None,
+        frequencies: int,
     ) -> None:
         self.own = _Run(result, result.design.voxel_size)
-        self._solve = solve
+        self._solve, self._frequencies = solve, frequencies
         self._progress, self._announce = progress, announce
         self._seconds = 0.0
 
@@ -241,7 +272,7 @@ class _Search:
                 return self._bars(runs, what, hint)
             runs.append(other)
             bars = self._bars(runs)
-            for name, target in _asked(self.own.result.design).items():
+            for name, target in asked_of(self.own.result.design).items():
                 if target.accuracy is not None and name not in bars.metrics:
                     what = f"{name} is the largest of all voxels and has none, so no accuracy"
                     return self._bars(runs, what, "give it a percentile, or leave accuracy out")
@@ -273,65 +304,47 @@ class _Search:
 
     def _bars(self, runs: Sequence[_Run], missing: str = "", hint: str = "") -> ErrorBars:
         """Make the bars of runs on falling sizes, of which one is that of the design."""
-        last = runs[-2:]
-        regular = last[0].is_like(last[1]) and last[0].wall >= REGULAR_WALL
-        sizes = [run.size for run in runs]
+        doubts = runs[-2].doubts(runs[-1])
         own = runs.index(self.own)
-
-        def bar(
-            values: Sequence[float],
-            kind: str,
-            size: float | None = None,
-            bounds: tuple[float, float] = (-math.inf, math.inf),
-        ) -> ErrorBar:
-            found: Estimate = discretization_error(sizes[-3:], values[-3:], regular=regular)
-            error, last = found.error, abs(values[-1])
-            if abs(values[-1] - values[-2]) > UNCHANGED * last:
-                least = (UNKNOWN if len(values) == 2 else 0.0) if regular else HIDDEN
-                error = max(error, least * (last if size is None else size))
-            return ErrorBar.within(values[own], found.limit, error, kind, bounds)
-
-        def bars(values: Sequence[NDArray[np.float64]]) -> tuple[ErrorBar, ErrorBar, ErrorBar]:
-            # Components that symmetry makes zero hold only rounding.
-            rounding = ROUNDING * float(np.abs(values).max())
-            kept = [np.where(np.abs(v) > rounding, v, 0.0) for v in values]
-            x, y, z = (bar([float(v[axis]) for v in kept], "length") for axis in range(3))
-            return x, y, z
-
-        results = [run.result for run in runs]
-        first = results[own]
-        asked = _asked(first.design)
-        names = [name for name in first.metrics if not _is_peak(name, asked)]
-        volumes = [result.cavity_volumes for result in results]
-        same = len({len(each) for each in volumes}) == 1
-        # The hidden error of a volume is a part of its growth.
-        cavities = results[-1].mesh.cavities
-        grown = [v - float(cavity.volume) for v, cavity in zip(volumes[-1], cavities, strict=True)]
-        hidden = {"mass": 0.0, "volume": 0.0, "cavity_volume": float(np.abs(grown).sum())}
-        return ErrorBars(
-            {name: bars([result.probes[name] for result in results]) for name in first.probes},
-            {
-                name: bar(
-                    [result.metrics[name] for result in results],
-                    _kind(name, asked),
-                    hidden.get(_metric(name, asked)),
-                    METRICS[_metric(name, asked)].bounds,
-                )
-                for name in names
-            },
-            tuple(
-                bar(each, "volume", abs(growth), METRICS["cavity_volume"].bounds)
-                for each, growth in zip(zip(*volumes, strict=True), grown, strict=True)
-            )
-            if same
-            else (),
-            tuple(sizes),
-            tuple(run.voxels for run in runs),
-            regular,
-            missing,
-            hint,
-            self._seconds,
+        sizes = [run.size for run in runs]
+        numbers = [run.numbers(self._frequencies) for run in runs]
+        bars = {
+            key: _bar(sizes, [each[key] for each in numbers], own, regular=not doubts)
+            for key in numbers[own]
+            if all(key in each for each in numbers)
+        }
+        # A cavity more or less shifts the index of all.
+        alike = len({len(run.result.mesh.cavities) for run in runs}) == 1
+        kept = {
+            key: bar for key, bar in bars.items() if alike or key[0] not in ("volumes", "pressures")
+        }
+        cavities = self.own.result.mesh.cavities
+        return ErrorBars.of(
+            kept,
+            chambers=tuple(
+                cavity.name or f"cavity {index}" for index, cavity in enumerate(cavities)
+            ),
+            voxel_sizes=tuple(sizes),
+            voxels=tuple(run.voxels for run in runs),
+            doubt=" and ".join(doubts),
+            missing=missing,
+            hint=hint,
+            seconds=self._seconds,
         )
+
+
+def _bar(sizes: Sequence[float], numbers: Sequence[Number], own: int, *, regular: bool) -> ErrorBar:
+    """Make the bar of one number on falling sizes, with the errors that these may hide."""
+    # Components that symmetry makes zero hold only rounding.
+    rounding = ROUNDING * max(number.scale for number in numbers)
+    values = [each.value if abs(each.value) > rounding else 0.0 for each in numbers]
+    last = numbers[-1]
+    found: Estimate = discretization_error(sizes[-3:], values[-3:], regular=regular)
+    error = found.error
+    if abs(values[-1] - values[-2]) > UNCHANGED * abs(values[-1]):
+        least = (UNKNOWN if len(values) == 2 else 0.0) if regular else HIDDEN
+        error = max(error, least * (last.deformed if values[-1] else 0.0))
+    return ErrorBar.within(values[own], found.limit, error, last.kind, last.bounds)
 
 
 def _path(result: Result) -> tuple[object, ...]:
@@ -341,30 +354,9 @@ def _path(result: Result) -> tuple[object, ...]:
     return control, used.get("volume_ratio"), used.get("refine")
 
 
-_Asked = Mapping[str, Objective | Constraint]
-
-
-def _asked(design: Design) -> _Asked:
-    return {**design.objectives, **design.constraints}
-
-
-def _metric(name: str, asked: _Asked) -> str:
-    return asked[name].metric if name in asked else name
-
-
-def _kind(name: str, asked: _Asked) -> str:
-    return METRICS[_metric(name, asked)].kind
-
-
-def _is_peak(name: str, asked: _Asked) -> bool:
-    target = asked.get(name)
-    metric = METRICS[_metric(name, asked)]
-    return metric.is_peak and (target is None or target.percentile is None)
-
-
 def _wants_accuracy(design: Design) -> bool:
     """Return True if the design, or one of its goals, asks for an accuracy."""
-    goals = any(target.accuracy is not None for target in _asked(design).values())
+    goals = any(target.accuracy is not None for target in asked_of(design).values())
     return goals or design.solver.accuracy is not None
 
 
@@ -373,7 +365,7 @@ def _is_accurate(bars: ErrorBars, design: Design) -> bool:
 
     Probes, or without them and without goals the largest displacement, are held to the design's.
     """
-    for name, target in _asked(design).items():
+    for name, target in asked_of(design).items():
         accuracy = design.solver.accuracy if target.accuracy is None else target.accuracy
         bar = bars.metrics.get(name)
         if bar is None or accuracy is None:
@@ -386,7 +378,7 @@ def _is_accurate(bars: ErrorBars, design: Design) -> bool:
         (math.hypot(*(bar.estimate for bar in each)), math.hypot(*(bar.error for bar in each)))
         for each in bars.probes.values()
     ]
-    if not pairs and not _asked(design):
+    if not pairs and not asked_of(design):
         moved = bars.metrics["max_displacement"]
         pairs = [(abs(moved.estimate), moved.error)]
     # NaN stands for unknown, and a comparison with it does not hold.

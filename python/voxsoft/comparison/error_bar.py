@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from voxsoft.units import KINDS, format_quantity, si_value
@@ -71,6 +71,11 @@ class ErrorBar:
         if self.estimate == self.error == 0.0:
             return "0"
         return f"{self.in_unit(factor)} {unit}".rstrip()
+
+    @property
+    def is_exact(self) -> bool:
+        """True if the size of voxels leaves a millionth of it, as of one that is prescribed."""
+        return self.error <= 1e-6 * abs(self.estimate)
 
     def in_unit(self, factor: float) -> str:
         """Write both numbers in a unit: two digits of the error, at most five of the estimate."""
@@ -144,6 +149,42 @@ def _unit_of(bars: Sequence[ErrorBar]) -> tuple[str, float]:
     return unit, factors[unit]
 
 
+#: Error bars of the components of a vector, and those of an entry by name.
+Triple = tuple[ErrorBar, ErrorBar, ErrorBar]
+Named = Mapping[str, ErrorBar]
+_Bars = Mapping[tuple[str, ...], ErrorBar]
+
+
+def _named(bars: _Bars, group: str) -> dict[str, dict[str, ErrorBar]]:
+    """Collect the bars of a group by entry and name."""
+    found: dict[str, dict[str, ErrorBar]] = {}
+    for key, bar in bars.items():
+        if key[0] == group:
+            found.setdefault(key[1], {})[key[2]] = bar
+    return found
+
+
+def _vectors(bars: _Bars, group: str) -> dict[str, Triple]:
+    """Collect the bars of a group of vectors."""
+    return {name: (of["x"], of["y"], of["z"]) for name, of in _named(bars, group).items()}
+
+
+def _row(bars: _Bars, group: str) -> tuple[ErrorBar, ...]:
+    """Collect the bars of a group whose entries are numbered."""
+    return tuple(bar for key, bar in bars.items() if key[0] == group)
+
+
+def _plain(bars: Named) -> dict[str, Any]:
+    """Return bars as plain data."""
+    return {name: bar.summary() for name, bar in bars.items()}
+
+
+def _with_vector(bars: Named, name: str) -> dict[str, Any]:
+    """Return bars as plain data, their components x, y and z under the name of the vector."""
+    axes = {axis: bars[axis].summary() for axis in "xyz" if axis in bars}
+    return {name: axes, **_plain({key: bar for key, bar in bars.items() if key not in axes})}
+
+
 @dataclass(frozen=True)
 class ErrorBars:
     """Discretization errors of a run.
@@ -154,15 +195,42 @@ class ErrorBars:
         Error bars of the components of each probe's displacement.
     metrics
         Error bar of each metric; without those that grow without a limit at sharp corners.
-    volumes
-        Error bar of the volume of each cavity, in the order of the mesh's cavities.
+    volumes, pressures
+        Error bars of the volume and the pressure of each cavity, in the order of the mesh's
+        cavities.
+    load_factor
+        Error bar of the part of the loads that the result carries, an answer of volume control;
+        None without error bars.
+    limit_factor
+        Error bar of the largest load factor; None where the path met no limit.
+    reactions
+        Error bars of the components of each clamp's reaction.
+    contacts
+        Error bars of each pair that touches, by its names: ``x``, ``y``, ``z`` of the force,
+        ``pressed``, ``pressure`` and ``area``.
+    objects
+        Error bars of each object: ``x``, ``y``, ``z`` of its position, ``grip_force`` and
+        ``hold_margin``.
+    tendons
+        Error bars of each tendon: ``tension``, ``anchor_tension``, ``length``, ``slack`` and
+        ``shortening``.
+    supplies
+        Error bars of each volume of gas or liquid: ``pressure``, ``volume``, ``mass``, ``work`` and
+        ``energy``.
+    frequencies
+        Error bars of the natural frequencies that were asked for, the slowest first.
+    chambers
+        Name of each cavity along a path, in the order of the volumes.
     voxel_sizes
         Sizes in m, falling; empty if there are no error bars.
     voxels
         Number of voxels at each size.
     regular
         True if all sizes hold the same body with two voxels or more through each wall; if not,
-        the bars are wide, and may be too small where walls are single voxels.
+        the bars are wide, and may be too small where walls are single voxels. False too where a
+        contact patch is less than four voxels across.
+    doubt
+        Reason why the bars are wide; empty where they are regular.
     missing
         Reason why there are no error bars, or why an accuracy was not reached; empty otherwise.
     hint
@@ -171,7 +239,7 @@ class ErrorBars:
         Time of the further runs in s.
     """
 
-    probes: Mapping[str, tuple[ErrorBar, ErrorBar, ErrorBar]]
+    probes: Mapping[str, Triple]
     metrics: Mapping[str, ErrorBar]
     volumes: tuple[ErrorBar, ...]
     voxel_sizes: tuple[float, ...] = ()
@@ -180,6 +248,67 @@ class ErrorBars:
     missing: str = ""
     hint: str = ""
     seconds: float = 0.0
+    doubt: str = ""
+    pressures: tuple[ErrorBar, ...] = ()
+    load_factor: ErrorBar | None = None
+    limit_factor: ErrorBar | None = None
+    reactions: Mapping[str, Triple] = field(default_factory=dict)
+    contacts: Mapping[tuple[str, str], Named] = field(default_factory=dict)
+    objects: Mapping[str, Named] = field(default_factory=dict)
+    tendons: Mapping[str, Named] = field(default_factory=dict)
+    supplies: Mapping[str, Named] = field(default_factory=dict)
+    frequencies: tuple[ErrorBar, ...] = ()
+    chambers: tuple[str, ...] = ()
+
+    @classmethod
+    def of(
+        cls,
+        bars: Mapping[tuple[str, ...], ErrorBar],
+        *,
+        chambers: tuple[str, ...],
+        voxel_sizes: tuple[float, ...],
+        voxels: tuple[int, ...],
+        doubt: str,
+        missing: str,
+        hint: str,
+        seconds: float,
+    ) -> ErrorBars:
+        """Sort the bars of a run into groups.
+
+        Parameters
+        ----------
+        bars
+            Error bars by group, entry and name, as those of
+            :func:`voxsoft.comparison.numbers.numbers_of`.
+        chambers, voxel_sizes, voxels, doubt, missing, hint, seconds
+            See the attributes.
+        """
+        pairs: dict[tuple[str, str], dict[str, ErrorBar]] = {}
+        for key, bar in bars.items():
+            if key[0] == "contacts":
+                pairs.setdefault((key[1], key[2]), {})[key[3]] = bar
+        return cls(
+            probes=_vectors(bars, "probes"),
+            metrics={key[1]: bar for key, bar in bars.items() if key[0] == "metrics"},
+            volumes=_row(bars, "volumes"),
+            voxel_sizes=voxel_sizes,
+            voxels=voxels,
+            regular=not doubt,
+            missing=missing,
+            hint=hint,
+            seconds=seconds,
+            doubt=doubt,
+            pressures=_row(bars, "pressures"),
+            load_factor=bars.get(("load_factor",)),
+            limit_factor=bars.get(("limit_factor",)),
+            reactions=_vectors(bars, "reactions"),
+            contacts=pairs,
+            objects=_named(bars, "objects"),
+            tendons=_named(bars, "tendons"),
+            supplies=_named(bars, "supplies"),
+            frequencies=_row(bars, "frequencies"),
+            chambers=chambers,
+        )
 
     @classmethod
     def none(cls, missing: str, hint: str) -> ErrorBars:
@@ -194,7 +323,7 @@ class ErrorBars:
         lengths = [format_quantity(float(f"{size:.4g}"), "length") for size in self.voxel_sizes]
         words = f"error bars from voxels of {', '.join(lengths[:-1])} and {lengths[-1]}"
         if not self.regular:
-            words += ", which are not the same body or have walls of one voxel: the bars are wide"
+            words += f"; {self.doubt}: the bars are wide"
         return f"{words}; {self.missing}. Try: {self.hint}" if self.missing else words
 
     def summary(self) -> dict[str, Any]:
@@ -205,10 +334,30 @@ class ErrorBars:
                 for name, bars in self.probes.items()
             },
             "metrics": {name: bar.summary() for name, bar in self.metrics.items()},
-            "cavities": [bar.summary() for bar in self.volumes],
+            "cavities": [
+                {**volume.summary(), "pressure": pressure.summary()}
+                for volume, pressure in zip(self.volumes, self.pressures, strict=True)
+            ],
+            "load_factor": None if self.load_factor is None else self.load_factor.summary(),
+            "limit_factor": None if self.limit_factor is None else self.limit_factor.summary(),
+            "reactions": {
+                name: {axis: bar.summary() for axis, bar in zip("xyz", bars, strict=True)}
+                for name, bars in self.reactions.items()
+            },
+            "contacts": [
+                {"of": list(pair), **_with_vector(bars, "force")}
+                for pair, bars in self.contacts.items()
+            ],
+            "objects": {
+                name: _with_vector(bars, "position") for name, bars in self.objects.items()
+            },
+            "tendons": {name: _plain(bars) for name, bars in self.tendons.items()},
+            "supplies": {name: _plain(bars) for name, bars in self.supplies.items()},
+            "frequencies": [bar.summary() for bar in self.frequencies],
             "voxel_sizes": list(self.voxel_sizes),
             "voxels": list(self.voxels),
             "regular": self.regular,
+            "doubt": self.doubt,
             "missing": self.missing,
             "hint": self.hint,
             "seconds": self.seconds,

@@ -65,12 +65,19 @@ def path_error_bars(
 
 
 def bars_of(name: str, bars: Sequence[ErrorBars]) -> Iterator[ErrorBar | None]:
-    """Yield the error bar of one column of a path at each of its values, or None."""
-    probe, _, axis = name.rpartition(".")
+    """Yield the error bar of one column of a path at each of its values, or None.
+
+    Columns are those of :attr:`voxsoft.simulation.LoadPath.columns`: metrics, components of probes
+    such as ``"tip.z"``, and the ``volume`` and ``pressure`` of each chamber.
+    """
+    entry, _, part = name.rpartition(".")
     for each in bars:
+        rows = {"volume": each.volumes, "pressure": each.pressures}
         if name in each.metrics:
             yield each.metrics[name]
-        elif probe in each.probes and axis in ("x", "y", "z"):
-            yield each.probes[probe]["xyz".index(axis)]
+        elif entry in each.probes and part in ("x", "y", "z"):
+            yield each.probes[entry]["xyz".index(part)]
+        elif entry in each.chambers and rows.get(part):
+            yield rows[part][each.chambers.index(entry)]
         else:
             yield None

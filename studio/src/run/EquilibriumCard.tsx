@@ -33,20 +33,20 @@ export function EquilibriumCard() {
       const shown = value === null ? null : cleaned(value, siUnit(kind));
       return [name.replaceAll("_", " "), formatKind(shown, kind), shown === 0 ? "" : estimate];
     }),
-    ...found.tendons.map(({ name, words }): [string, string, string] => [
+    ...found.tendons.map(({ name, words, estimate }): [string, string, string] => [
       `Tendon ${name}`,
       words,
-      "",
+      estimate,
     ]),
-    ...found.reactions.map(({ name, words }): [string, string, string] => [
+    ...found.reactions.map(({ name, words, estimate }): [string, string, string] => [
       `Reaction of ${name}`,
       words,
-      "",
+      estimate,
     ]),
-    ...found.supplies.map(({ name, words }): [string, string, string] => [
+    ...found.supplies.map(({ name, words, estimate }): [string, string, string] => [
       `Supply ${name}`,
       words,
-      "",
+      estimate,
     ]),
     ["Largest strain", `${formatNumber(100 * found.largest_strain, 3)} %`, ""],
     ["Out of balance", `${found.residual} of the load`, ""],

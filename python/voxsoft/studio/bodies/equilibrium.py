@@ -123,7 +123,7 @@ def equilibrium_of(
                 rest_volume=float(cavity["rest_volume"]),
                 volume=float(cavity["volume"]),
                 pressure=float(cavity["pressure"]),
-                estimate=str(bars.volumes[index]) if bars.volumes else "",
+                estimate=_chamber_in_words(bars, index) if bars.volumes else "",
                 share=share_of([bars.volumes[index]], float(cavity["rest_volume"]))
                 if bars.volumes
                 else None,
@@ -136,19 +136,44 @@ def equilibrium_of(
         looking=looking,
         askable=not looking and not bars.voxel_sizes and not tried and can_solve,
         tendons=[
-            events.Summarized(name=name, words=tendon.words)
+            events.Summarized(
+                name=name,
+                words=tendon.words,
+                estimate=str(bars.tendons[name]["tension"]) if name in bars.tendons else "",
+            )
             for name, tendon in result.tendons.items()
         ],
         reactions=[
-            events.Summarized(name=name, words=_force_in_words(force))
+            events.Summarized(
+                name=name,
+                words=_force_in_words(force),
+                estimate=vector_in_words(bars.reactions[name]) if name in bars.reactions else "",
+            )
             for name, force in result.clamp_reactions.items()
         ],
         supplies=[
-            events.Summarized(name=supply.name, words=supply.words) for supply in result.supplies
+            events.Summarized(
+                name=supply.name,
+                words=supply.words,
+                estimate=_supply_in_words(bars, supply.name),
+            )
+            for supply in result.supplies
         ],
         grips=grips_of(result),
         missing=_missing(result),
     )
+
+
+def _chamber_in_words(bars: ErrorBars, index: int) -> str:
+    """Write pressure and volume of a chamber with their errors; no pressure that is exact."""
+    pressure, volume = bars.pressures[index], bars.volumes[index]
+    return f"{volume}" if pressure.is_exact else f"{pressure}, {volume}"
+
+
+def _supply_in_words(bars: ErrorBars, name: str) -> str:
+    """Write pressure, volume and mass of a supply with their errors, in the order of its words."""
+    found = bars.supplies.get(name)
+    return "" if found is None else ", ".join(str(found[k]) for k in ("pressure", "volume", "mass"))
 
 
 def _force_in_words(force: Force) -> str:
@@ -178,18 +203,29 @@ def finding_of(diagnostic: Diagnostic) -> events.Finding:
 
 
 def _metrics(result: Result, bars: ErrorBars) -> list[events.MetricValue]:
-    """The design's own first; chambers and stretch are told beside them."""
+    """The design's own first; chambers and stretch are told beside them.
+
+    Load factors follow where they are answers.
+    """
     own: dict[str, Target] = {**result.design.objectives, **result.design.constraints}
     kinds = {name: METRICS[target.metric].kind for name, target in own.items()}
     free = ("max_displacement", "reaction", "elastic_energy")
     kinds |= {name: METRICS[name].kind for name in free if name not in kinds}
+    values = {name: float(result.metrics[name]) for name in kinds}
+    known = dict(bars.metrics)
+    for name in ("load_factor", "limit_factor"):
+        factor: float | None = getattr(result, name)
+        if factor is not None and (name == "limit_factor" or factor != 1.0):
+            values[name], kinds[name] = factor, "number"
+            if (bar := getattr(bars, name)) is not None:
+                known[name] = bar
     return [
         events.MetricValue(
             name=name,
-            value=float(result.metrics[name]),
+            value=values[name],
             kind=kind,
-            estimate=str(bars.metrics[name]) if name in bars.metrics else "",
-            share=share_of([bars.metrics[name]]) if name in bars.metrics else None,
+            estimate=str(known[name]) if name in known else "",
+            share=share_of([known[name]]) if name in known else None,
         )
         for name, kind in kinds.items()
     ]

@@ -601,10 +601,11 @@ class Chamber(Entry):
 
 
 class Summarized(Entry):
-    """Something by its name, and its state in words."""
+    """Something by its name, and its state in words; `estimate` has its error bars in words."""
 
     name: str
     words: str
+    estimate: str = ""
 
 
 class Grip(Entry):
