@@ -270,3 +270,22 @@ def test_the_summary_of_a_run_holds_the_bars_of_answers(tmp_path):
 
 def holds_in(bar, truth):
     return abs(bar["estimate"] - truth) <= bar["error"]
+
+
+@pytest.mark.parametrize("control", ["volume", "load"])
+def test_a_prescribed_volume_of_a_round_chamber_has_that_of_its_shape(control):
+    """Cut voxels hold the shape to second order; walls of one voxel hide none of the volume."""
+    shell = vs.Sphere(radius=12 * mm) - vs.Sphere(radius=8 * mm)
+    design = blown().replace(
+        parts=[vs.Part(shape=shell, material=RUBBER)],
+        clamps=[vs.Clamp(region=vs.Region(z=("-inf", -8 * mm)))],
+        fill="fraction",
+    )
+    if control == "load":
+        design = design.replace(solver=vs.Solver())
+    result = vs.simulate(design)
+    bars = vs.error_bars(result)
+    growth = result.cavity_volumes[0] - float(result.mesh.cavities[0].volume)
+    assert "walls of one voxel" in bars.doubt
+    assert (bars.volumes[0].error < 0.1 * growth) is (control == "volume")
+    assert (bars.metrics["cavity_volume"].error < 0.1 * growth) is (control == "volume")
