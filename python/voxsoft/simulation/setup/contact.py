@@ -45,9 +45,11 @@ class ContactState:
     force
         Force on the first [N]; zero for self-contact.
     pressed
-        Sum of the magnitudes of all forces [N].
+        Sum of the magnitudes of all forces [N], each with its friction as one vector, bonds
+        included: more than `pressure` where anything rubs or is bonded.
     pressure
-        Sum of all normal forces that push apart [N].
+        Sum of all normal forces that push apart [N]; `grip_force` is that of all contacts with an
+        object but the floor's.
     friction
         Friction, a part of the force [N].
     bound
@@ -99,17 +101,32 @@ class ContactState:
 
 @dataclass(frozen=True)
 class Pose:
-    """Pose of an object: position [m] of the middle of its bounding box, and rotation, (3, 3).
+    """Pose of an object.
 
-    The box is that of its first pose along the axes, and rotates with it.
+    Attributes
+    ----------
+    position
+        Present place [m] of the middle of its bounding box: the box of its first pose along the
+        axes, which rotates with it. Another point than its center of mass, unless it is symmetric.
+    rotation
+        Rotation from its first pose, (3, 3).
+    center_of_mass
+        Present center of mass [m] of a free object; None for one that is fixed or moved, whose mass
+        no number depends on, and along a recording.
     """
 
     position: tuple[float, float, float]
     rotation: tuple[tuple[float, float, float], ...]
+    center_of_mass: tuple[float, float, float] | None = None
 
     def summary(self) -> dict[str, Any]:
         """Return plain data."""
-        return {"position": list(self.position), "rotation": [list(row) for row in self.rotation]}
+        center = self.center_of_mass
+        return {
+            "position": list(self.position),
+            "rotation": [list(row) for row in self.rotation],
+            "center_of_mass": None if center is None else list(center),
+        }
 
 
 def has_contact(design: Design) -> bool:
@@ -449,11 +466,13 @@ class Touching:
             self.design.objects, self.surfaces, self.solids, found, strict=False
         ):
             turn, position = np.array(pose.rotation), np.array(pose.position)
+            center: tuple[float, float, float] | None = None
             if solid is not None:  # the core follows its center of mass
+                center = (float(position[0]), float(position[1]), float(position[2]))
                 position = position + turn @ (surface.middle - np.array(solid.center))
             x, y, z = position.tolist()
             rotation = tuple((row[0], row[1], row[2]) for row in pose.rotation)
-            poses[each.name] = Pose((x, y, z), rotation)
+            poses[each.name] = Pose((x, y, z), rotation, center)
         return poses
 
 
