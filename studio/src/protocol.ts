@@ -100,6 +100,7 @@ export const KINDS = {
   "conductance": {"si": "m^3/s/Pa", "written": "L/s/bar", "called": "a conductance", "dimension": [4, -1, 1, 0, 0, 0]},
   "viscosity": {"si": "Pa*s", "written": "Pa*s", "called": "a viscosity", "dimension": [-1, 1, -1, 0, 0, 0]},
   "energy": {"si": "J", "written": "J", "called": "an energy", "dimension": [2, 1, -2, 0, 0, 0]},
+  "torque": {"si": "N*m", "written": "N*m", "called": "an energy", "dimension": [2, 1, -2, 0, 0, 0]},
   "magnetic field": {"si": "T", "written": "mT", "called": "a magnetic field", "dimension": [0, 1, -2, 0, -1, 0]},
   "voltage": {"si": "V", "written": "kV", "called": "a voltage", "dimension": [2, 1, -3, 0, -1, 0]},
   "electric field": {"si": "V/m", "written": "MV/m", "called": "an electric field", "dimension": [1, 1, -3, 0, -1, 0]},

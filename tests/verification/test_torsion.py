@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import voxsoft as vs
+from voxsoft.design import Rotation
 from voxsoft.simulation import simulate
 from voxsoft.units import kPa, mm
 
@@ -117,3 +118,45 @@ SECTIONS = {
 def test_sections_with_inner_corners(section):
     boxes, exact, above = SECTIONS[section]
     assert 1.0 < twisted(boxes, 0.49) / exact < 1.0 + above
+
+
+def between_clamps(axes):
+    """A square bar between a clamp and one that turns: its torque over G J θ/L, and its warping.
+
+    J is 0.1406 a⁴; the warping is the largest displacement along the bar at its end, m.
+    """
+    side, length, angle = 4 * VOXEL, 12 * VOXEL, 0.02
+    turn = vs.Motion(rotation=Rotation(axis=(1, 0, 0), angle=angle))
+    ends = [vs.Region(x=(x, x)) for x in (0, length)]
+    bar = vs.Design(
+        name="bar",
+        voxel_size=VOXEL,
+        parts=[
+            vs.Part(
+                shape=vs.Box(size=(length, side, side), corner=(0, -side / 2, -side / 2)),
+                material=rubber(0.45),
+            )
+        ],
+        clamps=[
+            vs.Clamp(region=ends[0], axes=axes),
+            vs.Clamp(region=ends[1], axes=axes, motion=turn, name="jaw"),
+            vs.Clamp(region=vs.Region(x=(0, 0), y=(0, 0), z=(0, 0)), axes="x"),
+        ],
+    )
+    result = simulate(bar, method="statics", tolerance=1e-10)
+    torque = result.metric("reaction_moment", clamp="jaw", axis="x")
+    held = result.metric("reaction_moment", clamp="clamps[0]", axis="x")
+    assert torque == pytest.approx(-held)
+    far = result.mesh.vertices[:, 0] > length - 1e-9
+    saint_venant = rubber(0.45).shear * 0.1406 * side**4 * angle / length
+    return torque / saint_venant, np.abs(result.displacements[far, 0]).max()
+
+
+def test_a_turning_clamp_that_leaves_its_axis_free_lets_a_bar_warp():
+    """The bound is that of its section in the table above."""
+    torque, warping = between_clamps("yz")
+    assert 1.0 < torque < 1.011
+    assert warping > 1e-6
+    flat, none = between_clamps("xyz")
+    assert flat > 1.01 * torque
+    assert none == 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final, Literal
 
 from pydantic import field_validator, model_validator
 
@@ -12,6 +13,9 @@ from voxsoft.design.region import Region
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
 from voxsoft.units import Angle, Point, Vector
+
+#: Slope against a coordinate axis that is rounding, as of an axis that is turned with a body.
+_ALONG: Final = 1e-9
 
 
 class Rotation(Record):
@@ -40,6 +44,15 @@ class Rotation(Record):
     @classmethod
     def _has_direction(cls, axis: Vector) -> Vector:
         return check_direction(axis)
+
+    @property
+    def along(self) -> Literal["x", "y", "z"] | None:
+        """The coordinate axis that it is about; None for any other axis."""
+        sizes = [abs(each) for each in self.axis]
+        longest = max(sizes)
+        if sum(sizes) - longest > _ALONG * longest:
+            return None
+        return ("x", "y", "z")[sizes.index(longest)]
 
 
 class Motion(Record):
@@ -73,7 +86,9 @@ class Clamp(Record):
     region
         Region that is held.
     axes
-        The held axes, such as ``"xyz"`` (default) or ``"z"`` for a symmetry plane.
+        The held axes, such as ``"xyz"`` (default) or ``"z"`` for a symmetry plane. A clamp that
+        turns about one of them may leave that one free, so that the section can warp: ``"yz"``
+        about x.
     motion
         The way the held vertices go; default: they stay.
     name
@@ -83,6 +98,9 @@ class Clamp(Record):
     --------
     >>> Clamp(region=Region(x=(0, "10 mm"))).axes
     'xyz'
+    >>> turn = Motion(rotation=Rotation(axis=(1, 0, 0), angle="30 deg"))
+    >>> Clamp(region=Region(x=(0, 0)), axes="yz", motion=turn).axes
+    'yz'
     >>> Clamp(region=Region(x=(0, 0)), axes="xw")
     Traceback (most recent call last):
     ...
@@ -103,8 +121,16 @@ class Clamp(Record):
 
     @model_validator(mode="after")
     def _turns_whole(self) -> Clamp:
-        if self.motion and self.motion.rotation and self.axes != "xyz":
+        turn = self.motion.rotation if self.motion else None
+        if turn is None or self.axes == "xyz":
+            return self
+        along = turn.along
+        if along is None:
             raise DesignError("axes", "a turning clamp holds all axes", 'write "xyz"')
+        across = "xyz".replace(along, "")
+        if self.axes != across:
+            what = f"a clamp that turns about {along} holds {across} or all axes"
+            raise DesignError("axes", what, f'write "{across}" or "xyz"')
         return self
 
 

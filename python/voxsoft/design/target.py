@@ -20,7 +20,7 @@ from voxsoft.design.parameter import AnyQuantity, as_one_kind, read_quantity, wr
 from voxsoft.design.region import Region
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
-from voxsoft.units import Proportion, read_from_file
+from voxsoft.units import Point, Proportion, read_from_file
 
 Axis = Literal["x", "y", "z"]
 Along = Literal["last", "largest", "smallest", "mean"]
@@ -58,6 +58,9 @@ class Objective(Record):
         that hold the body.
     region
         Place where supports count, in the unloaded body. Default: everywhere.
+    about
+        Point of a moment, ``["40 mm", 0, 0]``; with `axis` the moment is that about the line
+        through it along this axis. Default: the origin.
     along
         The number of a path of equilibria that counts: ``"last"``, ``"largest"``, ``"smallest"`` or
         ``"mean"``. Default: the last. Without a path there is only one.
@@ -80,6 +83,7 @@ class Objective(Record):
     tendon: Name | None = None
     clamp: Name | None = None
     region: Region | None = None
+    about: Point | None = None
     along: Along | None = None
     accuracy: Proportion | None = None
 
@@ -107,7 +111,7 @@ class Constraint(Record):
     ----------
     metric
         Name of the metric.
-    probe, base, axis, cavity, percentile, object, tendon, clamp, region, along, accuracy
+    probe, base, axis, cavity, percentile, object, tendon, clamp, region, about, along, accuracy
         See :class:`Objective`.
     min, max
         The bounds, with units where the metric has one; at least one of them.
@@ -130,6 +134,7 @@ class Constraint(Record):
     tendon: Name | None = None
     clamp: Name | None = None
     region: Region | None = None
+    about: Point | None = None
     along: Along | None = None
     accuracy: Proportion | None = None
     min: AnyQuantity | None = None

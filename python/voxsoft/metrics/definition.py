@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 Target = Objective | Constraint
 #: Keys of a target that select the place, direction or voxels of a metric.
 Option = Literal[
-    "probe", "base", "axis", "cavity", "percentile", "object", "tendon", "clamp", "region"
+    "probe", "base", "axis", "cavity", "percentile", "object", "tendon", "clamp", "region", "about"
 ]
 
 #: Error text for a key that a metric does not take.
@@ -34,6 +34,7 @@ _LACKS: Final[Mapping[Option, str]] = {
     "tendon": "is not that of a tendon",
     "clamp": "is not that of a clamp",
     "region": "is not that of what holds a region",
+    "about": "has no lever about a point",
 }
 
 
@@ -161,6 +162,15 @@ class State(Protocol):
 
     def reaction_in(self, region: Region) -> tuple[float, float, float]:
         """Reaction of the supports in a region on the body, (3,), N."""
+
+    def support_moment(
+        self,
+        about: tuple[float, float, float],
+        *,
+        clamp: str | None = None,
+        region: Region | None = None,
+    ) -> tuple[float, float, float]:
+        """Moment of the clamps on the body about a point, (3,), N m: of one, or in a region."""
 
     @property
     def penetration(self) -> Depth:

@@ -53,8 +53,9 @@ def metric(
         ``"angle"``, ...; default: a number without a unit.
     needs, takes
         Keys of a target that are required or optional: ``"probe"``, ``"base"``, ``"axis"``,
-        ``"cavity"``, ``"percentile"``, ``"object"``, ``"tendon"``, ``"clamp"``, ``"region"``. A
-        function of such a metric takes a second argument, the objective or constraint that asks.
+        ``"cavity"``, ``"percentile"``, ``"object"``, ``"tendon"``, ``"clamp"``, ``"region"``,
+        ``"about"``. A function of such a metric takes a second argument, the objective or
+        constraint that asks.
     slope
         Function of the same arguments that returns the derivative of the value by the positions of
         all vertices, (n, 3), for ``gradient`` and ``Study.optimize("gradient", ...)``; default:

@@ -15,6 +15,7 @@ from voxsoft.metrics.displacement import DISPLACEMENT, MAX_DISPLACEMENT
 from voxsoft.metrics.grip import BLOCKED_FORCE, GRIP_FORCE, HOLD_MARGIN
 from voxsoft.metrics.penetration import PENETRATION
 from voxsoft.metrics.reaction import REACTION
+from voxsoft.metrics.reaction_moment import REACTION_MOMENT
 from voxsoft.metrics.rotation import ROTATION
 from voxsoft.metrics.stress import MAX_STRESS
 from voxsoft.metrics.stretch import MAX_STRETCH, MIN_VOLUME_RATIO, TESTED_SHARE
@@ -45,6 +46,7 @@ _ALL: Final[dict[str, Metric]] = {
         CAVITY_VOLUME_CHANGE,
         ELASTIC_ENERGY,
         REACTION,
+        REACTION_MOMENT,
         MAX_DISPLACEMENT,
         MAX_STRETCH,
         TESTED_SHARE,

@@ -33,8 +33,22 @@ def test_prescribed_motion():
     turn = Rotation(axis=(0, 0, 1), angle="90 deg")
     clamp = Clamp(region=Region(x=(0, 0)), motion=Motion(rotation=turn))
     assert clamp.motion.rotation.angle == pytest.approx(1.5707963267948966)
+    with pytest.raises(DesignError, match="turns about z holds xy or all axes"):
+        Clamp(region=Region(x=(0, 0)), axes="xz", motion=Motion(rotation=turn))
+
+
+@pytest.mark.parametrize(("axis", "axes"), [((2, 0, 0), "yz"), ((0, -1, 1e-17), "xz")])
+def test_a_turning_clamp_may_leave_its_axis_free(axis, axes):
+    turn = Motion(rotation=Rotation(axis=axis, angle="90 deg"))
+    assert Clamp(region=Region(x=(0, 0)), axes=axes, motion=turn).axes == axes
+    with pytest.raises(DesignError, match="or all axes"):
+        Clamp(region=Region(x=(0, 0)), axes="xy"[: len(axes) - 1], motion=turn)
+
+
+def test_a_clamp_that_turns_about_a_slanted_axis_holds_all_axes():
+    turn = Motion(rotation=Rotation(axis=(1, 0, 1), angle="90 deg"))
     with pytest.raises(DesignError, match="holds all axes"):
-        Clamp(region=Region(x=(0, 0)), axes="xy", motion=Motion(rotation=turn))
+        Clamp(region=Region(x=(0, 0)), axes="xy", motion=turn)
 
 
 def test_a_history_is_linear_between_and_constant_outside():

@@ -154,3 +154,46 @@ def test_the_card_of_a_result_in_the_studio_has_the_reactions():
     # Less than E A e by the second order of the strain.
     force = vs.simulate(bar()).clamp_reactions["jaw"]
     assert _force_in_words(force) == "(0.9999 mN, 0, 0)"
+
+
+def cantilever(**changes):
+    """A beam along x with a force across its tip that hardly bends it."""
+    left, tip = {"x": [0, 0]}, {"x": [LENGTH, LENGTH]}
+    clamps = [{"region": left, "name": "wall"}]
+    loads = [{"kind": "force", "region": tip, "value": [0, 0, -1e-6]}]
+    return bar(clamps=clamps, loads=loads, **changes)
+
+
+def test_the_moment_of_a_cantilever_is_force_times_length():
+    result = vs.simulate(cantilever())
+    middle = (0.0, SIDE / 2, SIDE / 2)
+    moment = 1e-6 * LENGTH
+    # The wall turns the beam up, about -y; the tip sinks by a ten-thousandth of the length.
+    at_wall = result.metric("reaction_moment", clamp="wall", axis="y", about=middle)
+    assert at_wall == pytest.approx(-moment, rel=1e-4)
+    assert result.metric("reaction_moment", about=("0 mm", "5 mm", "5 mm")) == pytest.approx(
+        moment, rel=1e-4
+    )
+    # About the tip itself the force of the wall and its moment cancel.
+    far = (LENGTH, SIDE / 2, SIDE / 2)
+    assert abs(result.metric("reaction_moment", axis="y", about=far)) < 1e-3 * moment
+    total = result.metric("reaction_moment", axis="x")
+    assert total == pytest.approx(result.reaction_moment[0], abs=1e-6 * moment)
+
+
+def test_a_moment_is_a_goal_with_bounds_in_newton_meters():
+    limit = {
+        "metric": "reaction_moment",
+        "region": {"x": [0, 0]},
+        "about": [0, "5 mm", "5 mm"],
+        "max": "1 N*mm",
+    }
+    design = cantilever(constraints={"twist": limit})
+    assert design.constraints["twist"].max == 1e-3
+    assert vs.simulate(design).metrics["twist"] == pytest.approx(1e-6 * LENGTH, rel=1e-4)
+    found = vs.check(cantilever(constraints={"twist": {**limit, "max": "1 N"}}))
+    assert not found.valid
+    with pytest.raises(DesignError, match="no lever about a point"):
+        vs.simulate(cantilever()).metric("reaction", about=(0, 0, 0))
+    with pytest.raises(DesignError, match='no clamp "roof"'):
+        vs.simulate(cantilever()).metric("reaction_moment", clamp="roof")

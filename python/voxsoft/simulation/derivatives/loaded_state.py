@@ -27,7 +27,12 @@ from voxsoft.simulation.setup.contact import ContactState
 from voxsoft.simulation.setup.distance import Surface
 from voxsoft.simulation.setup.motion import held_axes, moved_by
 from voxsoft.simulation.setup.setup import Setup
-from voxsoft.simulation.setup.supports import Force, clamp_reactions, reaction_in
+from voxsoft.simulation.setup.supports import (
+    Force,
+    clamp_reactions,
+    reaction_in,
+    support_moment,
+)
 from voxsoft.simulation.setup.tendons import TendonState
 
 Floats = NDArray[np.float64]
@@ -118,6 +123,15 @@ class LoadedState:
     def reaction_in(self, region: Region) -> Force:
         """Compute the reaction force on the body in a region, N."""
         return reaction_in(self.design, self.mesh, region, self._support_forces)
+
+    def support_moment(
+        self, about: Force, *, clamp: str | None = None, region: Region | None = None
+    ) -> Force:
+        """Compute the moment of the clamps on the body about a point, N m."""
+        forces = self._support_forces
+        return support_moment(
+            self.design, self.mesh, self.positions, forces, about, clamp=clamp, region=region
+        )
 
     @property
     def _support_forces(self) -> Floats:

@@ -37,7 +37,13 @@ from voxsoft.simulation.results.posed import distance_between, posed_surface
 from voxsoft.simulation.results.warnings import warnings_at
 from voxsoft.simulation.setup.contact import ContactState, Pose
 from voxsoft.simulation.setup.fluids import ChamberHistory, ChamberState, Fluids
-from voxsoft.simulation.setup.supports import Force, clamp_reactions, clamped_vertices, reaction_in
+from voxsoft.simulation.setup.supports import (
+    Force,
+    clamp_reactions,
+    clamped_vertices,
+    reaction_in,
+    support_moment,
+)
 from voxsoft.simulation.setup.tendons import TendonState
 from voxsoft.simulation.setup.volumes import Volumes, volumes_of
 from voxsoft.units import format_percent, format_quantity
@@ -252,6 +258,34 @@ class Result(Shown):
         """
         return reaction_in(self.design, self.mesh, region, self.reactions)
 
+    def support_moment(
+        self, about: Force, *, clamp: str | None = None, region: Region | None = None
+    ) -> Force:
+        """Compute the moment of the clamps on the body about a point, N m, as it stands.
+
+        Parameters
+        ----------
+        about
+            The point, m.
+        clamp, region
+            Name or place of the only clamp that counts, or a region of the unloaded body; default:
+            all.
+
+        Raises
+        ------
+        DesignError
+            The region catches nothing.
+        """
+        return support_moment(
+            self.design,
+            self.mesh,
+            self.positions,
+            self.reactions,
+            about,
+            clamp=clamp,
+            region=region,
+        )
+
     @property
     def chamber_volumes(self) -> dict[str, float]:
         """Volume of each named chamber now, in m³."""
@@ -271,6 +305,7 @@ class Result(Shown):
         tendon: str | None = None,
         clamp: str | None = None,
         region: Region | Mapping[str, Any] | None = None,
+        about: tuple[float | str, float | str, float | str] | None = None,
     ) -> float:
         """Return one metric in SI units.
 
@@ -298,6 +333,8 @@ class Result(Shown):
             The clamp, by its name or its place, ``"clamps[0]"``; default: all that hold the body.
         region
             Region in which supports count; default: everywhere.
+        about
+            Point of a moment, m; default: the origin.
 
         Raises
         ------
@@ -315,6 +352,7 @@ class Result(Shown):
             tendon=tendon,
             clamp=clamp,
             region=region,
+            about=about,
         )
         metric = metric_named(name)
         problems = [

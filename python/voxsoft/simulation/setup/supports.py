@@ -1,4 +1,4 @@
-"""Reaction forces of supports: of each clamp, and of all supports in a region."""
+"""Reaction forces and moments of supports: of each clamp, and of all supports in a region."""
 
 from __future__ import annotations
 
@@ -41,6 +41,20 @@ def clamp_reactions(
 ) -> dict[str, Force]:
     """Compute the reaction force of each clamp on the body, by its name.
 
+    Parameters
+    ----------
+    design, clamped, reactions
+        See :func:`forces_of_clamps`.
+    """
+    found = forces_of_clamps(design, clamped, reactions)
+    return {name: force_of(forces) for name, forces in found.items()}
+
+
+def forces_of_clamps(
+    design: Design, clamped: Sequence[NDArray[np.uint32]], reactions: Floats
+) -> dict[str, Floats]:
+    """Divide the reaction forces on all vertices among the clamps, (n, 3) by name.
+
     The last of several clamps that hold the same axis of a vertex prescribes its position, and has
     its reaction: all of them together count each force once.
 
@@ -58,7 +72,7 @@ def clamp_reactions(
         held = np.array(["xyz".index(axis) for axis in clamp.axes])
         decides[np.ix_(vertices, held)] = number
     return {
-        name: force_of(np.where(decides == number, reactions, 0.0))
+        name: np.where(decides == number, reactions, 0.0)
         for number, name in enumerate(clamp_names(design.clamps))
     }
 
@@ -84,7 +98,47 @@ def reaction_in(design: Design, mesh: Mesh, region: Region, reactions: Floats) -
     return force_of(reactions[vertices_in(region, mesh, design.shapes, "region", points)])
 
 
+def support_moment(
+    design: Design,
+    mesh: Mesh,
+    positions: Floats,
+    reactions: Floats,
+    about: Force,
+    *,
+    clamp: str | None = None,
+    region: Region | None = None,
+) -> Force:
+    """Compute the moment of the clamps on the body about a point, N m.
+
+    Parameters
+    ----------
+    design, mesh
+        The body.
+    positions
+        Vertices where the forces act, (n, 3), m.
+    reactions
+        Reaction forces on all vertices, (n, 3), N.
+    about
+        The point, m.
+    clamp, region
+        Name of the only clamp that counts, or a region of the unloaded body; default: all.
+
+    Raises
+    ------
+    DesignError
+        The region catches nothing.
+    """
+    forces = reactions
+    if clamp is not None:
+        forces = forces_of_clamps(design, clamped_vertices(design, mesh), reactions)[clamp]
+    if region is not None:
+        points = on_the_body(design, mesh)
+        caught = vertices_in(region, mesh, design.shapes, "region", points)
+        forces, positions = forces[caught], positions[caught]
+    return force_of(np.cross(positions - np.asarray(about), forces))
+
+
 def force_of(forces: Floats) -> Force:
-    """Sum forces on vertices, (k, 3), N."""
+    """Sum forces on vertices, (k, 3), N; or moments, N m."""
     x, y, z = forces.sum(axis=0).tolist()
     return x, y, z
