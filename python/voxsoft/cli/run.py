@@ -157,10 +157,8 @@ def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
         say(plain(supply.sentence))
     for contact in result.contacts:
         say(f"{plain(contact.sentence)}{_contact_in_words(bars, contact.of)}")
-    for name, held in (bars.objects if bars else {}).items():
-        for key in ("grip_force", "hold_margin"):
-            if key in held:
-                say(f"{plain(name)}: {key.replace('_', ' ')}{_with(held[key])}")
+    if bars is not None:
+        _show_grips(result, bars)
     say(_stress_line(result))
     say(_stretch_line(result))
     for found in result.warnings:
@@ -170,6 +168,16 @@ def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
     if bars is not None:
         say(_source(bars, asked=design.solver.error != "off"))
     say(f"wrote {plain(str(folder))}")
+
+
+def _show_grips(result: Result, bars: ErrorBars) -> None:
+    """Show how free objects are held, with error bars."""
+    for each in result.design.objects:
+        held = bars.objects.get(each.name, {}) if each.is_free else {}
+        for key, kind in (("grip_force", "force"), ("hold_margin", "number")):
+            if key in held:
+                shown = quantity(held[key].value, kind)
+                say(f"{plain(each.name)}: {key.replace('_', ' ')} {shown}{_with(held[key])}")
 
 
 def _show_factors(result: Result, bars: ErrorBars | None) -> None:

@@ -164,8 +164,11 @@ class _Found:
 
     @property
     def carried(self) -> NDArray[np.float64]:
-        """Reaction of all supports that would hold the loads on the unloaded body, N, (3,)."""
-        if self.result.solver["way"] != "load":
+        """Reaction of all supports that would hold the loads on the unloaded body, N, (3,).
+
+        Zero where that is not known: where the loads are an answer, or contact carries some.
+        """
+        if self.result.solver["way"] != "load" or self.setup.touching is not None:
             return np.zeros(3)
         rest = self.setup.mesh.vertices
         loads: NDArray[np.float64] = self.setup.problem.net_forces(rest).sum(axis=0)

@@ -173,6 +173,9 @@ def test_contact_forces_have_bars_that_hold(in_contact):
     assert contact.force[2] == pytest.approx(-1.25 * PUSH, rel=0.05)
     assert holds(found["z"], -PUSH)
     assert holds(found["pressed"], PUSH)
+    # The foot carries the push.
+    assert holds(bars.reactions["clamps[0]"][2], PUSH)
+    assert bars.reactions["clamps[0]"][2].error == pytest.approx(found["z"].error, rel=1e-3)
     # Three times the change at least, and a quarter of the number.
     assert found["z"].error > 0.25 * PUSH
     summary = bars.summary()["contacts"]
