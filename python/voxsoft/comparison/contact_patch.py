@@ -18,8 +18,9 @@ from voxsoft.simulation import Result
 
 Floats = NDArray[np.float64]
 
-#: Voxels across a contact patch from which on errors are regular. Hertz's pressure on a plane of
-#: linear elements of size h has an error of some (h/d)² of the patch's width d, 6 % at four.
+#: Voxels across a contact patch from which on errors are regular. Forces of balls of 3, 5 and 8 mm
+#: pressed 4 mm into a block were 3 to 32 % above those on voxels of 1.25 mm where their patches
+#: were 2.1 to 2.7 voxels across, and 5 % at 3.9.
 REGULAR_PATCH: Final = 4.0
 #: Least share of the pressing force that counts: a quarter of it, which a patch of few voxels may
 #: hide, is the 1 % that every bar has.

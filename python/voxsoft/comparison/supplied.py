@@ -92,7 +92,8 @@ def supplied_growth(setup: Setup, state: ChamberState, number: int) -> float:
 def _whole(setup: Setup, state: ChamberState, volume: Volume) -> float:
     """Compute the volume of a gas with that in lines and syringes by its law, m³.
 
-    A temperature that is still on its way is taken as that of the end, 30 K or a tenth off.
+    A temperature that is still on its way is taken as that of the end: the volume is off by their
+    ratio then, and the part of the walls by as much of itself.
     """
     supply, medium = volume.supply, volume.medium
     assert supply is not None
