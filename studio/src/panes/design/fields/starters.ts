@@ -26,6 +26,7 @@ const FIRST: Readonly<Record<keyof typeof KINDS, string | number>> = {
   compliance: "0.01 m/N",
   "volume compliance": "1e-12 m^3/Pa",
   energy: "1 mJ",
+  torque: "1 N*mm",
   "volume flow": "1 mL/s",
   "mass flow": "1 g/s",
   conductance: "0.1 L/s/bar",
