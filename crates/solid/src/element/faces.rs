@@ -10,6 +10,8 @@ const PLATE: f64 = 1.0 / 6.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WarpingModes {
     parts: [[f64; 2]; 3],
+    /// Those of them that are due to faces under pressure.
+    pressed: [[f64; 2]; 3],
     /// Lateral contraction at a clamp, in place of the parts.
     pub(crate) clamped: Option<ClampModes>,
 }
@@ -31,12 +33,26 @@ impl WarpingModes {
     /// No warping: no free face.
     pub const NONE: Self = Self {
         parts: [[0.0; 2]; 3],
+        pressed: [[0.0; 2]; 3],
         clamped: None,
     };
 
-    /// The parts of each pair of axes.
-    pub(crate) fn parts(&self) -> [[f64; 2]; 3] {
-        self.parts
+    /// The roots of the remaining fractions `1 − cⱼ − cₖ` of each shear.
+    pub(crate) fn shears(&self) -> [f64; 3] {
+        self.parts.map(|[j, k]| (1.0 - j - k).sqrt())
+    }
+
+    /// Those that the volume sees, which faces under pressure leave as it is.
+    pub(crate) fn volume_shears(&self) -> [f64; 3] {
+        std::array::from_fn(|b| {
+            let ([j, k], [on_j, on_k]) = (self.parts[b], self.pressed[b]);
+            (1.0 - (j - on_j) - (k - on_k)).sqrt()
+        })
+    }
+
+    /// The parts of each pair of axes that thin the voxel: those of faces under pressure.
+    pub(crate) fn thinning_parts(&self) -> [[f64; 2]; 3] {
+        self.pressed
     }
 
     /// The warping of a full voxel of isotropic rubber.
@@ -67,8 +83,17 @@ impl WarpingModes {
                 }),
             }
         });
+        let is_pressed =
+            |axis: usize| (0..2).any(|s| faces.free[axis][s] && faces.pressed[axis][s]);
+        let mut pressed = parts;
+        for (own, (_, j, k)) in pressed.iter_mut().zip(AXES) {
+            for (part, axis) in own.iter_mut().zip([j, k]) {
+                *part *= f64::from(u8::from(is_pressed(axis)));
+            }
+        }
         Self {
             parts,
+            pressed,
             ..Self::NONE
         }
     }

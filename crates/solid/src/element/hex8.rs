@@ -20,7 +20,7 @@
 //!
 //! The isochoric energy is the mean over the six face centers (exact for fields linear in one
 //! coordinate), so that bending follows the material at any stretch. The volumetric energy is that of
-//! one number for each voxel, the mean `J` of `det(S ± Ĥ)` over the same points (mean dilatation), plus a
+//! one number for each voxel, the volume `J` between its nodes ([`crate::element::volume`]), plus a
 //! quadratic part for `tr H`, which is small because of `H₃₃`. The mode `p₄` carries `E/9 |p₄|²/2`, a uniaxial
 //! stretch bilinear in two coordinates. Energy per rest volume:
 //!
@@ -40,7 +40,7 @@
 //! along ζ, with half the difference `b₃` of the free stretches at `ζ = ±1` over their mean. (`b₃ S` would be right for
 //! large elastic strain as well; the difference is of the order of `b (S − 1)`, and `b` is one of the voxel size.)
 //!
-//! If faces of a voxel are free, `W` sees less of its mean shear: `S̃` in place of `S`, see [`WarpingModes`] and
+//! If faces of a voxel are free, `W` and `J` see less of its mean shear: `S̃` in place of `S`, see [`WarpingModes`] and
 //! [`crate::element::warping_modes`].
 //!
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the

@@ -3,9 +3,7 @@
 
 use crate::element::coordinates::{AXES, Hex8Stress, STRAIN_COMPONENTS, StrainFunction, place};
 use crate::element::rotated::Rotated;
-use crate::hyperelastic::symmetric::{
-    Sym, determinant_response, isochoric, isochoric_stress, to_matrix,
-};
+use crate::hyperelastic::symmetric::{Sym, isochoric, isochoric_stress, to_matrix};
 use crate::hyperelastic::{HyperelasticMaterial, Response, fiber};
 use crate::matrix::determinant;
 
@@ -65,15 +63,15 @@ impl Rotated {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The mean volume ratio over the six points, with its Hessian if `second`.
+    /// The volume ratio, with its Hessian if `second` ([`crate::element::volume`]).
     fn volume(&self, thinning: f64, second: bool) -> StrainFunction {
         match self.warping.clamped {
             Some(clamped) => self.clamped_volume(clamped, thinning, second),
-            None => self.mean(thinning, second, |at| determinant_response(at, second)),
+            None => self.nodal_volume(second),
         }
     }
 
-    /// The mean volume ratio and its gradient by the generalized coordinates.
+    /// The volume ratio and its gradient by the generalized coordinates.
     pub fn volume_slope(&self, material: &HyperelasticMaterial) -> (f64, [f64; STRAIN_COMPONENTS]) {
         let volume = self.volume(material.thinning(), false);
         (volume.value, volume.gradient)

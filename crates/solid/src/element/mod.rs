@@ -15,4 +15,5 @@ pub(crate) mod rotated;
 mod thickness;
 pub(crate) mod ties;
 pub(crate) mod viscosity;
+mod volume;
 mod warping_modes;

@@ -24,18 +24,37 @@
 //!
 //! # Large strain
 //!
-//! In the mean such a motion is a simple shear along the face, `F (1 + a eₜ ⊗ eₙ)`, which keeps the volume and thins
-//! the voxel across the face. So the isochoric energy is that of a stretch with less shear and less thickness,
+//! The energy is that of a stretch with less shear, in `W` and in the volume,
 //!
-//! `S̃ⱼₖ = √(1 − c) Sⱼₖ` ,   `S̃ⱼⱼ = Sⱼⱼ − Σₖ cⱼ Sⱼⱼ Sⱼₖ²/(Sⱼⱼ Sₖₖ + Sⱼₖ²)` ,
+//! `S̃ⱼₖ = √(1 − c) Sⱼₖ` .
 //!
-//! and the volume stays that of `S`. `S̃ⱼⱼ` keeps a part of `Sⱼⱼ` under any shear: with `Sⱼₖ²/Sₖₖ` alone, which is the
-//! same to second order, a voxel that an impact shears far has negative stretches and gains energy. It has no unknowns,
-//! is bounded below as the material is, and to second order in a shear takes the part `c` of `(τₖ − τⱼ)/(λₖ (λₖ − λⱼ))`
-//! per `Sⱼₖ²`, `τ` the Kirchhoff stresses: positive by the inequality of Baker and Ericksen, and the stiffness that is
-//! there where the face `j` is free, so that `1 − c` of it is left at any stretch. A pressure on the face shifts both
-//! `τ` alike and drops out. Without the thinning a bar drawn to 2.4 of its length would lose its
-//! stiffness against shear.
+//! There are no unknowns, and it is bounded below as the material is. By a shear of the principal stretches `λ` with the
+//! nominal stresses `T` the energy has the curvature `Q = (Tₖ − Tⱼ)/(λₖ − λⱼ)` (per `Sⱼₖ²`; Ogden 1984, Non-linear elastic
+//! deformations, 6.1.4), and `1 − c` of it is left at any stretch and whatever the stress is. If `W` alone saw less
+//! shear, `Q − c Q_iso` would be left, with `Q = 2μ − p` and `Q_iso = 2μ` in a cube under tension `p` from all sides: a
+//! cube with free faces would lose its stability at `2μ (1 − c)` where rubber has it up to `2μ`. The spin of the voxel
+//! takes part in that: of the quadratic form of both, `Q s² + (Tⱼ − Tₖ) s ω + (Tⱼ λⱼ + Tₖ λₖ) ω²/2`, with `1 − c` of `Q`
+//! the determinant stays positive where
+//!
+//! `2 (1 − c) (Tⱼ λⱼ + Tₖ λₖ) > (Tₖ − Tⱼ)(λₖ − λⱼ)` .
+//!
+//! With `c ≤ ½` that is so for any stretches with no stress `T` below zero, and with `c = 10/17` up to a ratio of 17/3 of
+//! the stretches; a face that is free is not pushed.
+//!
+//! # Faces under pressure
+//!
+//! A pressure that follows a face does work on its warping, as the face tilts. Loads act on nodes and do not know of it,
+//! so at such a face the volume has to stay that of `S`. In the mean the motion is a simple shear along
+//! the face, `F (1 + a eₜ ⊗ eₙ)`, which keeps the volume and thins the voxel across the face. There `W` sees, with the
+//! parts `cⱼ` of the faces under pressure,
+//!
+//! `S̃ⱼⱼ = Sⱼⱼ − Σₖ cⱼ Sⱼⱼ Sⱼₖ²/(Sⱼⱼ Sₖₖ + Sⱼₖ²)` ,
+//!
+//! and `J` all of their shear. `S̃ⱼⱼ` keeps a part of `Sⱼⱼ` under any shear: with `Sⱼₖ²/Sₖₖ` alone, equal to second order,
+//! a voxel that an impact shears far has negative stretches and gains energy. To second order in a shear that
+//! takes the part `c` of `(τₖ − τⱼ)/(λₖ (λₖ − λⱼ))` per `Sⱼₖ²`, `τ` the Kirchhoff stresses: positive by the inequality
+//! of Baker and Ericksen. The pressure shifts both `τ` alike and drops out; together with its load `1 − c` is left.
+//! Without the thinning a bar drawn to 2.4 of its length would lose its stiffness against shear.
 //!
 //! The mean stress at a free face has no shear there; in an isotropic material then `S` has none either, and `S̃ = S`:
 //! the patch test holds at any strain.
@@ -52,8 +71,9 @@ impl WarpingModes {
     /// The relieved stretch, at which the isochoric energy is evaluated.
     fn relieved(&self, stretch: &Sym) -> Sym {
         let mut relieved = *stretch;
-        for (pair, (b, j, k)) in self.parts().iter().zip(AXES) {
-            relieved[OFF + b] *= (1.0 - pair[0] - pair[1]).sqrt();
+        let shears = self.shears();
+        for (pair, (b, j, k)) in self.thinning_parts().iter().zip(AXES) {
+            relieved[OFF + b] *= shears[b];
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 relieved[n] -= part * Thinning::of(stretch, OFF + b, n, t).value;
             }
@@ -67,8 +87,9 @@ impl WarpingModes {
         for axis in 0..3 {
             slopes[axis][axis] = 1.0;
         }
-        for (pair, (b, j, k)) in self.parts().iter().zip(AXES) {
-            slopes[OFF + b][OFF + b] = (1.0 - pair[0] - pair[1]).sqrt();
+        let shears = self.shears();
+        for (pair, (b, j, k)) in self.thinning_parts().iter().zip(AXES) {
+            slopes[OFF + b][OFF + b] = shears[b];
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 let thinning = Thinning::of(stretch, OFF + b, n, t);
                 for (place, slope) in [OFF + b, n, t].into_iter().zip(thinning.gradient()) {
@@ -86,7 +107,7 @@ impl WarpingModes {
         force: &Sym,
         hessian: &mut [[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
     ) {
-        for (pair, (b, j, k)) in self.parts().iter().zip(AXES) {
+        for (pair, (b, j, k)) in self.thinning_parts().iter().zip(AXES) {
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 let places = [OFF + b, n, t];
                 let curvature = Thinning::of(stretch, OFF + b, n, t).hessian();

@@ -1,15 +1,12 @@
 //! The energy's gradient and Hessian by the generalized coordinates, one voxel in each lane; the formulas stand in
 //! [`crate::element::coordinates`], [`crate::element::warping_modes`] and [`crate::hyperelastic`].
 //!
-//! The mean of `det` over two points `S ± r Ĥ` is `det S + r² S : cof Ĥ` without remainder, so that the change of
-//! volume needs no points.
-//!
 //! Long because gradient and Hessian are one derivation, part by part of the energy.
 
 use pulp::Simd;
 
 use super::frame::Constants;
-use super::number::{Nine, Number, Six, Three, cofactors, dot, to_matrix, to_sym};
+use super::number::{Nine, Number, Six, Three, cofactors, cross, dot, to_matrix, to_sym};
 use crate::element::coordinates::{AXES, Axes, OFF, STRAIN_COMPONENTS};
 use crate::hyperelastic::Model;
 
@@ -241,7 +238,7 @@ impl<S: Simd> Variation<S> {
     }
 }
 
-/// The mean volume ratio and its gradient.
+/// The volume ratio and its gradient ([`crate::element::volume`]).
 pub(super) struct Volume<S: Simd> {
     pub value: Number<S>,
     pub gradient: Row<S>,
@@ -250,45 +247,42 @@ pub(super) struct Volume<S: Simd> {
 impl<S: Simd> Volume<S> {
     #[inline(always)]
     pub fn of(constants: &Constants<S>, shape: &Shape<S>) -> Self {
-        let zero = constants.bulk.all(0.0);
-        let matrix = to_matrix(&shape.stretch);
-        let cofactor = cofactors(&matrix);
-        let mut value = dot(&matrix[0], &cofactor[0]);
-        let mut gradient = [zero; STRAIN_COMPONENTS];
-        gradient[..6].copy_from_slice(&to_sym(&cofactor));
-        for axes in AXES {
-            let variation = Variation::of(shape, axes, constants.thinning);
-            let reach = constants.spread[axes.0];
-            let share = reach * reach * (1.0 / 3.0);
-            let tensor = variation.tensor(axes);
-            let across = to_sym(&cofactors(&to_matrix(&tensor)));
-            value = share.times_plus(dot(&shape.stretch, &across), value);
-            for k in 0..6 {
-                gradient[k] = share.times_plus(across[k], gradient[k]);
+        let stretch = Self::seen(constants, &shape.stretch);
+        let matrix = to_matrix(&stretch);
+        let mut slope = cofactors(&matrix);
+        let mut value = dot(&matrix[0], &slope[0]);
+        let mut gradient = [constants.bulk.all(0.0); STRAIN_COMPONENTS];
+        for (k, i, j) in AXES {
+            let share = constants.volume_share(k);
+            let (first, second) = (&shape.hourglass[i], &shape.hourglass[j]);
+            let across = cross(first, second);
+            let (by_first, by_second) = (cross(second, &matrix[k]), cross(&matrix[k], first));
+            value = share.times_plus(dot(&matrix[k], &across), value);
+            for axis in 0..3 {
+                slope[axis][k] = share.times_plus(across[axis], slope[axis][k]);
+                let entry = &mut gradient[place(i, axis)];
+                *entry = share.times_plus(by_first[axis], *entry);
+                let entry = &mut gradient[place(j, axis)];
+                *entry = share.times_plus(by_second[axis], *entry);
             }
-            let moment = Self::moment(shape, &tensor);
-            let slopes = variation.through(&pick(&moment, Variation::<S>::places(axes)));
-            let coordinates = Variation::<S>::coordinates(axes);
-            for u in 0..7 {
-                let entry = &mut gradient[coordinates[u]];
-                *entry = share.times_plus(slopes[u], *entry);
-            }
+        }
+        for axis in 0..3 {
+            gradient[axis] = slope[axis][axis];
+            let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+            let both = (slope[j][k] + slope[k][j]) * HALF_ROOT;
+            gradient[OFF + axis] = both * constants.volume_shears[axis];
         }
         Self { value, gradient }
     }
 
-    /// `cof′(S) Ĥ`.
+    /// The stretch whose volume counts, with the shears that free faces leave.
     #[inline(always)]
-    fn moment(shape: &Shape<S>, tensor: &Six<S>) -> Six<S> {
-        let zero = tensor[0].all(0.0);
-        let mut second = [[zero; 6]; 6];
-        add_second_determinant(&mut second, &shape.stretch, zero.all(1.0));
-        mirror(&mut second);
-        let mut moment = *tensor;
-        for k in 0..6 {
-            moment[k] = dot(&second[k], tensor);
+    fn seen(constants: &Constants<S>, stretch: &Six<S>) -> Six<S> {
+        let mut seen = *stretch;
+        for axis in 0..3 {
+            seen[OFF + axis] = stretch[OFF + axis] * constants.volume_shears[axis];
         }
-        moment
+        seen
     }
 
     /// Adds `factor` times the second derivatives.
@@ -300,28 +294,48 @@ impl<S: Simd> Volume<S> {
         hessian: &mut Square<S>,
     ) {
         let zero = constants.bulk.all(0.0);
+        let stretch = Self::seen(constants, &shape.stretch);
+        let matrix = to_matrix(&stretch);
+        let shears = &constants.volume_shears;
         let mut second = [[zero; 6]; 6];
-        add_second_determinant(&mut second, &shape.stretch, factor);
+        add_second_determinant(&mut second, &stretch, factor);
         mirror(&mut second);
+        for axis in 0..3 {
+            for other in 0..6 {
+                second[OFF + axis][other] = second[OFF + axis][other] * shears[axis];
+            }
+            for other in 0..6 {
+                second[other][OFF + axis] = second[other][OFF + axis] * shears[axis];
+            }
+        }
         add_square(hessian, &second);
-        for axes in AXES {
-            let variation = Variation::of(shape, axes, constants.thinning);
-            let reach = constants.spread[axes.0];
-            let share = reach * reach * (1.0 / 3.0);
-            let tensor = variation.tensor(axes);
-            let mut mixed = [[zero; 6]; 6];
-            add_second_determinant(&mut mixed, &tensor, factor * share);
-            mirror(&mut mixed);
-            let mut square = second;
-            for row in &mut square {
-                for entry in row {
-                    *entry = *entry * share;
+        for (k, i, j) in AXES {
+            let share = constants.volume_share(k) * factor;
+            for (a, b, c) in AXES {
+                let twist = share * matrix[k][c];
+                add_both(hessian, place(i, a), place(j, b), twist);
+                add_both(hessian, place(i, b), place(j, a), -twist);
+                let (of_stretch, part) = if a == k {
+                    (a, share)
+                } else {
+                    let shear = 3 - a - k;
+                    (OFF + shear, share * shears[shear] * HALF_ROOT)
+                };
+                for (mode, other, sign) in [(i, j, part), (j, i, -part)] {
+                    let q = &shape.hourglass[other];
+                    add_both(hessian, of_stretch, place(mode, b), sign * q[c]);
+                    add_both(hessian, of_stretch, place(mode, c), -(sign * q[b]));
                 }
             }
-            let moment = dot(&square[axes.0], &tensor);
-            variation.add_hessian(axes, constants.thinning, moment, &mixed, &square, hessian);
         }
     }
+}
+
+/// Adds a value to an entry off the diagonal, and to its mirror image.
+#[inline(always)]
+fn add_both<S: Simd>(hessian: &mut Square<S>, row: usize, column: usize, value: Number<S>) {
+    hessian[row][column] += value;
+    hessian[column][row] += value;
 }
 
 #[inline(always)]
@@ -556,8 +570,7 @@ fn relief<S: Simd>(constants: &Constants<S>, stretch: &Six<S>) -> (Six<S>, [Six<
     let mut slopes = [[zero; 6]; 6];
     for axis in 0..3 {
         slopes[axis][axis] = zero.all(1.0);
-        let pair = constants.warping[axis];
-        let left = (-(pair[0] + pair[1]) + 1.0).root();
+        let left = constants.shears[axis];
         relieved[3 + axis] = stretch[3 + axis] * left;
         slopes[3 + axis][3 + axis] = left;
     }

@@ -38,7 +38,10 @@ pub(super) struct Constants<S: Simd> {
     pub spread: Three<S>,
     shift: Three<S>,
     products: Three<S>,
+    /// Warping: the parts that thin, and the remaining shears that the isochoric energy and the volume see.
     pub warping: [[Number<S>; 2]; 3],
+    pub shears: Three<S>,
+    pub volume_shears: Three<S>,
     pub is_cut: bool,
     pub is_warped: bool,
     pub thinning: Number<S>,
@@ -94,6 +97,7 @@ impl<S: Simd> Constants<S> {
         let (mut spread, mut shift, mut products, mut series) =
             ([zero; 3], [zero; 3], [zero; 3], [zero; 3]);
         let mut warping = [[zero; 2]; 3];
+        let (mut shears, mut volume_shears) = ([zero; 3], [zero; 3]);
         for axis in 0..3 {
             spread[axis] = gather(simd, hex8s, |hex8| hex8.filling.spread[axis]);
             shift[axis] = gather(simd, hex8s, |hex8| hex8.filling.shift[axis]);
@@ -104,8 +108,12 @@ impl<S: Simd> Constants<S> {
                 _ => 0.0,
             });
             for side in 0..2 {
-                warping[axis][side] = gather(simd, hex8s, |hex8| hex8.warping.parts()[axis][side]);
+                warping[axis][side] = gather(simd, hex8s, |hex8| {
+                    hex8.warping.thinning_parts()[axis][side]
+                });
             }
+            shears[axis] = gather(simd, hex8s, |hex8| hex8.warping.shears()[axis]);
+            volume_shears[axis] = gather(simd, hex8s, |hex8| hex8.warping.volume_shears()[axis]);
         }
         let is_gent = |hex8: &&Hex8| matches!(of_material(hex8).model(), Model::Gent { .. });
         let gent = lanes().any(is_gent).then(|| {
@@ -127,6 +135,8 @@ impl<S: Simd> Constants<S> {
             shift,
             products,
             warping,
+            shears,
+            volume_shears,
             is_cut: lanes().any(|hex8| hex8.filling != Filling::FULL),
             is_warped: lanes().any(|hex8| hex8.warping != WarpingModes::NONE),
             thinning: gather(simd, hex8s, |hex8| of_material(hex8).thinning()),
@@ -135,6 +145,12 @@ impl<S: Simd> Constants<S> {
             series,
             gent,
         }
+    }
+
+    /// The factor of `s·(q × r)` in the volume, see [`crate::element::volume`].
+    #[inline(always)]
+    pub fn volume_share(&self, axis: usize) -> Number<S> {
+        self.spread[axis] * self.spread[axis] * (-1.0 / 3.0)
     }
 
     /// The columns of the mean gradient over the material, and the hourglass modes.

@@ -1,0 +1,123 @@
+//! Volume of a voxel: that between its eight nodes.
+//!
+//! # Volume of the trilinear map
+//!
+//! The mean of `det ∂x/∂X` over the map of [`crate::element::hex8`] is a polynomial without further terms,
+//!
+//! `J = det F₀ − ⅓ (f₁·(p₂ × p₃) + f₂·(p₃ × p₁) + f₃·(p₁ × p₂))` ,
+//!
+//! as products of odd powers of ξ, η or ζ vanish in the mean, with them all that `p₄` takes part in. In the rotated frame
+//! the `fₖ` are the columns of `S` and the `p` are `p̂`. In a cut voxel `f` and `p` are means over its material, and each
+//! product has the spread of the axis that its two modes share, `σₖ²/3` in place of ⅓.
+//!
+//! # Neighbors and the geometric stiffness of pressure
+//!
+//! The determinant is a null Lagrangian: `∫ det ∇x` over a body depends on its surface alone (Ball 1976, doi
+//! 10.1007/BF00279992), so that a uniform pressure neither pushes nor stiffens or softens any node inside. Voxels have
+//! that property if their volumes add up to the body's, whatever moves, and `J` of their nodes does. The mean of
+//! `det (S ± Ĥ)` does not: `Ĥ` leaves out the parts of the modes that lock, and brings in a thinning
+//! `−κ Sₙₙ (Ĥᵢᵢ/Sᵢᵢ + Ĥⱼⱼ/Sⱼⱼ)` that the neighbor does not share. Along a bending mode `a` of a cube it has the second
+//! derivative `−⅔ κ a²`, and `J` has none: beside the `4/3 μ a²` of `W` a pressure `p` in tension took the part
+//! `p/2μ` off, and rubber that is pulled where it cannot contract, whose pressure is several `μ`, fell into hourglass
+//! patterns. The isochoric energy at the stretches `S ± Ĥ` has no stress in a state of pressure alone, and its second
+//! derivative is positive there, so that with `J` no pressure makes a body unstable from inside.
+//!
+//! In a state whose `W` is positive definite for all changes of `F`, `T` its nominal stress, the mean of the principal
+//! Kirchhoff stresses is positive (`Tᵢ + Tⱼ > 0` by its spins, and the larger stretch has the larger stress, Baker and
+//! Ericksen 1954), and with it `p`. The second derivative of `W` itself at `S ± Ĥ` is positive, as `Ĥ` is a change of
+//! `F`, and `J` of the nodes adds `p` times
+//!
+//! `⅔ J Σₙ κ (Ĥᵢᵢ/Sᵢᵢ + Ĥⱼⱼ/Sⱼⱼ)² + ⅙ Σₙ Sₙₙ (p̂ᵢ·eᵢ − p̂ⱼ·eⱼ)² ≥ 0`
+//!
+//! to that of the mean of `det (S ± Ĥ)`. So the voxel is stable where its material is.
+
+use crate::element::coordinates::{AXES, OFF, STRAIN_COMPONENTS, StrainFunction, place};
+use crate::element::rotated::Rotated;
+use crate::hyperelastic::symmetric::{determinant_response, to_matrix};
+use crate::vector::{Vec3, cross};
+
+const HALF_ROOT: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+impl Rotated {
+    /// The volume between the nodes, over that at rest, with its Hessian if `second`.
+    pub(crate) fn nodal_volume(&self, second: bool) -> StrainFunction {
+        let shear_left = self.warping.volume_shears();
+        let mut stretch = self.stretch;
+        for axis in 0..3 {
+            stretch[OFF + axis] *= shear_left[axis];
+        }
+        let own = determinant_response(&stretch, second);
+        let columns = to_matrix(&stretch);
+        let bent: [Vec3; 3] = std::array::from_fn(|mode| {
+            std::array::from_fn(|axis| self.elastic_hourglass(mode, axis))
+        });
+        let mut volume = StrainFunction::zero();
+        volume.value = own.value;
+        volume.gradient[..6].copy_from_slice(&own.stress);
+        if second {
+            for (row, own) in volume.hessian.iter_mut().zip(&own.tangent) {
+                row[..6].copy_from_slice(own);
+            }
+        }
+        for (k, i, j) in AXES {
+            let share = -self.filling.spread[k].powi(2) / 3.0;
+            let across = cross(bent[i], bent[j]);
+            let by_first = cross(bent[j], columns[k]);
+            let by_second = cross(columns[k], bent[i]);
+            for axis in 0..3 {
+                volume.value += share * columns[k][axis] * across[axis];
+                let (entry, part) = entry(axis, k);
+                volume.gradient[entry] += share * part * across[axis];
+                volume.gradient[place(i, axis)] += share * by_first[axis];
+                volume.gradient[place(j, axis)] += share * by_second[axis];
+            }
+            if second {
+                add_curvature(share, (k, i, j), &columns[k], &bent, &mut volume.hessian);
+            }
+        }
+        for axis in 0..3 {
+            let left = shear_left[axis];
+            volume.gradient[OFF + axis] *= left;
+            if second {
+                for other in 0..STRAIN_COMPONENTS {
+                    volume.hessian[OFF + axis][other] *= left;
+                    volume.hessian[other][OFF + axis] *= left;
+                }
+            }
+        }
+        volume
+    }
+}
+
+/// The coordinate of `S` at a row and column, and its part of that entry.
+fn entry(row: usize, column: usize) -> (usize, f64) {
+    if row == column {
+        (row, 1.0)
+    } else {
+        (OFF + 3 - row - column, HALF_ROOT)
+    }
+}
+
+/// Adds the second derivatives of `share s·(q × r)`, `s` a column of `S` and `q`, `r` two hourglass modes.
+fn add_curvature(
+    share: f64,
+    (k, i, j): (usize, usize, usize),
+    column: &Vec3,
+    bent: &[Vec3; 3],
+    hessian: &mut [[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
+) {
+    let mut both = |row: usize, column: usize, value: f64| {
+        hessian[row][column] += value;
+        hessian[column][row] += value;
+    };
+    for (a, b, c) in AXES {
+        // The permutations a b c of one sign, and a c b of the other.
+        both(place(i, a), place(j, b), share * column[c]);
+        both(place(i, b), place(j, a), -share * column[c]);
+        let (of_stretch, part) = entry(a, k);
+        both(of_stretch, place(i, b), share * part * bent[j][c]);
+        both(of_stretch, place(i, c), -share * part * bent[j][b]);
+        both(of_stretch, place(j, b), -share * part * bent[i][c]);
+        both(of_stretch, place(j, c), share * part * bent[i][b]);
+    }
+}
