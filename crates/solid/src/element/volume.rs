@@ -121,3 +121,50 @@ fn add_curvature(
         both(of_stretch, place(j, c), share * part * bent[i][b]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use crate::element::hex8::{Filling, Hex8, WarpingModes, Within};
+    use crate::hyperelastic::HyperelasticMaterial;
+    use crate::vector::{Vec3, add};
+
+    /// The voxels of a cube of 2 × 2 × 2, with nodes at `9 x + 3 y + z`.
+    fn block() -> Vec<Hex8> {
+        let node = |v: usize, c: usize| {
+            let along = |bit: usize| (v >> bit & 1) + (c >> bit & 1);
+            (9 * along(2) + 3 * along(1) + along(0)) as u32
+        };
+        let voxel = |v: usize| Hex8 {
+            vertices: std::array::from_fn(|c| node(v, c)),
+            material: 0,
+            side: 1.0,
+            fraction: 1.0,
+            filling: Filling::FULL,
+            warping: WarpingModes::NONE,
+            peak: 0.0,
+        };
+        (0..8).map(voxel).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn motion_inside_a_body_keeps_its_volume(
+            moves in prop::collection::vec(prop::array::uniform3(-0.2..0.2f64), 27),
+            inside in prop::array::uniform3(-0.2..0.2f64),
+        ) {
+            let material = HyperelasticMaterial::neo_hookean(1.0, 0.45, 1.0).unwrap();
+            let within = Within::elastic(&material);
+            let rest = |n: usize| [n / 9, n / 3 % 3, n % 3].map(|x| x as f64);
+            let mut positions: Vec<Vec3> = (0..27).map(|n| add(rest(n), moves[n])).collect();
+            let volume = |positions: &[Vec3]| -> f64 {
+                let pressure = |voxel: &Hex8| voxel.respond(&material, positions, &within).pressure;
+                block().iter().map(|voxel| 1.0 + pressure(voxel) / material.bulk()).sum()
+            };
+            let before = volume(&positions);
+            positions[13] = add(positions[13], inside);
+            prop_assert!((volume(&positions) - before).abs() < 1e-12);
+        }
+    }
+}
