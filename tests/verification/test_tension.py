@@ -80,8 +80,8 @@ def layer(poisson, pull, voxel=2e-3):
 
 
 #: Elastic energy (J) of the layer at ν = 0.499 by FElupe 11.3.0: a quarter of three-field
-#: hexahedra (Q1P0), 16 x 16 x NZ, from NZ0 of which it changed by less than 1 %.
-FELUPE = {0.025: E0, 0.05: E1, 0.1: E2}
+#: hexahedra (Q1P0), 16 x 16 x 12, to which it changes by 0.9 % from 8 over the height.
+FELUPE = {0.025: 7.03979e-4, 0.05: 2.71226e-3, 0.1: 1.00681e-2}
 
 
 @pytest.mark.parametrize("poisson", [0.499, 0.4999])
@@ -94,10 +94,13 @@ def test_a_bonded_layer_is_stable_far_above_the_pressure_of_a_cube(poisson, pull
     assert result.steps <= 8
 
 
+@pytest.mark.slow
 def test_energy_of_a_bonded_layer_comes_near_to_that_of_refined_elements():
-    """Four voxels over the height: their error is about that of as many three-field hexahedra,
-    which is FOUR at NZ. It has no other reason: it changes little from pull to pull."""
+    """Four voxels over the height: that many three-field hexahedra are 5.5, 5.7 and 5.8 % off.
+
+    An hourglass pattern takes energy away as the pull grows: the error stays within 2 % of itself.
+    """
     off = [layer(0.499, pull, 1e-3).elastic_energy / FELUPE[pull] - 1 for pull in FELUPE]
     assert 0 < min(off)
-    assert max(off) < 0.08
+    assert max(off) < 0.06
     assert max(off) - min(off) < 0.02

@@ -325,7 +325,9 @@ impl Body {
             faces = self.coarse.merged(&faces);
         }
         for (hex8, faces) in self.hex8s.hex8s.iter_mut().zip(&faces) {
-            hex8.warping = faces.as_ref().map_or(WarpingModes::NONE, WarpingModes::of);
+            hex8.warping = faces
+                .as_ref()
+                .map_or(WarpingModes::SURFACE, WarpingModes::of);
         }
     }
 

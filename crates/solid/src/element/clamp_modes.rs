@@ -50,8 +50,7 @@
 //!
 //! `q = φ Q d + r y` ,  `y = −φ ζ g(J₁ − 1 − θ)` ,  `J = J₁ + β y` ,
 //!
-//! with `g` the identity up to a half, where it levels off, and `J₁` the volume between the nodes
-//! ([`crate::element::volume`]) with what the modes add to the mean determinant of the stretches: a voxel that a wild step has swollen is pressed back as
+//! with `g` the identity up to a half, where it levels off: a voxel that a wild step has swollen is pressed back as
 //! others are. The isochoric energy is that of the stretches with these `q`, and `U` is that of `J`, of which little is
 //! left as `K` grows. Both are bounded below as the material is. They depend on `S` and `p̂` only, so rigid motion
 //! costs nothing. Drawn out uniformly, an incompressible voxel has `Q d = 0` and `J₁ = 1` at any stretch: the patch
@@ -460,10 +459,9 @@ impl Rotated {
         thinning: f64,
         second: bool,
     ) -> (StrainFunction, StrainFunction) {
-        let determinant = |at: &Sym| determinant_response(at, second);
-        let mut volume = self.mean_with(plain, thinning, second.then_some(1.0), determinant);
-        volume.add(1.0, &self.nodal_volume(second));
-        volume.add(-1.0, &self.mean(thinning, second, determinant));
+        let volume = self.mean_with(plain, thinning, second.then_some(1.0), |at| {
+            determinant_response(at, second)
+        });
         // θ: the part of the voxel's own strains, and that of the `q`.
         let strains = plain.strains;
         let own: [f64; STRAIN_COMPONENTS] = std::array::from_fn(|k| if k < 3 { -1.0 } else { 0.0 });

@@ -104,15 +104,4 @@ impl StrainFunction {
             hessian: [[0.0; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
         }
     }
-
-    /// Adds `factor` times another function.
-    pub(crate) fn add(&mut self, factor: f64, other: &Self) {
-        self.value += factor * other.value;
-        let slopes = self.gradient.iter_mut().zip(&other.gradient);
-        let turns = self.hessian.as_flattened_mut().iter_mut();
-        let turns = turns.zip(other.hessian.as_flattened());
-        for (own, theirs) in slopes.chain(turns) {
-            *own += factor * theirs;
-        }
-    }
 }

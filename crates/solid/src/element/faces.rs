@@ -12,6 +12,8 @@ pub struct WarpingModes {
     parts: [[f64; 2]; 3],
     /// Those of them that are due to faces under pressure.
     pressed: [[f64; 2]; 3],
+    /// At the surface: a face is free, or the surface cuts the voxel.
+    pub(crate) surface: bool,
     /// Lateral contraction at a clamp, in place of the parts.
     pub(crate) clamped: Option<ClampModes>,
 }
@@ -34,8 +36,20 @@ impl WarpingModes {
     pub const NONE: Self = Self {
         parts: [[0.0; 2]; 3],
         pressed: [[0.0; 2]; 3],
+        surface: false,
         clamped: None,
     };
+
+    /// No warping of a voxel at the surface.
+    pub const SURFACE: Self = Self {
+        surface: true,
+        ..Self::NONE
+    };
+
+    /// Tests whether free faces take a part of a shear.
+    pub(crate) fn has_parts(&self) -> bool {
+        self.parts != Self::NONE.parts
+    }
 
     /// The roots of the remaining fractions `1 − cⱼ − cₖ` of each shear.
     pub(crate) fn shears(&self) -> [f64; 3] {
@@ -61,7 +75,7 @@ impl WarpingModes {
         if clamped.is_some() {
             return Self {
                 clamped,
-                ..Self::NONE
+                ..Self::SURFACE
             };
         }
         let free = faces.free.map(|sides| sides.map(u8::from).iter().sum());
@@ -94,7 +108,8 @@ impl WarpingModes {
         Self {
             parts,
             pressed,
-            ..Self::NONE
+            surface: faces.free.as_flattened().contains(&true),
+            clamped: None,
         }
     }
 }

@@ -20,7 +20,8 @@
 //!
 //! The isochoric energy is the mean over the six face centers (exact for fields linear in one
 //! coordinate), so that bending follows the material at any stretch. The volumetric energy is that of
-//! one number for each voxel, the volume `J` between its nodes ([`crate::element::volume`]), plus a
+//! one number for each voxel, its volume `J`: that between its nodes inside a body, and at its surface the mean of
+//! `det(S ± Ĥ)` over the same points ([`crate::element::volume`]), plus a
 //! quadratic part for `tr H`, which is small because of `H₃₃`. The mode `p₄` carries `E/9 |p₄|²/2`, a uniaxial
 //! stretch bilinear in two coordinates. Energy per rest volume:
 //!

@@ -67,7 +67,7 @@ impl Rotated {
     fn volume(&self, thinning: f64, second: bool) -> StrainFunction {
         match self.warping.clamped {
             Some(clamped) => self.clamped_volume(clamped, thinning, second),
-            None => self.nodal_volume(second),
+            None => self.relieved_volume(thinning, second),
         }
     }
 

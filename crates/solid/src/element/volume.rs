@@ -1,4 +1,4 @@
-//! Volume of a voxel: that between its eight nodes.
+//! Volume of a voxel: inside a body that between its eight nodes.
 //!
 //! # Volume of the trilinear map
 //!
@@ -30,6 +30,16 @@
 //! `⅔ J Σₙ κ (Ĥᵢᵢ/Sᵢᵢ + Ĥⱼⱼ/Sⱼⱼ)² + ⅙ Σₙ Sₙₙ (p̂ᵢ·eᵢ − p̂ⱼ·eⱼ)² ≥ 0`
 //!
 //! to that of the mean of `det (S ± Ĥ)`. So the voxel is stable where its material is.
+//!
+//! # At the surface
+//!
+//! The thinning moves the faces across it along themselves, and these tilt as the voxel bends, which takes volume from the
+//! neighbor or gives it some. At a free face there is none, and the volume is the voxel's own. So one with a free face,
+//! and one that the surface cuts, has the mean of `det (S ± Ĥ)` for its volume, as `W` has `S ± Ĥ`: stable
+//! where the material is as well, at a place where the pressure has not much to add to the other stresses. Walls of
+//! one or two voxels that are inflated need that: stretched to twice their length, the thickness of a layer changes along
+//! it by far more than their nodes do, and with the volume between the nodes walls of one cut voxel locked.
+//! Fiber-reinforced voxels, whose faces nobody classifies, are treated likewise.
 
 use crate::element::coordinates::{AXES, OFF, STRAIN_COMPONENTS, StrainFunction, place};
 use crate::element::rotated::Rotated;
@@ -39,15 +49,34 @@ use crate::vector::{Vec3, cross};
 const HALF_ROOT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 impl Rotated {
-    /// The volume between the nodes, over that at rest, with its Hessian if `second`.
-    pub(crate) fn nodal_volume(&self, second: bool) -> StrainFunction {
-        let shear_left = self.warping.volume_shears();
-        let mut stretch = self.stretch;
+    /// The volume ratio of a voxel that no clamp holds, with its Hessian if `second`.
+    pub(crate) fn relieved_volume(&self, thinning: f64, second: bool) -> StrainFunction {
+        let shears = self.warping.volume_shears();
+        let mut seen = self.with_strain(&self.strain());
         for axis in 0..3 {
-            stretch[OFF + axis] *= shear_left[axis];
+            seen.stretch[OFF + axis] *= shears[axis];
         }
-        let own = determinant_response(&stretch, second);
-        let columns = to_matrix(&stretch);
+        let mut volume = if self.warping.surface {
+            seen.mean(thinning, second, |at| determinant_response(at, second))
+        } else {
+            seen.nodal_volume(second)
+        };
+        for axis in 0..3 {
+            volume.gradient[OFF + axis] *= shears[axis];
+            if second {
+                for other in 0..STRAIN_COMPONENTS {
+                    volume.hessian[OFF + axis][other] *= shears[axis];
+                    volume.hessian[other][OFF + axis] *= shears[axis];
+                }
+            }
+        }
+        volume
+    }
+
+    /// The volume between the nodes, over that at rest, with its Hessian if `second`.
+    fn nodal_volume(&self, second: bool) -> StrainFunction {
+        let own = determinant_response(&self.stretch, second);
+        let columns = to_matrix(&self.stretch);
         let bent: [Vec3; 3] = std::array::from_fn(|mode| {
             std::array::from_fn(|axis| self.elastic_hourglass(mode, axis))
         });
@@ -73,16 +102,6 @@ impl Rotated {
             }
             if second {
                 add_curvature(share, (k, i, j), &columns[k], &bent, &mut volume.hessian);
-            }
-        }
-        for axis in 0..3 {
-            let left = shear_left[axis];
-            volume.gradient[OFF + axis] *= left;
-            if second {
-                for other in 0..STRAIN_COMPONENTS {
-                    volume.hessian[OFF + axis][other] *= left;
-                    volume.hessian[other][OFF + axis] *= left;
-                }
             }
         }
         volume

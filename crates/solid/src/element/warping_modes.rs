@@ -191,7 +191,7 @@ impl Rotated {
         if let Some(clamped) = warping.clamped {
             return self.clamped_mean(clamped, thinning, second, function);
         }
-        if warping == WarpingModes::NONE {
+        if !warping.has_parts() {
             return self.mean(thinning, second.is_some(), function);
         }
         let relieved = self.with_strain(&Hex8Strain {

@@ -247,8 +247,89 @@ pub(super) struct Volume<S: Simd> {
 impl<S: Simd> Volume<S> {
     #[inline(always)]
     pub fn of(constants: &Constants<S>, shape: &Shape<S>) -> Self {
-        let stretch = Self::seen(constants, &shape.stretch);
-        let matrix = to_matrix(&stretch);
+        let seen = Self::seen(constants, shape);
+        let mut volume = match (constants.has_inside, constants.has_surface) {
+            (_, false) => Self::nodal_of(constants, &seen),
+            (false, true) => Self::mean_of(constants, &seen),
+            (true, true) => {
+                let mut own = Self::nodal_of(constants, &seen);
+                let mean = Self::mean_of(constants, &seen);
+                let part = constants.surface;
+                own.value = part.times_plus(mean.value - own.value, own.value);
+                for (own, mean) in own.gradient.iter_mut().zip(mean.gradient) {
+                    *own = part.times_plus(mean - *own, *own);
+                }
+                own
+            }
+        };
+        for axis in 0..3 {
+            let entry = &mut volume.gradient[OFF + axis];
+            *entry = *entry * constants.volume_shears[axis];
+        }
+        volume
+    }
+
+    /// The shape whose volume counts, with the shears that free faces leave.
+    #[inline(always)]
+    fn seen(constants: &Constants<S>, shape: &Shape<S>) -> Shape<S> {
+        let mut seen = *shape;
+        for axis in 0..3 {
+            let entry = &mut seen.stretch[OFF + axis];
+            *entry = *entry * constants.volume_shears[axis];
+        }
+        seen
+    }
+
+    /// Adds `factor` times the second derivatives.
+    #[inline(always)]
+    pub fn add_hessian(
+        constants: &Constants<S>,
+        shape: &Shape<S>,
+        factor: Number<S>,
+        hessian: &mut Square<S>,
+    ) {
+        let seen = Self::seen(constants, shape);
+        if !constants.is_warped {
+            Self::add_either_hessian(constants, &seen, factor, hessian);
+            return;
+        }
+        let mut own = [[constants.bulk.all(0.0); STRAIN_COMPONENTS]; STRAIN_COMPONENTS];
+        Self::add_either_hessian(constants, &seen, factor, &mut own);
+        for axis in 0..3 {
+            let left = constants.volume_shears[axis];
+            for other in 0..STRAIN_COMPONENTS {
+                own[OFF + axis][other] = own[OFF + axis][other] * left;
+                own[other][OFF + axis] = own[other][OFF + axis] * left;
+            }
+        }
+        for k in 0..STRAIN_COMPONENTS {
+            for l in 0..STRAIN_COMPONENTS {
+                hessian[k][l] += own[k][l];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_either_hessian(
+        constants: &Constants<S>,
+        seen: &Shape<S>,
+        factor: Number<S>,
+        hessian: &mut Square<S>,
+    ) {
+        if constants.has_inside {
+            let part = factor * (-constants.surface + 1.0);
+            Self::add_nodal_hessian(constants, seen, part, hessian);
+        }
+        if constants.has_surface {
+            let part = factor * constants.surface;
+            Self::add_mean_hessian(constants, seen, part, hessian);
+        }
+    }
+
+    /// The volume between the nodes.
+    #[inline(always)]
+    fn nodal_of(constants: &Constants<S>, shape: &Shape<S>) -> Self {
+        let matrix = to_matrix(&shape.stretch);
         let mut slope = cofactors(&matrix);
         let mut value = dot(&matrix[0], &slope[0]);
         let mut gradient = [constants.bulk.all(0.0); STRAIN_COMPONENTS];
@@ -269,45 +350,24 @@ impl<S: Simd> Volume<S> {
         for axis in 0..3 {
             gradient[axis] = slope[axis][axis];
             let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
-            let both = (slope[j][k] + slope[k][j]) * HALF_ROOT;
-            gradient[OFF + axis] = both * constants.volume_shears[axis];
+            gradient[OFF + axis] = (slope[j][k] + slope[k][j]) * HALF_ROOT;
         }
         Self { value, gradient }
     }
 
-    /// The stretch whose volume counts, with the shears that free faces leave.
+    /// Adds `factor` times the second derivatives of [`Self::nodal_of`].
     #[inline(always)]
-    fn seen(constants: &Constants<S>, stretch: &Six<S>) -> Six<S> {
-        let mut seen = *stretch;
-        for axis in 0..3 {
-            seen[OFF + axis] = stretch[OFF + axis] * constants.volume_shears[axis];
-        }
-        seen
-    }
-
-    /// Adds `factor` times the second derivatives.
-    #[inline(always)]
-    pub fn add_hessian(
+    fn add_nodal_hessian(
         constants: &Constants<S>,
         shape: &Shape<S>,
         factor: Number<S>,
         hessian: &mut Square<S>,
     ) {
         let zero = constants.bulk.all(0.0);
-        let stretch = Self::seen(constants, &shape.stretch);
-        let matrix = to_matrix(&stretch);
-        let shears = &constants.volume_shears;
+        let matrix = to_matrix(&shape.stretch);
         let mut second = [[zero; 6]; 6];
-        add_second_determinant(&mut second, &stretch, factor);
+        add_second_determinant(&mut second, &shape.stretch, factor);
         mirror(&mut second);
-        for axis in 0..3 {
-            for other in 0..6 {
-                second[OFF + axis][other] = second[OFF + axis][other] * shears[axis];
-            }
-            for other in 0..6 {
-                second[other][OFF + axis] = second[other][OFF + axis] * shears[axis];
-            }
-        }
         add_square(hessian, &second);
         for (k, i, j) in AXES {
             let share = constants.volume_share(k) * factor;
@@ -318,8 +378,7 @@ impl<S: Simd> Volume<S> {
                 let (of_stretch, part) = if a == k {
                     (a, share)
                 } else {
-                    let shear = 3 - a - k;
-                    (OFF + shear, share * shears[shear] * HALF_ROOT)
+                    (OFF + 3 - a - k, share * HALF_ROOT)
                 };
                 for (mode, other, sign) in [(i, j, part), (j, i, -part)] {
                     let q = &shape.hourglass[other];
@@ -327,6 +386,83 @@ impl<S: Simd> Volume<S> {
                     add_both(hessian, of_stretch, place(mode, c), -(sign * q[b]));
                 }
             }
+        }
+    }
+
+    /// The mean of `det (S ± Ĥ)`; over two points `S ± r Ĥ` it is `det S + r² S : cof Ĥ` without remainder, so that it
+    /// needs no points.
+    #[inline(always)]
+    fn mean_of(constants: &Constants<S>, shape: &Shape<S>) -> Self {
+        let zero = constants.bulk.all(0.0);
+        let matrix = to_matrix(&shape.stretch);
+        let cofactor = cofactors(&matrix);
+        let mut value = dot(&matrix[0], &cofactor[0]);
+        let mut gradient = [zero; STRAIN_COMPONENTS];
+        gradient[..6].copy_from_slice(&to_sym(&cofactor));
+        for axes in AXES {
+            let variation = Variation::of(shape, axes, constants.thinning);
+            let reach = constants.spread[axes.0];
+            let share = reach * reach * (1.0 / 3.0);
+            let tensor = variation.tensor(axes);
+            let across = to_sym(&cofactors(&to_matrix(&tensor)));
+            value = share.times_plus(dot(&shape.stretch, &across), value);
+            for k in 0..6 {
+                gradient[k] = share.times_plus(across[k], gradient[k]);
+            }
+            let moment = Self::moment(shape, &tensor);
+            let slopes = variation.through(&pick(&moment, Variation::<S>::places(axes)));
+            let coordinates = Variation::<S>::coordinates(axes);
+            for u in 0..7 {
+                let entry = &mut gradient[coordinates[u]];
+                *entry = share.times_plus(slopes[u], *entry);
+            }
+        }
+        Self { value, gradient }
+    }
+
+    /// `cof′(S) Ĥ`.
+    #[inline(always)]
+    fn moment(shape: &Shape<S>, tensor: &Six<S>) -> Six<S> {
+        let zero = tensor[0].all(0.0);
+        let mut second = [[zero; 6]; 6];
+        add_second_determinant(&mut second, &shape.stretch, zero.all(1.0));
+        mirror(&mut second);
+        let mut moment = *tensor;
+        for k in 0..6 {
+            moment[k] = dot(&second[k], tensor);
+        }
+        moment
+    }
+
+    /// Adds `factor` times the second derivatives of [`Self::mean_of`].
+    #[inline(always)]
+    fn add_mean_hessian(
+        constants: &Constants<S>,
+        shape: &Shape<S>,
+        factor: Number<S>,
+        hessian: &mut Square<S>,
+    ) {
+        let zero = constants.bulk.all(0.0);
+        let mut second = [[zero; 6]; 6];
+        add_second_determinant(&mut second, &shape.stretch, factor);
+        mirror(&mut second);
+        add_square(hessian, &second);
+        for axes in AXES {
+            let variation = Variation::of(shape, axes, constants.thinning);
+            let reach = constants.spread[axes.0];
+            let share = reach * reach * (1.0 / 3.0);
+            let tensor = variation.tensor(axes);
+            let mut mixed = [[zero; 6]; 6];
+            add_second_determinant(&mut mixed, &tensor, factor * share);
+            mirror(&mut mixed);
+            let mut square = second;
+            for row in &mut square {
+                for entry in row {
+                    *entry = *entry * share;
+                }
+            }
+            let moment = dot(&square[axes.0], &tensor);
+            variation.add_hessian(axes, constants.thinning, moment, &mixed, &square, hessian);
         }
     }
 }

@@ -8,7 +8,7 @@ use super::number::{
     to_sym,
 };
 use crate::element::coordinates::AXES;
-use crate::element::hex8::{Filling, Hex8, WarpingModes};
+use crate::element::hex8::{Filling, Hex8};
 use crate::hyperelastic::{HyperelasticMaterial, Model};
 use crate::vector::Vec3;
 
@@ -42,6 +42,10 @@ pub(super) struct Constants<S: Simd> {
     pub warping: [[Number<S>; 2]; 3],
     pub shears: Three<S>,
     pub volume_shears: Three<S>,
+    /// One in voxels at the surface, zero inside, and whether there are such.
+    pub surface: Number<S>,
+    pub has_surface: bool,
+    pub has_inside: bool,
     pub is_cut: bool,
     pub is_warped: bool,
     pub thinning: Number<S>,
@@ -137,8 +141,13 @@ impl<S: Simd> Constants<S> {
             warping,
             shears,
             volume_shears,
+            surface: gather(simd, hex8s, |hex8| {
+                f64::from(u8::from(hex8.warping.surface))
+            }),
+            has_surface: lanes().any(|hex8| hex8.warping.surface),
+            has_inside: lanes().any(|hex8| !hex8.warping.surface),
             is_cut: lanes().any(|hex8| hex8.filling != Filling::FULL),
-            is_warped: lanes().any(|hex8| hex8.warping != WarpingModes::NONE),
+            is_warped: lanes().any(|hex8| hex8.warping.has_parts()),
             thinning: gather(simd, hex8s, |hex8| of_material(hex8).thinning()),
             bulk: gather(simd, hex8s, |hex8| of_material(hex8).bulk()),
             young: gather(simd, hex8s, |hex8| of_material(hex8).young()),
