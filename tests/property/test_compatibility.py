@@ -392,6 +392,14 @@ def test_a_cell_of_the_table_holds(feature, use, tmp_path):
     run(feature, use, tmp_path)
 
 
+@pytest.mark.parametrize("feature", [name for name in SAMPLES if "parts" not in SAMPLES[name]])
+def test_a_path_over_time_of_relaxing_rubber_has_every_feature(feature):
+    design = design_with(feature, parts=[soft(material=RELAXING)])
+    path = vs.follow(design, "time=0..0.1 s/2")
+    assert path.status == "ok"
+    assert path.results[-1].solver["way"] == "creep"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("feature", "use"), sorted(set(cells()) - set(quick_cells())))
 def test_every_cell_of_the_table_holds(feature, use, tmp_path):

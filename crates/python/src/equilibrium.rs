@@ -76,8 +76,8 @@ pub(crate) fn to_python(error: AdjointError) -> PyErr {
     }
 }
 
-/// Solves for the equilibrium. `control` is "load", "time" (with `from_time`, `to_time`, `longest`), "arc-length" (with
-/// `steps`) or "volume" (with `steps`, `ratio`); `start` are initial positions, and `pressures` replace the pressures
+/// Solves for the equilibrium. `control` is "load", "time" or "creep" (with `from_time`, `to_time`, `longest`),
+/// "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`); `start` are initial positions, and `pressures` replace the pressures
 /// of the voxels there, see `Problem.pressures`; `linear` is "auto", "direct" or "iterative", `memory` the limit in
 /// bytes for the tangent.
 #[pyfunction]
@@ -113,10 +113,16 @@ pub fn equilibrium(
             to: to_time,
             longest,
         },
+        "creep" => Control::Creep {
+            from: from_time,
+            to: to_time,
+            longest,
+        },
         "arc-length" => Control::ArcLength { steps },
         "volume" => Control::Volume { ratio, steps },
         other => {
-            let message = format!("control: \"{other}\" is not load, time, arc-length or volume");
+            let message =
+                format!("control: \"{other}\" is not load, time, creep, arc-length or volume");
             return Err(PyValueError::new_err(message));
         }
     };
@@ -148,7 +154,13 @@ pub fn equilibrium(
         let answer = voxsoft_statics::solve(&problem_of_work, start.as_ref(), &settings, &mut see);
         (answer, watch)
     })?;
-    let there = problem.with(|problem| problem.remember(&answer.memory));
+    let creeps = matches!(settings.control, Control::Creep { .. });
+    let there = problem.with(|problem| {
+        problem.remember(&answer.memory);
+        if creeps {
+            problem.hold_creep();
+        }
+    });
     let stable = answer.stable;
     let (factor, reached, limit) = (answer.factor, answer.reached, answer.limit);
     let path: Vec<[f64; 4]> = answer

@@ -426,7 +426,7 @@ impl PyProblem {
         let of_contact = now
             .contact()
             .map_or(0.0, |contact| contact.energy(positions));
-        elastic::energy(now.body(), positions) - of_contact
+        elastic::stored_energy(now.body(), positions) - of_contact
     }
 
     /// Number of vertices of the body, without those of objects.

@@ -355,6 +355,11 @@ impl Body {
             .fold(0.0, f64::max)
     }
 
+    /// The times in s of the histories of all free stretches.
+    pub(crate) fn eigenstrain_times(&self) -> impl Iterator<Item = f64> {
+        self.eigenstrains().flat_map(Eigenstrain::times)
+    }
+
     fn eigenstrains(&self) -> impl Iterator<Item = &Eigenstrain> {
         let materials = self.hex8s.materials.iter();
         materials.flat_map(HyperelasticMaterial::eigenstrains)

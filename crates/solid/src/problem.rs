@@ -1,3 +1,4 @@
+mod creep;
 mod memory;
 
 use std::borrow::Cow;
@@ -29,7 +30,7 @@ pub struct Problem {
     conservative: bool,
     /// The time in s of the present free stretches.
     time: f64,
-    /// History of viscous stress in a motion by implicit steps.
+    /// History of viscous stress in a motion by implicit steps, or over time without inertia.
     viscosity: Option<crate::Viscosity>,
 }
 

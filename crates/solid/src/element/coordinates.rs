@@ -65,6 +65,12 @@ impl Hex8Stress {
         self
     }
 
+    /// The sum of the squares of all components, Pa².
+    pub(crate) fn square(&self) -> f64 {
+        let all = self.stress.iter().chain(self.hourglass.as_flattened());
+        all.map(|x| x * x).sum()
+    }
+
     /// Adds a row of increments.
     pub(crate) fn plus(mut self, row: &[f64; STRAIN_COMPONENTS]) -> Self {
         for k in 0..6 {

@@ -15,5 +15,6 @@ pub(crate) mod rotated;
 mod thickness;
 pub(crate) mod ties;
 pub(crate) mod viscosity;
+mod viscous_error;
 mod volume;
 mod warping_modes;

@@ -8,21 +8,37 @@
 //!   step: `q ← e^(−h/τ) q + γ e^(−h/2τ) Δs` (Simo 1987, doi 10.1016/0045-7825(87)90107-1, with the
 //!   midpoint of the exponential). Neither depends on the step as long as it resolves the motion.
 //!
+//! Steps without inertia ([`Weight::Mean`]) may be longer than `τ`, and have the mean of the exponential in place of its
+//! midpoint: `γ (1 − e^(−h/τ)) τ/h Δs`, exact for a constant rate at any length. See [`super::viscous_error`].
+//!
 //! Explicit substeps add the stress to the forces ([`Viscosity::add_forces`]). Over an implicit step both kinds are a
 //! share of `s` and a stress that is known at its start ([`Viscosity::start`]), so that the step keeps its potential:
 //! `s` is the gradient of the deviatoric energy, the other is linear in the strain.
 
 use crate::Body;
 use crate::element::hex8::{Hex8Stress, Within};
+use crate::element::viscous_error::Pace;
 use crate::vector::Vec3;
+
+/// Weight of the change of stress over a step in a branch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Weight {
+    /// The exponential at the middle of the step.
+    Middle,
+    /// Its mean over the step.
+    Mean,
+}
 
 /// Viscous history variables of all voxels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Viscosity {
     retardation: f64,
+    weight: Weight,
     /// Stress `s` after the last step; `None` where no rate is known: at first and after a jump.
-    before: Option<Vec<Hex8Stress>>,
+    pub(super) before: Option<Vec<Hex8Stress>>,
     branches: Vec<Vec<Hex8Stress>>,
+    /// Steps without inertia so far.
+    pub(super) pace: Pace,
 }
 
 impl Viscosity {
@@ -34,9 +50,21 @@ impl Viscosity {
         };
         Self {
             retardation,
+            weight: Weight::Middle,
             before: None,
             branches: body.hex8s().iter().map(branches).collect(),
+            pace: Pace::default(),
         }
+    }
+
+    /// History variables of a body for steps without inertia, from its free state on; `None` for one without branches.
+    pub fn without_inertia(body: &Body) -> Option<Self> {
+        let new = Self::of_viscous(body, 0.0)?;
+        Some(Self {
+            weight: Weight::Mean,
+            before: Some(vec![Hex8Stress::ZERO; body.hex8s().len()]),
+            ..new
+        })
     }
 
     /// History variables of a body with viscous stress; `None` for one without.
@@ -81,7 +109,7 @@ impl Viscosity {
                 let change = now.plus_scaled(-1.0, &last);
                 let mut sum = Hex8Stress::ZERO.plus_scaled(retardation / h, &change);
                 for (q, branch) in branches.iter_mut().zip(material.branches()) {
-                    *q = after(q, branch, h, &change);
+                    *q = after(q, branch, h, Weight::Middle, &change);
                     sum = sum.plus_scaled(1.0, q);
                 }
                 sum
@@ -96,13 +124,16 @@ impl Viscosity {
         let before = self.before.get_or_insert_with(|| stresses(body, positions));
         let hex8s = body.hex8s().iter().zip(before).zip(&self.branches);
         for (((hex8, before), branches), within) in hex8s.zip(within) {
-            let mut share = self.retardation / step;
+            let mut share = match self.weight {
+                Weight::Middle => self.retardation / step,
+                Weight::Mean => 0.0,
+            };
             let mut stress = Hex8Stress::ZERO;
             let material = body.material_of(hex8);
             for (q, (stiffness, time)) in branches.iter().zip(material.branches()) {
-                let half = half_decay(step, time);
-                share += stiffness * half;
-                stress = stress.plus_scaled(half * half, q);
+                let (decay, weight) = decay_and_weight(step, time, self.weight);
+                share += stiffness * weight;
+                stress = stress.plus_scaled(decay, q);
             }
             within.share = share;
             within.stress = stress.plus_scaled(-share, before);
@@ -117,29 +148,58 @@ impl Viscosity {
             for (((hex8, before), now), branches) in hex8s.zip(&mut self.branches) {
                 let change = now.plus_scaled(-1.0, before);
                 for (q, branch) in branches.iter_mut().zip(body.material_of(hex8).branches()) {
-                    *q = after(q, branch, step, &change);
+                    *q = after(q, branch, step, self.weight, &change);
                 }
+            }
+            if self.weight == Weight::Mean {
+                self.pace.take_step(body, before, &now, step);
             }
         }
         self.before = Some(now);
     }
+
+    /// Sets the stress of the branches as it is, for a state that is looked at.
+    pub fn hold(&self, within: &mut [Within]) {
+        for (branches, within) in self.branches.iter().zip(within) {
+            within.share = 0.0;
+            within.stress = branches
+                .iter()
+                .fold(Hex8Stress::ZERO, |sum, q| sum.plus_scaled(1.0, q));
+        }
+    }
 }
 
-/// Decay `e^(−h/2τ)` of a branch over half a step.
-fn half_decay(step: f64, time: f64) -> f64 {
-    libm::exp(-step / (2.0 * time))
+/// Decay of a branch over a step, and its weight for the change of `s`; a step of length zero has ones.
+fn decay_and_weight(step: f64, time: f64, weight: Weight) -> (f64, f64) {
+    match weight {
+        Weight::Middle => {
+            let half = libm::exp(-step / (2.0 * time));
+            (half * half, half)
+        }
+        Weight::Mean if step == 0.0 => (1.0, 1.0),
+        Weight::Mean => {
+            let lost = -libm::expm1(-step / time);
+            (1.0 - lost, lost * time / step)
+        }
+    }
 }
 
 /// Stress of a branch `(γ, τ)` after a step in which `s` has changed.
-fn after(q: &Hex8Stress, branch: (f64, f64), step: f64, change: &Hex8Stress) -> Hex8Stress {
+fn after(
+    q: &Hex8Stress,
+    branch: (f64, f64),
+    step: f64,
+    weight: Weight,
+    change: &Hex8Stress,
+) -> Hex8Stress {
     let (stiffness, time) = branch;
-    let half = half_decay(step, time);
+    let (decay, weight) = decay_and_weight(step, time, weight);
     Hex8Stress::ZERO
-        .plus_scaled(half * half, q)
-        .plus_scaled(stiffness * half, change)
+        .plus_scaled(decay, q)
+        .plus_scaled(stiffness * weight, change)
 }
 
-fn stresses(body: &Body, positions: &[Vec3]) -> Vec<Hex8Stress> {
+pub(super) fn stresses(body: &Body, positions: &[Vec3]) -> Vec<Hex8Stress> {
     let positions = &*body.ties().seen(positions);
     let hex8s = body.hex8s().iter();
     hex8s

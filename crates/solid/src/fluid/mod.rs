@@ -134,6 +134,11 @@ impl Fluid {
         })
     }
 
+    /// The times in s of all time courses of the network.
+    pub(crate) fn times(&self) -> impl Iterator<Item = f64> {
+        self.network.times()
+    }
+
     /// A fluid with the same network and walls, without memory.
     pub fn anew(&self) -> Result<Self, ProblemError> {
         Self::new((*self.network).clone(), (*self.walls).clone())

@@ -195,13 +195,20 @@ impl Network {
 
     /// The time (s) after which no supply, source, pump or valve changes.
     pub fn end(&self) -> f64 {
-        let courses = self.chambers.iter().flat_map(Chamber::courses);
-        let chambers = courses.map(Course::end);
-        let sources = self.sources.iter().map(|source| source.history.end());
-        let pumps = self.pumps.iter().map(|pump| pump.history.end());
+        self.courses().map(Course::end).fold(0.0, f64::max)
+    }
+
+    /// The times (s) of all its time courses.
+    pub(crate) fn times(&self) -> impl Iterator<Item = f64> {
+        self.courses().flat_map(|course| course.0.iter().copied())
+    }
+
+    fn courses(&self) -> impl Iterator<Item = &Course> {
+        let chambers = self.chambers.iter().flat_map(Chamber::courses);
+        let sources = self.sources.iter().map(|source| &source.history);
+        let pumps = self.pumps.iter().map(|pump| &pump.history);
         let valves = self.branches.iter().filter_map(|b| b.opening.as_ref());
-        let valves = valves.map(Course::end);
-        (chambers.chain(sources).chain(pumps).chain(valves)).fold(0.0, f64::max)
+        chambers.chain(sources).chain(pumps).chain(valves)
     }
 
     /// Tests whether lines join chambers: their pressures over time then have no potential.

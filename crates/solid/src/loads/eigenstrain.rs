@@ -205,6 +205,12 @@ impl Eigenstrain {
         let ends = self.factors.iter().map(|factor| factor.history.end());
         ends.fold(0.0, f64::max)
     }
+
+    /// The times in s of its histories.
+    pub(crate) fn times(&self) -> impl Iterator<Item = f64> {
+        let histories = self.factors.iter().map(|factor| &factor.history);
+        histories.flat_map(|history| history.times().iter().copied())
+    }
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ pub struct Memory {
     pub fluid: Option<FluidMemory>,
     /// Contact between surfaces.
     pub contact: Option<ContactMemory>,
-    /// Viscous stress of hyperelastic voxels in a motion by implicit steps.
+    /// Viscous stress of hyperelastic voxels in a motion by implicit steps, or over time without inertia.
     pub viscosity: Option<Viscosity>,
     /// The last steps of a motion by implicit steps.
     pub past: Option<Past>,
@@ -87,8 +87,8 @@ impl Problem {
         if let (Some(contact), Some(kept)) = (self.contact_mut(), &memory.contact) {
             contact.remember(kept);
         }
-        if let (Some(viscosity), Some(kept)) = (&mut self.viscosity, &memory.viscosity) {
-            viscosity.clone_from(kept);
+        if memory.viscosity.is_some() {
+            self.viscosity.clone_from(&memory.viscosity);
         }
     }
 

@@ -7,6 +7,7 @@ use voxsoft_solid::{Memory, Observer, Problem, Solution, Solver, State, Status, 
 
 use crate::linear::error::FactorError;
 use crate::linear::options::{LinearOptions, LinearSolver};
+use crate::path::creep::Span;
 use crate::path::equilibrium::Equilibrium;
 use crate::path::load_path::Path;
 use crate::path::parametrization::Parametrization;
@@ -32,7 +33,7 @@ pub fn solve(
     observer: &mut Observer<'_>,
 ) -> Answer {
     let loose = match settings.control {
-        Control::Load | Control::Time { .. } | Control::Volume { .. } => {
+        Control::Load | Control::Time { .. } | Control::Creep { .. } | Control::Volume { .. } => {
             PseudoTransient::find(problem)
         }
         // Loose components come to rest under a fixed load, and past a limit no equilibrium is stable under one.
@@ -59,7 +60,7 @@ fn follow(
     let rest = problem.body().rest().to_vec();
     let positions = start.map_or(&rest, |start| &start.positions).clone();
     let solver = match settings.control {
-        Control::Load | Control::Time { .. } => settings.linear,
+        Control::Load | Control::Time { .. } | Control::Creep { .. } => settings.linear,
         // Divergence of contact is detected by the signs of pivots.
         Control::Volume { .. } if problem.contact().is_none() => settings.linear,
         Control::ArcLength { .. } | Control::Volume { .. } => LinearSolver::Direct,
@@ -76,6 +77,9 @@ fn follow(
         }
         problem.start_loads();
         problem.start_fluid(&rest, None);
+        if matches!(settings.control, Control::Creep { .. }) {
+            problem.start_creep();
+        }
     }
     let memory = problem.memory();
     let equilibrium = match Equilibrium::new(problem, options) {
@@ -102,6 +106,13 @@ fn follow(
         Control::Load | Control::Time { .. } => {
             let warm = start.is_some() && !goes_on;
             path.follow_load(settings, along, warm, loose)
+        }
+        Control::Creep { from, to, longest } => {
+            let start = from.map_or_else(|| path.load_suddenly(settings, loose), Ok);
+            start.map_or_else(
+                |lost| lost,
+                |from| path.creep(settings, Span { from, to, longest }, loose),
+            )
         }
         Control::ArcLength { steps } => arc_length::follow_arc(&mut path, settings, steps),
         Control::Volume { ratio, steps } => {

@@ -24,7 +24,7 @@ const LARGEST_TURN: f64 = 1.0;
 const GOOD_TURN: f64 = 0.5;
 /// Longest step with fluids, whose work is integrated by the trapezoidal rule: it is then accurate to some parts in a
 /// thousand.
-const LONGEST_OF_WORK: f64 = 0.125;
+pub(crate) const LONGEST_OF_WORK: f64 = 0.125;
 /// Largest remaining path, in steps, that is taken as one last step.
 const LAST: f64 = 1.1;
 

@@ -97,7 +97,7 @@ impl Path<'_, '_> {
     pub(crate) fn answer(mut self, ending: Ending, settings: &Settings) -> Answer {
         // Load and volume control have tested each point; arc length knows only if the load has turned.
         let stable = match (self.points.last(), settings.control) {
-            (Some(last), Control::Load | Control::Time { .. } | Control::Volume { .. }) => {
+            (Some(last), _) if !matches!(settings.control, Control::ArcLength { .. }) => {
                 last.stable
             }
             _ => self.equilibrium.is_stable(&self.positions, self.point),

@@ -3,6 +3,7 @@
 pub(crate) mod arc_length;
 pub(crate) mod bordered;
 pub(crate) mod contact_loop;
+mod creep;
 pub(crate) mod equilibrium;
 pub(crate) mod follow;
 mod load_control;

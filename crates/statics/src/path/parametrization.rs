@@ -27,6 +27,12 @@ impl Parametrization {
                 ..
             } => Self::Time { from, to },
             Control::Time { from: None, to, .. } => Self::All { time: to },
+            Control::Creep {
+                from: Some(from),
+                to,
+                ..
+            } => Self::Time { from, to },
+            Control::Creep { from: None, .. } => Self::All { time: 0.0 },
             Control::Load | Control::ArcLength { .. } | Control::Volume { .. } => Self::All {
                 time: f64::INFINITY,
             },

@@ -19,6 +19,16 @@ pub enum Control {
         /// Longest step, as a part of the path, of path-dependent problems.
         longest: f64,
     },
+    /// Like [`Control::Time`], with the viscous stress of Prony branches integrated over the time.
+    Creep {
+        /// Instant in s of the state from which it starts, with its viscous stress. Without one, loads and motions grow
+        /// suddenly to those at zero, from which it starts.
+        from: Option<f64>,
+        /// Instant in s at the end.
+        to: f64,
+        /// Longest step, as a part of the path, of path-dependent problems.
+        longest: f64,
+    },
     /// Loads and motions grow like with [`Control::Load`], but steps are measured along the path in displacements and
     /// loads, so that it is followed through snaps, where the load falls. Ends at the full load, or after `steps`.
     ArcLength {

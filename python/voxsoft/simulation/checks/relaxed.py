@@ -13,8 +13,8 @@ from voxsoft.units import format_quantity
 def relaxed_parts(design: Design) -> Iterator[Diagnostic]:
     """Warn of each part whose Prony branches an equilibrium leaves out.
 
-    An equilibrium, and each one along a path, also over the time of histories, is that of a fully
-    relaxed material: the stiffer initial response and creep are left out.
+    An equilibrium, and each one along a path but that over ``"time"``, is that of a fully relaxed
+    material: it has the long-term stiffness, without the stiffer initial response and creep.
 
     Examples
     --------
@@ -22,19 +22,20 @@ def relaxed_parts(design: Design) -> Iterator[Diagnostic]:
     >>> soft = '{model="neo-hookean", young="60 kPa", prony=[{g=0.3, tau="100 s"}]}'
     >>> (found,) = relaxed_parts(families.beam().with_values(f"parts.0.material={soft}"))
     >>> found.where, found.what
-    ('parts[0].material', 'relaxes over 100 s, and an equilibrium is that after all of it: creep \
-is left out')
+    ('parts[0].material', 'relaxes over 100 s; this equilibrium has the long-term stiffness, and a \
+sudden load meets 1.43 times that')
     """
     for index, part in enumerate(design.parts):
         material = design.material_of(part)
         if isinstance(material, Hyperelastic) and material.prony:
             slowest = format_quantity(max(branch.tau for branch in material.prony), "time")
+            sudden = 1.0 / (1.0 - sum(branch.g for branch in material.prony))
             what = (
-                f"relaxes over {slowest}, and an equilibrium is that after all of it: creep is "
-                "left out"
+                f"relaxes over {slowest}; this equilibrium has the long-term stiffness, and a "
+                f"sudden load meets {sudden:.3g} times that"
             )
             hint = (
-                'write method = "dynamics" with an end_time for what happens on the way, or leave '
-                "prony out"
+                "follow its creep, without inertia, by --over 'time=0..300 s/4', with inertia by "
+                'method = "dynamics" and an end_time; or leave prony out'
             )
             yield Diagnostic("warning", f"parts[{index}].material", what, hint)

@@ -322,6 +322,12 @@ def _check_state(result: Result) -> None:
             f"the result is no equilibrium under the full loads: {result.message}",
             'lower the loads, and leave control = "volume" out',
         )
+    if result.solver["way"] == "creep":
+        raise SimulationError(
+            "gradient",
+            "the result has crept, and its viscous stress is no function of the design alone",
+            'use simulate(design, method="statics"), which has the long-term stiffness',
+        )
     if has_contact(result.design) and result.solver["way"] != "load":
         way = result.solver["way"]
         raise SimulationError(

@@ -444,7 +444,7 @@ class Result(Shown):
         if self.supplies:
             fluids = Fluids(self.design, self.mesh)
             found = (*doubtful_fluids(fluids, self.supplies, self.recording.chambers), *found)
-        if self.solver["way"] != "dynamics":
+        if self.solver["way"] not in ("dynamics", "creep"):
             found = (*relaxed_parts(self.design), *found)
         if self.stable is False:
             what, hint = "is not stable under constant loads", "lower the load"

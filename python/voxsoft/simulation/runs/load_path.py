@@ -30,6 +30,7 @@ from voxsoft.design.tendon import Tendon
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation.compatibility import refuse, refused_together
+from voxsoft.simulation.features import has_feature
 from voxsoft.simulation.results.result import Result
 from voxsoft.simulation.runs.fluid_path import FluidPath, SetupAlong
 from voxsoft.simulation.runs.over import TIME, Over
@@ -164,6 +165,9 @@ def follow(
 ) -> LoadPath:
     """Follow equilibria along the values of a load, a motion or a parameter of them.
 
+    Over ``"time"``, rubber with ``prony`` branches relaxes and creeps, from time zero on, at which
+    all that has no history acts suddenly. Along any other value it has its long-term stiffness.
+
     Parameters
     ----------
     design
@@ -183,7 +187,7 @@ def follow(
     earlier
         Vertex positions and all other state of the first equilibria of a path that was stopped.
         It resumes behind them where positions determine an equilibrium; contact, tendons, supplies,
-        softening and planes of symmetry make it start over.
+        softening, creep and planes of symmetry make it start over.
     **settings
         Fields of :class:`voxsoft.design.Solver` that replace the design's own.
 
@@ -197,7 +201,8 @@ def follow(
     DesignError
         A value that changes the body itself, or a load's direction; a value that is not valid.
     SimulationError
-        The design asks for motion over time, arc length or volume control.
+        The design asks for motion over time, arc length or volume control; times of rubber that
+        relaxes are negative or go back.
 
     Examples
     --------
@@ -216,6 +221,9 @@ def follow(
         raise DesignError.listing(refused)
     if asked.key == TIME:
         _check_supplies(given, over_time=True)
+    creeps = asked.key == TIME and has_feature(given, "viscosity")
+    if creeps:
+        _check_times(asked)
     designs = [_with_value(given, asked, number) for number in range(len(asked.values))]
     if asked.key != TIME:
         designs = _remembering(designs)
@@ -241,10 +249,14 @@ def follow(
     statics = LoadControl(**tolerance)
     results: list[Result] = []
     problem = solved.problem
+    if swells and creeps:
+        # Steps of time between the values follow the histories of activations.
+        own = core_materials(timed, setup.materials, solved.mesh, solved.origin, over_time=True)
+        problem = problem.with_materials(own)
     start: Start | None = None
     before: float | None = None
     share = max(1, len(instants) - 1)
-    if part is None and is_given_by_positions(given) and not given.tendons:
+    if part is None and is_given_by_positions(given) and not given.tendons and not creeps:
         for number, (positions, state) in enumerate(earlier):
             found = state.result(setup, positions)
             if found.status != "ok":
@@ -257,7 +269,7 @@ def follow(
         if number < len(results):
             continue
         started = time.perf_counter()
-        if swells:
+        if swells and not creeps:
             own = core_materials(designs[number], setup.materials, solved.mesh, solved.origin)
             problem = problem.with_materials(own)
         used, report = find_equilibrium(
@@ -266,7 +278,7 @@ def follow(
             progress,
             problem,
             start=start,
-            stretch=Stretch(before, instant, min(1.0, _LONGEST * share)),
+            stretch=Stretch(before, instant, min(1.0, _LONGEST * share), creeps),
         )
         used["refine"] = solver.refine
         result = result_of(solved, used, report, time.perf_counter() - started)
@@ -300,6 +312,16 @@ def _check(design: Design, solver: Solver) -> None:
             "solver.control",
             f'is "{solver.control}", which looks for the load by itself',
             'leave it out for a path over a value, or write control = "load"',
+        )
+
+
+def _check_times(over: Over) -> None:
+    """Refuse times that rubber which relaxes cannot go through."""
+    if over.values[0] < 0.0 or any(np.diff(over.values) < 0.0):
+        raise SimulationError(
+            "over",
+            "goes back in time, and rubber with prony branches remembers",
+            'let it rise from zero or later, such as "time=0..300 s/4"',
         )
 
 

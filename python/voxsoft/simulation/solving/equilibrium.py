@@ -35,6 +35,7 @@ _OTHER_WAYS: Final[Mapping[str, str]] = {
     "load": 'control = "arc-length"',
     "arc-length": 'control = "load" or more steps',
     "volume": 'control = "load"',
+    "creep": "a slower load",
 }
 _PAST_A_LIMIT: Final[Mapping[str, str]] = {
     "load": 'control = "volume" or "arc-length"',
@@ -135,17 +136,21 @@ class Stretch(NamedTuple):
         Instant in s of the equilibrium to be found.
     longest
         Longest step where the answer depends on the load path, as a part of this interval.
+    creeps
+        True to integrate the viscous stress of Prony branches over the time, from a sudden load at
+        time zero on.
     """
 
     since: float | None
     until: float
     longest: float
+    creeps: bool = False
 
     @property
     def settings(self) -> dict[str, Any]:
         """Settings by their names in the core."""
         return {
-            "control": "time",
+            "control": "creep" if self.creeps else "time",
             "from_time": self.since,
             "to_time": self.until,
             "longest": self.longest,
@@ -199,7 +204,8 @@ def find_equilibrium(
             too_large_a_tangent(len(setup.mesh.vertices), path.needed_bytes),
             'use larger voxels, or method = "xpbd"',
         )
-    used = {"method": "statics", "way": statics.control, **settings}
+    way = "creep" if stretch is not None and stretch.creeps else statics.control
+    used = {"method": "statics", "way": way, **settings}
     return used, Report(answer, status, answer.steps)
 
 
