@@ -18,6 +18,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import voxsoft as vs
+from voxsoft.comparison import path_error_bars
 from voxsoft.errors import SimulationError
 from voxsoft.units import mm
 
@@ -280,6 +281,22 @@ def test_softening_and_creep_go_together():
     )
     # After twenty relaxation times only the long-term stress is left, with its softening.
     assert softened[-1] == pytest.approx(forces(vs.follow(elastic, "time=0..30 s/4"))[-1], rel=5e-3)
+
+
+def test_bars_and_slopes_of_a_crept_state_do_not_take_it_for_one_at_rest():
+    load = {"kind": "traction", "region": FAR, "value": ["60 Pa", 0, 0]}
+    goal = {"reach": {"maximize": "displacement", "probe": "end", "axis": "x"}}
+    solver = {"error": "finer"}
+    path = vs.follow(bar(loads=[load], objectives=goal, solver=solver), "time=0..100 s/2")
+    crept = path.results[-1]
+    assert "crept" in vs.error_bars(crept).missing
+    with pytest.raises(SimulationError, match="has crept"):
+        vs.gradient(crept, ["reach"], ["parts.0.material.young"])
+    bars = path_error_bars(path)
+    # A uniform stress has no error of discretization; each size has that of its steps.
+    for found, result in zip(bars, path.results, strict=True):
+        reach = float(result.metrics["reach"])
+        assert found.metrics["reach"].estimate == pytest.approx(reach, rel=STEPS)
 
 
 def test_time_that_goes_back_is_refused():

@@ -109,6 +109,8 @@ def error_bars(
     """
     result = _of_equilibrium(result)
     refusal = _refusal(result)
+    if refusal is None and solve is None and result.solver["way"] == "creep":
+        refusal = "it has crept along a path over time", "take path_error_bars of the path"
     if refusal is not None:
         return ErrorBars.none(*refusal)
     search = _Search(result, progress, announce, solve, frequencies)
