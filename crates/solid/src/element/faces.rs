@@ -10,7 +10,7 @@ const PLATE: f64 = 1.0 / 6.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WarpingModes {
     parts: [[f64; 2]; 3],
-    /// Those of them that are due to faces under pressure.
+    /// The share of faces under pressure in these parts.
     pressed: [[f64; 2]; 3],
     /// At the surface: a face is free, or the surface cuts the voxel.
     pub(crate) surface: bool,
@@ -56,7 +56,7 @@ impl WarpingModes {
         self.parts.map(|[j, k]| (1.0 - j - k).sqrt())
     }
 
-    /// Those that the volume sees, which faces under pressure leave as it is.
+    /// The roots for the volume, which faces under pressure leave as it is.
     pub(crate) fn volume_shears(&self) -> [f64; 3] {
         std::array::from_fn(|b| {
             let ([j, k], [on_j, on_k]) = (self.parts[b], self.pressed[b]);
@@ -64,7 +64,7 @@ impl WarpingModes {
         })
     }
 
-    /// The parts of each pair of axes that thin the voxel: those of faces under pressure.
+    /// The parts of each pair of axes that thin the voxel, by faces under pressure.
     pub(crate) fn thinning_parts(&self) -> [[f64; 2]; 3] {
         self.pressed
     }
