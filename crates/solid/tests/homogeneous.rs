@@ -55,7 +55,7 @@ fn materials() -> Vec<HyperelasticMaterial> {
     // Bulk moduli at ν = 0.3, 0.45, 0.499 and 0.4999.
     let bulk = |poisson: f64| 2.0 * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson));
     let of = |model: &Model, poisson: f64| {
-        HyperelasticMaterial::new(model.clone(), bulk(poisson), 1.0).unwrap()
+        HyperelasticMaterial::new(*model, bulk(poisson), 1.0).unwrap()
     };
     let mut all: Vec<_> = [0.3, 0.45, 0.499, 0.4999]
         .map(|poisson| of(&neo_hookean, poisson))
