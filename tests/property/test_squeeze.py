@@ -36,7 +36,7 @@ def assert_orderly(verdict):
 
 
 @pytest.mark.parametrize(
-    "seed", [6, *(pytest.param(n, marks=pytest.mark.slow) for n in (2, 3, 10, 17))]
+    "seed", [14, *(pytest.param(n, marks=pytest.mark.slow) for n in (2, 3, 6, 10, 17))]
 )
 def test_a_random_body_is_squeezed(seed):
     from squeeze_bodies import judged
@@ -68,9 +68,9 @@ def test_folding_into_itself_is_reported():
     # A crease is in itself, as both judges of `judged` find.
     from squeeze_bodies import judged
 
-    _, warnings = warned(6)
+    _, warnings = warned(14)
     assert any("is folded into itself" in each for each in warnings)
-    assert judged(6, SMALL).folds > 0
+    assert judged(14, SMALL).folds > 0
 
 
 def test_a_body_that_is_folded_onto_itself_passes_through_itself():

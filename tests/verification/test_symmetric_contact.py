@@ -184,7 +184,7 @@ def test_a_body_meets_its_own_image(friction: float) -> None:
     loads = [
         vs.Force(
             region=vs.Region(x=(sign * 6 * mm,) * 2, z=(9 * mm, "inf")),
-            value=(-sign * 0.05, 0, 0),
+            value=(-sign * 0.02, 0, 0),  # lightly: each snaps for itself under more
         )
         for sign in (1.0, -1.0)
     ]
