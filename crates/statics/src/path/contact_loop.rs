@@ -4,6 +4,7 @@
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Contact, Fluid, Observer, Problem};
 
+use crate::linear::system::System;
 use crate::path::equilibrium::{Equilibrium, Failure, Found, Strategy};
 use crate::path::load_parameter::LoadParameter;
 use crate::path::settings::Settings;
@@ -78,6 +79,25 @@ impl Search for AtLoad {
 impl Equilibrium {
     /// Finds the equilibrium of a `search` from `positions`, which it changes, with floor and contact settled.
     pub fn settle(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        search: &mut impl Search,
+        settings: &Settings,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure> {
+        let held = self.problem.floor().map(|_| self.held.clone());
+        let outcome = self.settle_in_rounds(positions, search, settings, observer);
+        // Vertices that the floor carries in a state that was lost would be pulled down to it by the next search.
+        if let (Err(_), Some(held)) = (&outcome, held)
+            && held != self.held
+        {
+            self.held = held;
+            self.system = System::new(&self.problem, &self.held, self.options)?;
+        }
+        outcome
+    }
+
+    fn settle_in_rounds(
         &mut self,
         positions: &mut Vec<Vec3>,
         search: &mut impl Search,
