@@ -251,14 +251,14 @@ impl Walk {
             point: path.point,
         };
         let mut trial = start.clone();
+        let held = path.equilibrium.held.clone();
         let mut found =
             path.equilibrium
                 .settle(&mut trial, &mut search, settings, path.observer)?;
         let mut point = search.point;
-        if search.constraint.distance(&trial, point.pressure) > FARTHEST * length {
-            return Err(Failure::Lost);
-        }
-        if (point.pressure - path.point.pressure).abs() > LONGER * self.longest {
+        let is_far = search.constraint.distance(&trial, point.pressure) > FARTHEST * length;
+        if is_far || (point.pressure - path.point.pressure).abs() > LONGER * self.longest {
+            path.equilibrium.hold(held)?;
             return Err(Failure::Lost);
         }
         if point.pressure > 1.0 && !path.looking {

@@ -4,7 +4,6 @@
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Contact, Fluid, Observer, Problem};
 
-use crate::linear::system::System;
 use crate::path::equilibrium::{Equilibrium, Failure, Found, Strategy};
 use crate::path::load_parameter::LoadParameter;
 use crate::path::settings::Settings;
@@ -85,14 +84,10 @@ impl Equilibrium {
         settings: &Settings,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
-        let held = self.problem.floor().map(|_| self.held.clone());
+        let held = self.held.clone();
         let outcome = self.settle_in_rounds(positions, search, settings, observer);
-        // Vertices that the floor carries in a state that was lost would be pulled down to it by the next search.
-        if let (Err(_), Some(held)) = (&outcome, held)
-            && held != self.held
-        {
-            self.held = held;
-            self.system = System::new(&self.problem, &self.held, self.options)?;
+        if outcome.is_err() {
+            self.hold(held)?;
         }
         outcome
     }
@@ -171,5 +166,73 @@ fn strategy_of(round: usize, problem: &Problem, safe: bool) -> Strategy {
         (Some(_), _) if round > 0 && !is_stiff => Strategy::LineSearch,
         (_, true) => Strategy::NewtonThenLineSearch,
         (_, false) => Strategy::Newton,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use voxsoft_solid::{Body, Clamp, Floor, HyperelasticMaterial, Load, Mesh, Problem, Progress};
+    use voxsoft_voxel::{Grid, tet_mesh};
+
+    use super::*;
+    use crate::linear::options::{LinearOptions, LinearSolver};
+
+    /// Beam along x, held at one end, that sags onto a floor.
+    fn sagging() -> Problem {
+        let mut grid = Grid::empty([6, 1, 1], [0.0; 3], 0.01, u64::MAX).unwrap();
+        grid.fill_box([0.0; 3], [0.06, 0.01, 0.01], 1);
+        let tets = tet_mesh(&grid, u64::MAX).unwrap();
+        let mesh = Mesh {
+            tet_part: vec![0; tets.tets.len()],
+            tet_block: (0..tets.tets.len() as u32).map(|t| t / 5).collect(),
+            tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
+            vertices: tets.vertices,
+            ..Mesh::default()
+        };
+        let rubber = HyperelasticMaterial::neo_hookean(1e6, 0.45, 1070.0).unwrap();
+        let body = Body::new(&mesh, &[rubber]).unwrap();
+        let wall = (0..mesh.vertices.len() as u32).filter(|&v| mesh.vertices[v as usize][0] < 1e-9);
+        let gravity = vec![Load::gravity([0.0, 0.0, -9.81])];
+        let floor = Some(Floor { z: -1e-3 });
+        Problem::new(body, vec![Clamp::fixed(wall.collect())], gravity, floor).unwrap()
+    }
+
+    #[test]
+    fn a_search_that_is_stopped_leaves_the_floor_as_it_was() {
+        let options = LinearOptions {
+            solver: LinearSolver::Direct,
+            memory: u64::MAX,
+        };
+        let mut search = AtLoad {
+            point: LoadParameter::all(1.0),
+            safe: true,
+            can_be_cut: false,
+        };
+        let carried_by = |held: &[[bool; 3]]| held.iter().filter(|axes| axes[2]).count();
+        for allowed in 0..200 {
+            let mut equilibrium = Equilibrium::new(sagging(), options).unwrap();
+            let held = equilibrium.held.clone();
+            let mut positions = equilibrium.problem.body().rest().to_vec();
+            let mut calls = 0;
+            let mut observer = |_: &Progress<'_>| {
+                calls += 1;
+                if calls > allowed {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            };
+            let settings = Settings::default();
+            let found = equilibrium.settle(&mut positions, &mut search, &settings, &mut observer);
+            if found.is_ok() {
+                let more = carried_by(&equilibrium.held) > carried_by(&held);
+                assert!(more, "the floor carries nothing");
+                return;
+            }
+            assert!(equilibrium.held == held, "stopped after {allowed} looks");
+        }
+        panic!("no equilibrium");
     }
 }

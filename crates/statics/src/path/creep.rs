@@ -105,6 +105,7 @@ impl Path<'_, '_> {
             problem.begin_creep(&self.positions, step);
             let point = LoadParameter::at(next);
             let mut trial = self.predicted(last.as_ref(), step);
+            let held = self.equilibrium.held.clone();
             let ratio = last.as_ref().map_or(0.0, |last| step / last.length);
             self.with_contact(|contact| contact.extrapolate(ratio));
             loose.inspect(|loose| loose.hold(&self.positions, step / whole));
@@ -139,6 +140,10 @@ impl Path<'_, '_> {
             let problem = &mut self.equilibrium.problem;
             if error > 1.0 {
                 self.with_contact(|contact| contact.rollback());
+                if let Err(error) = self.equilibrium.hold(held) {
+                    let reached = (now - span.from) / whole;
+                    return Ending::new(status_of(error.into()), None, reached);
+                }
                 cut = factor * step;
                 self.equilibrium.back_offs += 1;
                 continue;

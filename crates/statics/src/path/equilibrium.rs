@@ -718,6 +718,16 @@ impl Equilibrium {
         }
         Ok(changed)
     }
+
+    /// Goes back to the coordinates that were held before a state which is not accepted: vertices that the floor carried
+    /// in it would be pulled down to the floor by the next search.
+    pub fn hold(&mut self, held: Vec<[bool; 3]>) -> Result<(), FactorError> {
+        if held != self.held {
+            self.held = held;
+            self.system = System::new(&self.problem, &self.held, self.options)?;
+        }
+        Ok(())
+    }
 }
 
 /// Tests whether a step of the size `largest` of a body of some size that has moved by `moved` (all m), with the

@@ -81,6 +81,7 @@ impl Path<'_, '_> {
             };
             let point = along.at(next);
             let mut trial = self.positions.clone();
+            let held = self.equilibrium.held.clone();
             self.with_contact(|contact| contact.extrapolate((next - now) / last));
             loose.inspect(|loose| loose.hold(&self.positions, next - now));
             let safe = step <= SAFE_STEP;
@@ -120,7 +121,10 @@ impl Path<'_, '_> {
                     }
                     // A long step may reach a branch that the path does not lead to.
                     cuts += 1;
-                    Failure::Lost
+                    match self.equilibrium.hold(held) {
+                        Ok(()) => Failure::Lost,
+                        Err(error) => error.into(),
+                    }
                 }
                 Err(Failure::Turned(turn)) => {
                     self.with_contact(|contact| contact.rollback());

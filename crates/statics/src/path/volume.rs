@@ -186,6 +186,7 @@ impl VolumePath {
     ) -> Result<u32, Failure> {
         let mut search = self.search(path, next);
         let mut trial = path.positions.clone();
+        let before = path.equilibrium.held.clone();
         let found = path
             .equilibrium
             .settle(&mut trial, &mut search, settings, path.observer)?;
@@ -193,6 +194,7 @@ impl VolumePath {
         if !held && self.cuts < UNSTABLE_CUTS {
             // A long step may reach a branch that the path does not lead to.
             self.cuts += 1;
+            path.equilibrium.hold(before)?;
             return Err(Failure::Lost);
         }
         path.accept(trial, search.point, found.iterations, found.residual);
