@@ -1,11 +1,11 @@
 """Spread of answers over the place of a body on the grid, whole and cut voxels beside each other.
 
-``python evidence/places.py [--json] [--one] [--few]``. The grid follows a body that is shifted, so
-surfaces are moved through the voxels by 12 voxel sizes within 10 percent, and by 6 turns about the
-axis of a tube, a bender and a segment of three chambers. The table gives the mean of growth and
-motion of the tip, and the largest difference of a place from that mean, in percent. Walls are two
-voxels thick, or a little less; `--one` takes voxels twice as large, `--few` three sizes and two
-turns.
+``python evidence/places.py [--json] [--one] [--few]``. The grid follows these bodies where they
+are shifted, so surfaces are moved through the voxels by 12 voxel sizes within 10 percent, and by
+6 turns about the axis of a tube, a bender and a segment of three chambers. The table gives the mean
+of growth and motion of the tip, and the largest difference of a place from that mean, in percent.
+Walls are two voxels thick, or a little less; `--one` takes voxels twice as large, `--few` three
+sizes and two turns.
 """
 
 from __future__ import annotations

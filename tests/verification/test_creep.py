@@ -302,3 +302,14 @@ def test_bars_and_slopes_of_a_crept_state_do_not_take_it_for_one_at_rest():
 def test_time_that_goes_back_is_refused():
     with pytest.raises(SimulationError, match="goes back in time"):
         vs.follow(pulled(1e-3 * LENGTH, 1.0), "time=0..10..0 s/5")
+
+
+def test_a_stiffness_of_a_crept_state_says_that_it_is_the_long_term_one():
+    load = {"kind": "traction", "region": FAR, "value": ["60 Pa", 0, 0]}
+    goal = {"pitch": {"maximize": "natural_frequency"}}
+    crept = vs.follow(bar(loads=[load], objectives=goal), "time=0..100 s/2").results[-1]
+    (warning,) = [each for each in crept.warnings if each.where == "pitch"]
+    assert "long-term stiffness" in warning.what
+    # The tangent of the elastic body at that shape, which is strained by some thousandths.
+    elastic = vs.simulate(bar(prony=(), loads=[load], objectives=goal))
+    assert float(crept.metrics["pitch"]) == pytest.approx(float(elastic.metrics["pitch"]), rel=2e-3)

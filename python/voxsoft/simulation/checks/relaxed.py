@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
-from voxsoft.design import Design
+from voxsoft.design import Constraint, Design, Objective
 from voxsoft.materials import Hyperelastic
+from voxsoft.metrics.tangent import COMPLIANCE, NATURAL_FREQUENCY, STIFFNESS
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.units import format_quantity
+
+#: Metrics of the tangent, which has no branches.
+_OF_THE_TANGENT: Final = {each.name for each in (COMPLIANCE, STIFFNESS, NATURAL_FREQUENCY)}
 
 
 def relaxed_parts(design: Design) -> Iterator[Diagnostic]:
@@ -39,3 +44,29 @@ sudden load meets 1.43 times that')
                 'method = "dynamics" and an end_time; or leave prony out'
             )
             yield Diagnostic("warning", f"parts[{index}].material", what, hint)
+
+
+def relaxed_tangents(design: Design) -> Iterator[Diagnostic]:
+    """Warn of each goal of a crept state that the long-term stiffness decides.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> beam = families.beam()
+    >>> goal = {"softness": {"minimize": "natural_frequency"}}
+    >>> print(*relaxed_tangents(beam.replace(objectives=goal)))  # doctest: +ELLIPSIS
+    softness: is that of the long-term stiffness at the crept shape; ...
+    """
+    targets: dict[str, Objective | Constraint] = {**design.objectives, **design.constraints}
+    for name, target in targets.items():
+        if target.metric in _OF_THE_TANGENT:
+            what = (
+                "is that of the long-term stiffness at the crept shape; a quick change meets a "
+                "stiffer body"
+            )
+            yield Diagnostic(
+                "warning",
+                name,
+                what,
+                'look at motion over time (method = "dynamics") for quick changes',
+            )

@@ -28,7 +28,7 @@ from voxsoft.metrics.tendon import tendon_problems
 from voxsoft.simulation.checks.fluid_limits import doubtful_fluids
 from voxsoft.simulation.checks.overlaps import penetration_of
 from voxsoft.simulation.checks.penetration import Penetration
-from voxsoft.simulation.checks.relaxed import relaxed_parts
+from voxsoft.simulation.checks.relaxed import relaxed_parts, relaxed_tangents
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.results.contact_field import ContactField
@@ -420,6 +420,8 @@ class Result(Shown):
     def compliance_at(self, place: Place) -> NDArray[np.float64]:
         """Compute the compliance at a place under forces along x, y and z, (3, 3), m/N.
 
+        Rubber with ``prony`` branches has its long-term stiffness, crept or not.
+
         Raises
         ------
         SimulationError
@@ -444,7 +446,9 @@ class Result(Shown):
         if self.supplies:
             fluids = Fluids(self.design, self.mesh)
             found = (*doubtful_fluids(fluids, self.supplies, self.recording.chambers), *found)
-        if self.solver["way"] not in ("dynamics", "creep"):
+        if self.solver["way"] == "creep":
+            found = (*relaxed_tangents(self.design), *found)
+        elif self.solver["way"] != "dynamics":
             found = (*relaxed_parts(self.design), *found)
         if self.stable is False:
             what, hint = "is not stable under constant loads", "lower the load"

@@ -65,7 +65,8 @@ def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
     the masses of the vertices, by subspace iteration. Pressure loads keep their value, and nothing
     is damped. Surfaces in contact stay in contact where they press, and slide or stick as they do
     at rest; supplies push back as their volume changes, at constant temperature. With planes of
-    symmetry the modes are those of the whole body, antisymmetric ones too.
+    symmetry the modes are those of the whole body, antisymmetric ones too. Rubber with ``prony``
+    branches has its long-term stiffness, crept or not.
 
     Parameters
     ----------
