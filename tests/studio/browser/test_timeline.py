@@ -91,6 +91,30 @@ def test_the_keyboard_moves_adds_and_removes(timeline):
     is_now(timeline, FIRST, "0.5 s, factor 0.95", LAST)
 
 
+RECORD = """([row]) => {
+  const point = document.querySelectorAll(`[data-testid="${row}"] [role=slider]`)[1];
+  window.seen = [];
+  new MutationObserver(() => window.seen.push(Number(point.getAttribute("aria-valuenow"))))
+    .observe(point, { attributes: true, attributeFilter: ["aria-valuenow"] });
+}"""
+
+
+def test_quick_steps_never_jump_back(timeline):
+    """Documents of earlier steps arrive while later ones are made; none of those is lost."""
+    point = timeline.find(ROW).get_by_role("slider").nth(1)
+    point.focus()
+    timeline.page.evaluate(RECORD, [ROW])
+    for _ in range(8):
+        timeline.page.keyboard.press("ArrowDown")
+    is_now(timeline, FIRST, "0.5 s, factor 0.6", LAST)
+    timeline.find("document-name").get_by_text("edited").wait_for()
+    timeline.page.keyboard.press("Control+s")
+    timeline.find("document-name").get_by_text("edited").wait_for(state="detached")
+    seen = timeline.page.evaluate("window.seen")
+    assert seen == sorted(seen, reverse=True)
+    assert seen[-1] == pytest.approx(0.6)
+
+
 def test_numbers_are_typed_and_the_text_keeps_its_units(timeline, server):
     timeline.find(ROW).get_by_role("slider").nth(1).focus()
     field = timeline.find(ROW).get_by_label("Time 2", exact=True)

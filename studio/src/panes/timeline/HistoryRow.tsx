@@ -4,6 +4,7 @@ import { Button } from "../../controls/Choice";
 import { NumberField } from "../../controls/NumberField";
 import { formatNumber } from "../../controls/units";
 import type { HistoryLine } from "../../protocol";
+import { useStudio } from "../../store/studio";
 import { editAll } from "../design/edits";
 import { ticks } from "../study/chart/ticks";
 import {
@@ -36,10 +37,13 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
   const dragged = useRef<number | null>(null);
   /** True if arrow keys moved a point that the text does not have yet. */
   const nudged = useRef(false);
+  /** Revision of the document that holds the newest change made here. */
+  const awaited = useRef(0);
   const points = draft ?? kept;
-  // The text that was asked for has come, or another one.
+  // Documents of earlier changes still arrive: the points must not jump back to those.
   useEffect(() => {
-    if (dragged.current === null && !nudged.current) setDraft(null);
+    const answered = revision() >= awaited.current;
+    if (answered && dragged.current === null && !nudged.current) setDraft(null);
   }, [line]);
 
   const range = rangeOf(line.factors);
@@ -57,6 +61,7 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
     if (!kept) return;
     nudged.current = false;
     setDraft(next);
+    awaited.current = Math.max(awaited.current, revision()) + 1;
     editAll(written(line, next));
   };
   const place = (event: { clientX: number; clientY: number }, svg: Element, fine: boolean) => {
@@ -180,6 +185,8 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
     </div>
   );
 }
+
+const revision = () => useStudio.getState().document?.rev ?? 0;
 
 const KEYS: Readonly<Record<string, readonly [number, number]>> = {
   ArrowLeft: [-1, 0],
