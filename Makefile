@@ -20,12 +20,12 @@ RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 # images of containers.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help install page demo test test-rust test-python test-studio test-browser test-all lint format bench docs studio wasm clean
+.PHONY: help install page demo test test-rust test-python test-studio test-long test-all lint format bench docs studio wasm clean
 
 help:
 	@echo "make demo         set up, run the paper's 105-design study, show table and figure"
 	@echo "make test         set up, run all quick tests"
-	@echo "make test-browser every way through the studio in Chromium, some five minutes"
+	@echo "make test-long    what make test leaves out: longer tests, and every way through the studio in Chromium"
 	@echo "make test-all     also the slow tests (full calibrations, 10,000 random shapes, 512^3 grids)"
 	@echo "make lint         formatters, linters, types, the stub of the core, layers"
 	@echo "make bench        benchmarks"
@@ -62,11 +62,12 @@ test-rust:
 	cargo test --workspace --exclude voxsoft-python --quiet
 
 test-python: install
-	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not slow and not browser"
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not slow and not long and not browser"
 
-# `make test` drives Chromium through the viewer and the exported page; these are all other ways.
-test-browser: install
-	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "browser and not slow" tests/studio/browser
+# `make test` drives Chromium through the viewer and the exported page; these are all other ways,
+# and the tests that take a second or more.
+test-long: install
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "(long or browser) and not slow"
 
 # The page's own units; users need no Node, and neither does anyone who leaves the page alone.
 test-studio: page

@@ -40,6 +40,7 @@ def limit(values, finest=3):
     return discretization_error([1 / split for split in splits], [values[s] for s in splits]).limit
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("group", ["first", "second"])
 def test_estimates_from_two_sizes_hold_for_nine_of_ten_bodies(made, table, group):
     """The truth is from splits of 2 and up; the estimate knows 1 and 2."""

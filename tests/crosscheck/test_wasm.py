@@ -68,6 +68,7 @@ def played(scene, seconds, commands, **options):
 OF_THE_CLOCK = {"step_ms", "real_time_factor", "topology"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("design", "damping"),
     [
@@ -116,6 +117,7 @@ def test_a_thousand_substeps_have_the_same_bits(tmp_path, design, damping):
     assert base64.b64decode(reported["frame"]) == player.pack_frame(0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("layers", [(), [SILK]], ids=["rubber beam", "rubber beam on a layer"])
 def test_implicit_steps_agree(tmp_path, layers):
     setup = Setup.of(cantilever(RUBBER, layers))

@@ -58,6 +58,7 @@ def tampered(file, before, after):
     Path(file).write_text(text.replace(before, after, 1))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "job",
     [
@@ -240,6 +241,7 @@ def test_a_result_that_was_changed_is_reported(beam):
     assert (found["file"], found["where"]) == ("summary.json", "metrics.sag")
 
 
+@pytest.mark.long
 def test_a_state_that_differs_in_one_bit_is_reported(beam):
     file = beam / "result.vtu"
     content = meshio.read(file)
@@ -276,6 +278,7 @@ def test_a_trial_that_was_changed_is_reported():
     assert (found["file"], found["where"]) == ("table.csv", "[0].status")
 
 
+@pytest.mark.long
 def test_a_parameter_that_was_changed_is_reported(fit):
     tampered(fit / "ecoflex-00-30.toml", "bulk = ", 'bulk = "1 kPa" # ')
     (found,) = printed("again", fit, code=DIFFERS)["differences"]

@@ -55,6 +55,7 @@ def test_version():
     assert call("--version").stdout.startswith("voxsoft ")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("template", ["beam", "cylinder", "finger", "pneunet", "sphere"])
 def test_new_writes_a_commented_design_that_checks(template):
     assert call("new", "mine", "-t", template).exit_code == 0
@@ -164,6 +165,7 @@ def test_sweep_ends_in_a_table_figures_and_a_folder_and_resumes():
     assert Path("s", "table.csv").read_text() == table
 
 
+@pytest.mark.long
 def test_optimize_finds_and_goes_further():
     first = printed("optimize", CYLINDER, "--sampler", "random", "--budget", 4, "--workers", 1)
     more = printed("optimize", CYLINDER, "--sampler", "random", "--budget", 6, "--workers", 1)
@@ -179,6 +181,7 @@ def test_a_study_folder_of_another_study_is_refused():
     assert "another study" in outcome.stderr
 
 
+@pytest.mark.long
 def test_calibrate_prints_the_object_and_writes_a_card():
     quick = ["--method", "genetic", "--generations", 3, "--population", 6, "--workers", 1]
     outcome = call("calibrate", BEAM, DATA, *quick, "--seed", 1, "--out", "c", "--json")

@@ -27,6 +27,7 @@ def call(*arguments):
     return CliRunner().invoke(app, ["material", *(str(argument) for argument in arguments)])
 
 
+@pytest.mark.long
 def test_a_fit_leaves_a_card_that_a_design_can_use():
     outcome = call("fit", ECOFLEX, "--max-strain", "150 %", "--json")
     assert outcome.exit_code == 0, outcome.stderr
@@ -97,6 +98,7 @@ def test_forces_and_displacements():
     assert json.loads(outcome.stdout)["curves"][0]["name"] == "machine.csv"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("content", "options", "words"),
     [

@@ -37,6 +37,7 @@ def test_without_enough_friction_it_falls_and_is_named():
     assert '"plate" falls' in result.message
 
 
+@pytest.mark.long
 def test_three_fingers_of_one_file_close_alike():
     """Without a can between them, under a third of the pressure: each in its place as one alone."""
     whole = vs.load("examples/gripper_three.toml").with_parameters(pressure="8 kPa")

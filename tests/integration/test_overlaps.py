@@ -33,6 +33,7 @@ def overlaps(reported):
     return {each["where"]: each for each in reported["warnings"] if "overlap" in each["what"]}
 
 
+@pytest.mark.long
 def test_a_gripper_in_its_ball_and_in_itself_is_reported():
     """Fingers are in the ball by millimeters, and chambers in their neighbors."""
     reported = json.loads(call("run", DATA / "gripper.toml", "--json", "--error", "off").stdout)

@@ -87,6 +87,7 @@ def solved(monkeypatch):
     return found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "signal_name", ["SIGKILL", pytest.param("SIGTERM", marks=pytest.mark.slow)]
 )

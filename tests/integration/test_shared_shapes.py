@@ -70,6 +70,7 @@ def voxels_of(specimen, cells):
     return voxelize(specimen.shape, specimen.longest / cells)
 
 
+@pytest.mark.long
 @needs_data
 @pytest.mark.parametrize(
     "cells", [pytest.param(n, marks=[pytest.mark.slow] * (n != 20)) for n in CELLS_ALONG]
@@ -99,6 +100,7 @@ def test_a_real_mesh_becomes_a_sound_body(specimen, cells):
     assert (voxels.bounds[1] <= np.array(high) + reach).all()
 
 
+@pytest.mark.long
 @needs_data
 @pytest.mark.parametrize(
     "specimen", [each for each in SOLIDS if each.volume], ids=lambda each: each.file

@@ -10,6 +10,7 @@ def sweep(tmp_path_factory):
     return Study(folder=tmp_path_factory.mktemp("cylinder")).grid()
 
 
+@pytest.mark.long
 def test_the_thinnest_wall_of_the_largest_body_rises_most(sweep):
     assert len(sweep.trials) == 105
     assert sweep.best.parameters == {"radius": 0.025, "height": 0.035, "wall": 0.005}

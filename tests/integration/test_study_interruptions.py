@@ -60,6 +60,7 @@ def wait_for(process, count):
     pytest.fail(f"ended early: {process.stderr.read()}")
 
 
+@pytest.mark.long
 def test_a_killed_study_resumes_and_repeats_no_finished_trial(start, tmp_path):
     process = start()
     wait_for(process, 30)
@@ -104,6 +105,7 @@ def test_a_study_that_is_killed_again_and_again_still_ends(start, tmp_path):
     assert output.split()[-2:] == ["finished", "110"], errors
 
 
+@pytest.mark.long
 def test_ctrl_c_says_how_to_go_on(start):
     process = start()
     wait_for(process, 20)
@@ -146,6 +148,7 @@ def test_a_full_disk_names_the_file_and_keeps_finished_work(start):
     assert output.split()[0] in {str(done + 1), str(done + 2)}
 
 
+@pytest.mark.long
 def test_a_script_without_a_main_guard_learns_so(start):
     _, errors = start(NO_GUARD).communicate(timeout=60)
     assert '`if __name__ == "__main__":`' in errors

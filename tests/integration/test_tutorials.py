@@ -181,6 +181,7 @@ def run_script(page):
     assert done.returncode == 0, f"{page.name} as a script\n{done.stderr}"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "page",
     [pytest.param(page, marks=[pytest.mark.slow] * (page.name in LONG)) for page in PAGES],

@@ -392,6 +392,7 @@ def test_a_cell_of_the_table_holds(feature, use, tmp_path):
     run(feature, use, tmp_path)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("feature", [name for name in SAMPLES if "parts" not in SAMPLES[name]])
 def test_a_path_over_time_of_relaxing_rubber_has_every_feature(feature):
     design = design_with(feature, parts=[soft(material=RELAXING)])

@@ -71,6 +71,7 @@ def in_a_fresh_folder():
         assert [child.name for child in Path(outer).iterdir()] == ["a"]
 
 
+@pytest.mark.long
 @given(names_of_designs())
 @settings(deadline=None, max_examples=6, suppress_health_check=[HealthCheck.too_slow])
 @example("../../escaped")

@@ -74,6 +74,7 @@ def test_boxes_of_whole_voxels_keep_their_volume():
     assert tried == 3 * (27 + 20 + 10)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("unit", UNITS)
 def test_their_stl_copies_too(unit: str, tmp_path: Path):
     for index, (corner, count, size) in enumerate(boxes(2)):

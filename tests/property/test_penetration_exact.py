@@ -78,6 +78,7 @@ def two_voxels() -> Mesh:
     return Voxels.from_array([[[1]], [[0]], [[1]]], voxel_size=1.0).mesh()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", some(60, 20))
 def test_two_cells_on_whole_numbers(seed):
     """Faces in one plane, edges on edges, vertices on faces: cases that rounding gets wrong."""

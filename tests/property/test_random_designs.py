@@ -92,6 +92,7 @@ def mesh_all(seeds):
     return counts
 
 
+@pytest.mark.long
 def test_random_designs_become_sound_meshes():
     counts = mesh_all(range(QUICK))
     # An empty part is a valid find, but a block of them would test nothing.

@@ -18,6 +18,7 @@ from voxsoft.units import kPa, mm
 MODELS = [model for model in all_models() if model not in (Design, Function)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.__name__)
 def test_replace_agrees_with_the_constructor(model, record_property):
     tables = [table for table in forms.records(model)[0] if not has_formula(table)]
@@ -77,6 +78,7 @@ CHANGES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("changes", CHANGES.values(), ids=CHANGES)
 def test_replace_is_seen_by_simulate_and_study_and_on_disk_alike(design, changes, tmp_path):
     changed = design.replace(**changes)

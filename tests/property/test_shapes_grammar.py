@@ -27,6 +27,7 @@ def assert_becomes_voxels(seed):
         assert voxels.count > 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("block", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_random_shapes_become_voxels(block):
     for seed in range(100 * block, 100 * block + 100):
@@ -45,6 +46,7 @@ def test_the_grammar_covers_every_kind_that_needs_no_file_or_code():
     assert found == set(KINDS) - {"mesh", "function"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "seed", [pytest.param(n, marks=[pytest.mark.slow] * (n >= 20)) for n in range(60)]
 )

@@ -35,6 +35,7 @@ def assert_orderly(verdict):
     assert verdict.points > 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "seed", [14, *(pytest.param(n, marks=pytest.mark.slow) for n in (2, 3, 6, 10, 17))]
 )
@@ -64,6 +65,7 @@ def test_snapping_is_reported():
     assert any("snapped to another one" in each for each in warnings)
 
 
+@pytest.mark.long
 def test_folding_into_itself_is_reported():
     # A crease is in itself, as both judges of `judged` find.
     from squeeze_bodies import judged
@@ -138,6 +140,7 @@ def test_both_judges_see_a_body_in_a_plate_and_in_itself():
     assert faces.crosses_by_ipctk(folded)
 
 
+@pytest.mark.long
 def test_the_two_sides_of_a_thin_wall_do_not_meet():
     # Thinner than the quarter of a voxel that a sample may be behind the surface it meets.
     sheet = vs.Box(size=(0.02, 0.01, 0.0002), center=(0.01, 0.005, 0.0005))

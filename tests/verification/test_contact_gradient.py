@@ -98,6 +98,7 @@ def test_a_ball_without_friction():
     check(design, {"force": FORCE, "energy": ENERGY}, ["E", "depth"])
 
 
+@pytest.mark.long
 def test_slip_or_new_contact_with_friction_is_refused():
     slipping = pressed(PLATE, 0.1, sideways="1 mm")
     with pytest.raises(SimulationError, match="surfaces slip on the way under"):

@@ -91,6 +91,7 @@ STEPS = {"a wall": 20, "itself": 20, "another body": 40}
 QUICK = {("itself", 0.5), ("another body", 0.0)}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("case", "friction"),
     [
@@ -163,6 +164,7 @@ def test_parts_held_only_by_their_volume_are_warned_of(past_the_limit):
     assert ("equilibrium", "is not stable under constant loads") in wheres
 
 
+@pytest.mark.long
 def test_clamp_and_wall_carry_one_another(past_the_limit):
     """A closed chamber pushes on itself only."""
     (contact,) = past_the_limit.contacts

@@ -150,6 +150,7 @@ def test_a_thick_sphere_of_rubber_swells_as_it_should(poisson, stretch):
 
 # Measured: -0.5 to -1.4 % with 2 mm, -0.2 to -0.4 % with 1 mm, a third. Triangles of unlike shares
 # gave +2.6 to +5.3 %.
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("voxel", "error"), [(2.0, 0.018), pytest.param(1.0, 0.006, marks=pytest.mark.slow)]
 )

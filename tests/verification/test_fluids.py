@@ -57,6 +57,7 @@ def off(one, other):
 ALIKE = 1e-6
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "supply",
     [
@@ -170,6 +171,7 @@ def test_a_balloon_is_filled_through_its_limit_point(fluid):
     assert highest == pytest.approx(15 * kPa * expected.limit_factor, rel=0.01)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fluid", [pytest.param("air", marks=pytest.mark.slow), "water"])
 def test_a_balloon_that_is_filled_presses_against_a_wall(fluid):
     """State under its final pressure: contact settles in rounds, and pressures with it."""
@@ -289,6 +291,7 @@ def test_a_vessel_fills_as_the_differential_equation_says(line, source):
     assert history.mass == pytest.approx((history.pressure + ATMOSPHERE) * within / RT, rel=1e-9)
 
 
+@pytest.mark.long
 def test_valves_fill_hold_and_empty_a_vessel():
     """One lets in until it closes; then nothing moves; then another one lets out."""
     inlet = {"time": (0.3, 0.301), "factor": (1, 0)}
@@ -453,6 +456,7 @@ def test_a_liquid_weighs_on_its_walls():
     assert chamber.volume < dry.supplies[0].volume
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fluid", ["air", "water"])
 def test_derivatives_go_through_sealed_gas(fluid):
     """Beside differences over two parts in ten thousand, which are good to the square of that."""
@@ -495,6 +499,7 @@ def test_multigrid_and_a_direct_factor_find_the_same(fluid):
     assert one.chambers[0, 0] == pytest.approx(other.chambers[0, 0], rel=1e-5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("varied", "still", "key", "values"),
     [

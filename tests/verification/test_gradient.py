@@ -77,6 +77,7 @@ BENT = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("material", MATERIALS, ids=lambda text: text[8:50].replace('"', ""))
 def test_a_beam_under_its_weight(material):
     beam = families.beam(length="40 mm").with_values(f"parts.0.material={material}")

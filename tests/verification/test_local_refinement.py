@@ -83,6 +83,7 @@ def test_most_of_the_gain_for_a_part_of_the_unknowns(both):
     assert len(both.mesh.vertices) - tied < 0.7 * len(small.mesh.vertices)
 
 
+@pytest.mark.long
 def test_the_support_carries_the_weight(both):
     assert both.status == "ok"
     weight = 9.81 * both.mass
@@ -142,6 +143,7 @@ def test_error_bars_come_from_two_sizes_of_both(both):
     assert abs(bar.estimate - truth) < bar.error
 
 
+@pytest.mark.long
 def test_small_voxels_everywhere_are_the_same_bits():
     everywhere = Refinement(region=vs.Region(z=(0, 32 * mm)))
     local = vs.simulate(block(refine=[everywhere]))

@@ -136,6 +136,7 @@ def test_the_command_adds_to_earlier_refinement(run, tmp_path):
     assert written.refine == (first, *refined(run).refine)
 
 
+@pytest.mark.long
 def test_the_command_keeps_the_text_and_adds_boxes(tmp_path):
     file = tmp_path / "block.toml"
     vs.save(block(), file)

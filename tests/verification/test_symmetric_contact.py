@@ -150,6 +150,7 @@ def test_pads_that_are_images_pinch_a_block() -> None:
     require_same(pads(), [X], DEFAULT)
 
 
+@pytest.mark.long
 @ONE_OR_TWO
 def test_a_free_object_is_cut_by_planes(planes: list[Symmetry]) -> None:
     shape = vs.Box(size=(16 * mm, 16 * mm, 8 * mm), center=(0, 0, 10.01 * mm))
@@ -175,6 +176,7 @@ def test_of_two_free_objects_one_is_solved_for() -> None:
     assert np.array_equal(np.array(left.rotation), flip @ np.array(right.rotation) @ flip)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.slow), 0.5])
 def test_a_body_meets_its_own_image(friction: float) -> None:
     """Two legs that are pressed onto each other across the plane, with 1.5 mm between them."""
@@ -251,6 +253,7 @@ def test_two_fingers_that_are_images_grip(planes: list[Symmetry]) -> None:
     assert right.pressure == pytest.approx(left.pressure, rel=1e-12)
 
 
+@pytest.mark.long
 @ONE_OR_TWO
 def test_a_plate_presses_over_time(planes: list[Symmetry]) -> None:
     down = vs.Motion(

@@ -91,6 +91,7 @@ def test_a_bar_pressed_on_a_smooth_plate_swings_between_two_ends(tmp_path):
     assert free[0] < held[0]
 
 
+@pytest.mark.long
 def test_halves_that_stick_together_swing_as_one_bar(tmp_path):
     """Faces of the seam warp as free ones, 0.2 % in bending and torsion; contact is 1e-4."""
     clamped = HEAD + '[[clamps]]\nregion = { x = ["40 mm", "40 mm"] }\n'

@@ -46,6 +46,7 @@ def test_the_neutral_angle_does_not_depend_on_the_voxels(wall, voxel):
     assert neutral_angle((53.7, 55.7), **tube) == pytest.approx(NEUTRAL, abs=0.15)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("degrees", [45.0, pytest.param(70.0, marks=pytest.mark.slow)])
 def test_a_braid_shortens_below_the_neutral_angle_and_lengthens_above(degrees):
     tube = {"modulus": 0.5 * MPa, "pressure": 5 * kPa}
@@ -58,6 +59,7 @@ def test_a_braid_shortens_below_the_neutral_angle_and_lengthens_above(degrees):
     assert twist == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.long
 def test_a_single_helix_twists_the_tube():
     degrees = 30.0
     tube = {"modulus": 0.5 * MPa, "pressure": 100.0}

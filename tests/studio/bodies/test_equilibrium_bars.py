@@ -28,6 +28,7 @@ def card_of(design):
     return result, bars, equilibrium_of(result, 1, 2, bars)
 
 
+@pytest.mark.long
 def test_volume_control_shows_its_load_factor_and_pressure_with_bars():
     solver = vs.Solver(control="volume", volume_ratio=1.1)
     result, bars, card = card_of(vessel(loads=[vs.Pressure(value=5 * kPa)], solver=solver))

@@ -47,6 +47,7 @@ def filled(value):
     return f"{float(number[1]) * SIDE} mm" if number else value
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", sorted(set(STARTERS) - {"mesh"}))
 def test_a_new_shape_is_good_and_can_be_seen(kind):
     document = tomllib.loads(BODY)

@@ -50,6 +50,7 @@ def test_a_page_from_disk_plays_is_pulled_and_follows_its_loads(live_page, alone
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_a_page_on_a_phone_has_its_loads_below_the_body(live_page, alone, tmp_path):
     path = tmp_path / "finger.html"
     live_page.save(path)
@@ -63,6 +64,7 @@ def test_a_page_on_a_phone_has_its_loads_below_the_body(live_page, alone, tmp_pa
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_a_page_of_a_result_opens_as_it_ended_and_plays_the_way_there(coarse, alone, tmp_path):
     source = tmp_path / "finger.toml"
     source.write_text(coarse)
@@ -84,6 +86,7 @@ def test_a_page_of_a_result_opens_as_it_ended_and_plays_the_way_there(coarse, al
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_a_page_of_a_body_that_was_lifted_shows_all_of_it(coarse, alone, tmp_path):
     body = StudioBody.of(Design.from_document(tomllib.loads(coarse)), rev=1, topology=1)
     lifted = body.mesh.vertices + np.array([0.0, 0.0, 0.15])

@@ -70,6 +70,7 @@ def test_undo_after_a_restart_leads_to_unsaved_changes(make_studio, tmp_path):
     run(look())
 
 
+@pytest.mark.long
 def test_a_killed_server_has_kept_typed_text(make_studio, in_own_process, tmp_path):
     arm, _ = arm_and_leg(tmp_path)
     first = in_own_process(arm)

@@ -27,6 +27,7 @@ def export(studio, format, **options):
     return httpx.get(f"{studio.origin}{answer.json()['url']}", params=key, timeout=60)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("unit", "meter"), [("mm", 1e-3), ("m", 1.0)])
 def test_a_surface_has_the_size_and_unit_asked_for(at_rest, tmp_path, unit, meter):
     for format in ("stl", "obj"):
@@ -50,6 +51,7 @@ def test_a_mesh_is_read_back(at_rest, tmp_path, format):
         assert moved[:, 2].max() == pytest.approx(0.013, abs=1e-3)
 
 
+@pytest.mark.long
 def test_text_tables_voxels_pictures_and_folders(at_rest):
     text = export(at_rest, "toml").text
     assert "= radius - wall" in text

@@ -281,6 +281,7 @@ def test_a_damaged_specimen_is_reported(studio):
     assert "is not of this design" in asked(studio, "fit").json()["what"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("what", ["run", pytest.param("study", marks=pytest.mark.slow)])
 def test_objects_stand_where_they_are_at_the_end(studio, what, monkeypatch):
     design = Design.from_document(tomllib.loads(GRIPPER.replace("0.15 s", "0.08 s")))

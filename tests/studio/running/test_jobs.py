@@ -32,6 +32,7 @@ async def ended(page, job=None):
     )
 
 
+@pytest.mark.long
 def test_a_study_shows_its_trials_and_leaves_its_folder(fresh_studio):
     async def scenario():
         async with fresh_studio.page() as page:
@@ -154,6 +155,7 @@ def test_a_process_that_is_killed_is_reported_and_its_trials_are_kept(fresh_stud
     run(scenario())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("spec", "words"),
     [
@@ -180,6 +182,7 @@ def test_a_job_that_cannot_be_is_reported_in_words(studio, spec, words):
     assert words in run(scenario())
 
 
+@pytest.mark.long
 def test_a_run_leaves_its_folder_and_its_picture(studio):
     async def scenario():
         async with studio.page() as page:

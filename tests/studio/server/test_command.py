@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 from voxsoft.cli.app import app
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="signals as they are on Unix")
 def test_it_prints_its_address_and_ends_with_ctrl_c(tmp_path):
     process = subprocess.Popen(

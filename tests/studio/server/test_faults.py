@@ -37,6 +37,7 @@ def upload(port, token, name, content):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("change", "words"), NO_DESIGN)
 def test_an_invalid_design_is_reported_at_its_line(studio, change, words):
     async def scenario():
@@ -126,6 +127,7 @@ def memory_of(studio):
     return int(re.search(r"VmHWM:\s+(\d+)", status).group(1)) / 1024
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="tells no memory of processes")
 @pytest.mark.parametrize(
     ("path", "value"),
@@ -154,6 +156,7 @@ def test_a_design_larger_than_the_memory_is_refused_at_once(in_own_process, tmp_
     run(scenario())
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="tells no memory of processes")
 def test_a_file_of_a_gigabyte_takes_no_memory(in_own_process, tmp_path):
     source = tmp_path / "cylinder.toml"
@@ -250,6 +253,7 @@ def test_a_runs_folder_that_cannot_be_written_is_reported(make_studio, tmp_path)
     assert answer.json()["what"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "doing",
     [

@@ -57,6 +57,7 @@ NO_FILES += [
 NO_FILES += [f"/thumbnail/{'a' * 300}", "/thumbnail/..%2f..", "/assets/" + "a/" * 1000]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", NO_FILES, ids=lambda path: path[:30])
 def test_only_the_bundle_is_served(studio, path):
     answer = get(studio, path, cookie=f"voxsoft_studio_{studio.port}={studio.token}")

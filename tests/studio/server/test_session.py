@@ -65,6 +65,7 @@ def test_a_tab_is_shown_the_design_and_its_body(fresh_studio):
     run(scenario())
 
 
+@pytest.mark.long
 def test_a_body_with_a_layer_is_played_to_its_rest(studio):
     bare = families.beam().with_values("voxel_size=10 mm").to_toml()
     layer = (
@@ -88,6 +89,7 @@ def test_a_body_with_a_layer_is_played_to_its_rest(studio):
     assert positions_of(frame)[:, 2].min() == pytest.approx(due, rel=1e-3)
 
 
+@pytest.mark.long
 def test_played_and_solved_bodies_come_to_the_same_rest(studio):
     async def scenario():
         async with studio.page() as page:
@@ -109,6 +111,7 @@ def test_played_and_solved_bodies_come_to_the_same_rest(studio):
     run(scenario())
 
 
+@pytest.mark.long
 def test_a_grab_pulls_its_vertex_and_lets_go(studio):
     async def scenario():
         async with studio.page() as page:
@@ -136,6 +139,7 @@ def test_a_grab_pulls_its_vertex_and_lets_go(studio):
     run(scenario())
 
 
+@pytest.mark.long
 def test_a_load_is_changed_while_time_runs(studio):
     async def scenario():
         async with studio.page() as page:
@@ -174,6 +178,7 @@ def test_stored_frames_can_be_looked_at_again(studio):
     run(scenario())
 
 
+@pytest.mark.long
 def test_a_body_that_rests_too_soon_to_be_seen_is_shown_slowly(studio):
     async def scenario():
         async with studio.page() as page:
@@ -296,6 +301,7 @@ def test_two_tabs_see_the_same_and_have_views_of_their_own(studio):
     run(scenario())
 
 
+@pytest.mark.long
 def test_a_tab_that_takes_no_frames_gets_two_and_then_the_newest(studio):
     async def scenario():
         async with studio.page() as page:
@@ -310,6 +316,7 @@ def test_a_tab_that_takes_no_frames_gets_two_and_then_the_newest(studio):
     run(scenario())
 
 
+@pytest.mark.long
 def test_a_hidden_tab_gets_no_frames(studio):
     async def scenario():
         async with studio.page() as page:

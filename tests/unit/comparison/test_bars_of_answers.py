@@ -76,6 +76,7 @@ def test_a_prescribed_load_has_no_error():
     assert bars.volumes[0].error > 1e-4 * bars.volumes[0].value
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "supply",
     [
@@ -158,6 +159,7 @@ def in_contact():
     return result, vs.error_bars(result)
 
 
+@pytest.mark.long
 def test_a_narrow_contact_patch_makes_bars_wide(in_contact):
     result, bars = in_contact
     assert 1.0 < voxels_across(result) < 4.0
@@ -275,6 +277,7 @@ def holds_in(bar, truth):
     return abs(bar["estimate"] - truth) <= bar["error"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("control", ["volume", "load"])
 def test_a_prescribed_volume_of_a_round_chamber_has_that_of_its_shape(control):
     """Cut voxels hold the shape to second order; walls of one voxel hide none of the volume."""

@@ -205,6 +205,7 @@ def test_a_report_of_failures_is_still_written(tmp_path):
     assert "No run came to rest" in text
 
 
+@pytest.mark.long
 def test_the_command_line_answers_with_one_object(tmp_path):
     design, report = tmp_path / "bar.toml", tmp_path / "reports" / "bar.html"
     BAR.replace(name="bar").save(design)

@@ -35,6 +35,7 @@ def design(shape, fill, *loads):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fill", ["binary", "fraction"])
 @pytest.mark.parametrize(
     ("shape", "round"),

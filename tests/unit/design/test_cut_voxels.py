@@ -83,6 +83,7 @@ def test_fractions_stand_in_the_order_of_the_tets():
     assert np.array_equal(mesh.tet_voxel, np.repeat(np.arange(len(mesh.fractions)), 5))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("shift", [0.31])
 def test_volume_cavity_and_center_converge_with_second_order(shift):
     errors = []

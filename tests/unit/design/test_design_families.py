@@ -46,6 +46,7 @@ def test_the_paper_has_its_lattice_in_the_shape_of_the_family(name):
     assert [part.material for part in family.parts] == ["ecoflex-00-30"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", families.FAMILIES)
 def test_a_family_is_rubber_and_opens_without_a_warning(name):
     design = families.family(name)

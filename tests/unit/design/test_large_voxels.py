@@ -142,6 +142,7 @@ def of_material(**changes):
     return [{"name": "soft", "shape": "whole", "material": {**SOFT, **changes}}]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("large_ones", "changes"),
     [

@@ -20,6 +20,7 @@ def cavities(shape):
 BLOCK = Box(size=(10 * H, 8 * H, 8 * H), corner=(0, 0, 0))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("width", [1.0, 1.1, 1.4])
 @pytest.mark.parametrize("shift", [0.05, 0.3, 0.5, 0.7])
 def test_a_flat_room_of_a_cell_or_more_is_a_chamber(width, shift):

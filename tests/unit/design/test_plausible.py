@@ -72,6 +72,7 @@ def test_materials_in_other_units(material, words):
     assert words in reported(block(parts=[part]))["parts[0].material"].what
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", FAMILIES)
 def test_ready_families_are_plausible(name):
     units = ("written", "*mm", "in m:", "in Pa", "kg/m^3")

@@ -30,6 +30,7 @@ def test_a_robot_is_the_example_of_its_name(name):
     assert robots.robot_text(name) == (EXAMPLES / f"{name}.toml").read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name", [pytest.param(each, marks=pytest.mark.slow if each in LARGE else ()) for each in NAMES]
 )
@@ -38,6 +39,7 @@ def test_a_robot_opens_without_a_warning(name):
     assert report.findings == ()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name", [pytest.param(each, marks=pytest.mark.slow if each in LONG else ()) for each in NAMES]
 )
@@ -74,6 +76,7 @@ def test_each_combination_of_answers_leads_to_one_robot():
     assert {start.robot for start in robots.STARTS} <= set(NAMES)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "start",
     [

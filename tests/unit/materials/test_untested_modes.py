@@ -38,6 +38,7 @@ def fitted(name, *modes, noise=0.01, reach=2.0):
     return fit_coupons(curves, toe="off")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "noise"),
     [

@@ -59,6 +59,7 @@ def test_a_result_and_the_state_that_derivatives_use_agree(pressed, name):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", sorted(BUILT_IN))
 def test_keys_that_a_metric_does_not_use_are_refused(pressed, name):
     """Whatever is accepted is used: an axis of a mass, a cavity of a displacement are not."""

@@ -81,6 +81,7 @@ def test_its_slope_gives_exact_gradients():
     assert found == pytest.approx((high - low) / (2 * step), rel=1e-3)
 
 
+@pytest.mark.long
 def test_worker_processes_know_it(tmp_path):
     study = vs.Study(
         asking(where={"maximize": "process"}),
@@ -105,6 +106,7 @@ def test_a_script_may_hold_its_metrics_itself(tmp_path):
     assert done.stdout == "2 ok\n"
 
 
+@pytest.mark.long
 def test_a_metric_that_workers_cannot_know_is_refused_before_any_trial(tmp_path):
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT], capture_output=True, text=True, cwd=tmp_path

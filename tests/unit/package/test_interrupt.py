@@ -121,6 +121,7 @@ def many_candidates():
     return lambda: ensemble.settle(factors, 1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "prepare",
     [checked_mesh, pytest.param(factorized_tangent, marks=pytest.mark.slow), many_candidates],

@@ -102,6 +102,7 @@ material = "m"
 """
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="ulimit -v counts on Linux only")
 @pytest.mark.parametrize(
     ("verb", "voxel", "words"),

@@ -213,6 +213,7 @@ def test_an_unknown_objective_is_refused():
             draw(study(), "rize")
 
 
+@pytest.mark.long
 def test_a_calibration_shows_search_shape_and_profiles(calibration):
     fitness = plot_fitness(calibration)
     assert fitness.axes[1].get_ylabel() == "modulus of the best (kPa)"

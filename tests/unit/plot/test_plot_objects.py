@@ -91,6 +91,7 @@ def test_pressure_pictures_leave_objects_out_by_default(result):
     assert gray_of("contact_pressure", objects=True) > 10_000
 
 
+@pytest.mark.long
 def test_a_large_object_does_not_dwarf_the_body():
     floor = vs.design.Object(
         name="ground",
@@ -103,6 +104,7 @@ def test_a_large_object_does_not_dwarf_the_body():
     assert max(body_image(found, pixels=64).shape) <= 80
 
 
+@pytest.mark.long
 def test_a_section_cuts_objects_where_it_cuts_the_body(result):
     whole, at = around(result).objects, 6.1 * mm
     left, right = (cut(whole, "y", at, side) for side in (-1, 1))

@@ -65,6 +65,7 @@ def test_samplers_for_several_objectives_take_two(name):
     assert len(search(name, directions=("minimize", "maximize")).best_trials) >= 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["genetic", "nsga-ii", "tpe"])
 def test_constraints_keep_the_search_feasible(name):
     def at_most_half(trial):

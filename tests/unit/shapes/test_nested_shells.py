@@ -38,6 +38,7 @@ def cavities(shape, size=0.001):
 OUTER, INNER = (40, 20, 20), (30, 10, 10)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("turned", [False, True])
 def test_a_shell_of_the_same_sense_is_material_and_is_reported(tmp_path, turned):
     both = [box(OUTER, inward=turned), box(INNER, inward=turned)]

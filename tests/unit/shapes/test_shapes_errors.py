@@ -124,6 +124,7 @@ def test_points_must_have_three_coordinates():
         Sphere(radius=1).evaluate(np.zeros((4, 2)))
 
 
+@pytest.mark.long
 def test_ctrl_c_stops_sampling():
     # A field in Python is slow enough to be interrupted for sure.
     program = """

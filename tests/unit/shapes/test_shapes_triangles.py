@@ -229,6 +229,7 @@ def collected():
         return list(csv.DictReader(table))
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not FOLDER.is_dir(), reason=f"no collected shapes in {FOLDER}")
 @pytest.mark.parametrize(
     "row",

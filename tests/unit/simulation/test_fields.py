@@ -112,12 +112,14 @@ def test_the_vtu_holds_them(result, tmp_path):
     assert data.cell_data["volume_ratio"][0] == pytest.approx(result.fields.volume_ratio[voxels])
 
 
+@pytest.mark.long
 def test_pictures_take_their_names(result):
     figure = plot_body(result, "von_mises")
     assert "von Mises stress (" in figure.axes[1].get_ylabel()
     assert "J/m³" in plot_body(result, "energy_density").axes[1].get_ylabel()
 
 
+@pytest.mark.long
 def test_colors_clip_a_lone_corner_and_say_where():
     mesh = Voxels.from_array(np.ones((10, 10, 4), dtype=bool), voxel_size=2e-3).mesh()
     values = mesh.vertices[:, 0].copy()

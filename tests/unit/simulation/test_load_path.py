@@ -211,6 +211,7 @@ def test_other_ways_are_refused():
         vs.follow(beam(), "loads[1].value[2]=0..-20 mN/3", method="statics", control="arc-length")
 
 
+@pytest.mark.long
 def test_the_command_writes_the_table_and_the_picture(tmp_path):
     file = tmp_path / "beam.toml"
     vs.save(beam(), file)

@@ -220,6 +220,7 @@ WITH_MEMORY = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("damping", ["critical", 0.0])
 @pytest.mark.parametrize("name", WITH_MEMORY)
 def test_motion_from_a_restored_observation_repeats_bit_for_bit(name, damping):

@@ -68,6 +68,7 @@ def moving():
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("make", [gripped, softening, supplied, moving])
 def test_a_result_is_read_back_to_the_last_bit(make):
     design = make()

@@ -93,6 +93,7 @@ def test_every_setting_has_its_users():
     assert {name for name, _ in VALUES} == set(USERS) - OF_THE_ERROR
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("material", "every"),
     [("lattice", 1), ("rubber", 4), pytest.param("rubber", 1, marks=pytest.mark.slow)],

@@ -110,6 +110,7 @@ def test_the_clamp_holds_the_force_of_the_motor(settings, drive):
     assert result.reaction == pytest.approx(-pull, abs=2e-4 * state.tension)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("drive", [{"tension": 0.1}, {"shortening": 2 * mm}])
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_a_body_that_moves_live_has_the_same_rest(drive, friction):
@@ -153,6 +154,7 @@ def test_a_belt_has_the_tension_of_the_capstan(turns):
     assert on_post / state.tension == pytest.approx(np.exp(-friction * angle), rel=1e-9)
 
 
+@pytest.mark.long
 def test_a_line_that_is_eased_keeps_its_tension_until_it_slides_back():
     friction, angle = 0.3, np.pi
     ratio = np.exp(friction * angle)
@@ -365,6 +367,7 @@ def routed(**changes):
     return bar([along(through=through, **changes)], poisson=0.3, solver={"tolerance": 1e-10})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("changes", "name"),
     [

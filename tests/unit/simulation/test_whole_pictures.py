@@ -64,6 +64,7 @@ def drawn(figure):
     return np.asarray(figure.axes[0].images[0]._A)[..., :3]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "field",
     [

@@ -64,6 +64,7 @@ def test_a_trial_has_the_path_and_the_number_that_counts(stored):
     assert [each.seconds for each in again.trials] == [each.seconds for each in found.trials]
 
 
+@pytest.mark.long
 def test_its_folder_holds_the_paths_and_their_picture(stored, tmp_path):
     _, found = stored
     names = {file.name for file in write_study(found, tmp_path)}

@@ -52,6 +52,7 @@ def test_a_finished_grid_evaluates_nothing_again(make, threads, monkeypatch):
     assert again.trials == first.trials
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sampler", ["random", "tpe", "cma-es", "nsga-ii", "genetic"])
 def test_suggestions_depend_on_the_seed_and_not_on_the_workers(make, sampler):
     found = []

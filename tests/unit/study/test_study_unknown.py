@@ -37,6 +37,7 @@ def unsure(design):
     return Outcome("ok", "", {**bowl(design).metrics, "light": 0.0, "stiff": unknown})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("order", [("light", "stiff"), ("stiff", "light")])
 @pytest.mark.parametrize("sampler", ["tpe", "nsga-ii", "nsga-iii", "genetic", "cma-es"])
 def test_a_study_with_unknown_constraints_ends_with_a_best_that_holds(tmp_path, sampler, order):
@@ -66,6 +67,7 @@ def narrow(design):
     return Outcome("ok", "", {"a": y, "b": -x, "c": y - x})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("sampler", "names"),
     [

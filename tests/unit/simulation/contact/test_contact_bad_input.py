@@ -55,6 +55,7 @@ def test_a_plate_that_moves_through_the_body_is_not_let_through():
     assert found.load_factor < 0.5
 
 
+@pytest.mark.long
 def test_blocked_force_holds_an_object():
     found = simulate(pressed())
     (contact,) = found.contacts

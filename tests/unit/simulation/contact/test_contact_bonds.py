@@ -46,6 +46,7 @@ def ceiling(center, pair, motion="free", **changes):
 BELOW = (6 * mm, 6 * mm, -3 * mm)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("gap", [0.0, 0.5 * mm, -0.5 * mm])
 def test_a_bonded_object_hangs(gap):
     center = (6 * mm, 6 * mm, -3 * mm - gap)

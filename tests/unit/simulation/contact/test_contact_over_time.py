@@ -53,6 +53,7 @@ def test_free_objects_ask_for_motion_over_time():
     assert simulate(dropped(solver=Solver(time_step="20 ms"))).solver["method"] == "implicit"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("step", [pytest.param(5e-3, marks=pytest.mark.slow), 20e-3])
 def test_a_pinched_object_does_not_creep(step):
     result = simulate(pinched(0.7), end_time=0.6, time_step=step)

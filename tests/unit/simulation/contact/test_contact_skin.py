@@ -60,6 +60,7 @@ def result():
     return simulate(pressed_ball("smooth"))
 
 
+@pytest.mark.long
 def test_a_ball_presses_as_a_ball(result, reference):
     (contact,) = result.contacts
     # Eight voxels along the radius are 3 % off; the disc that voxels make of its pole is 58 %.

@@ -62,6 +62,7 @@ def test_mass_and_inertia_are_those_of_the_shape(name: str, size: float):
     assert np.array(solid.center) - shift == pytest.approx(middle, abs=1e-3 * close)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [0.002, 0.0013])
 def test_edges_and_corners_stay_sharp_and_the_surface_closed(size: float):
     notch = vs.Box(size=(0.02,) * 3, corner=(0.0107, 0.0093, 0))
