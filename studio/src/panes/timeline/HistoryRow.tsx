@@ -43,6 +43,8 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
   // Documents of earlier changes still arrive: the points must not jump back to those.
   useEffect(() => {
     const answered = revision() >= awaited.current;
+    // A server that was started anew counts from one again.
+    if (answered) awaited.current = 0;
     if (answered && dragged.current === null && !nudged.current) setDraft(null);
   }, [line]);
 
