@@ -377,7 +377,10 @@ class ProblemParts:
         density: float,
     ) -> None: ...
     def fractions(
-        self, fractions: NDArray[np.float64], moments: NDArray[np.float64] | None = None
+        self,
+        fractions: NDArray[np.float64],
+        moments: NDArray[np.float64] | None = None,
+        surfaces: NDArray[np.float64] | None = None,
     ) -> None: ...
     def coarse(self, groups: NDArray[np.uint32]) -> None: ...
 

@@ -152,6 +152,9 @@ class Mesh:
         Place of the material in each voxel, in halves of an edge: its center along x, y, z,
         counted from that of the voxel, √3 times its standard deviation from there (1 if
         full), and the means of the products yz, zx, xy over it.
+    surfaces : ndarray of float64, shape (v, 9), or None
+        Surface in each voxel: the rotation vector of three orthogonal axes across it, and its areas
+        below and above each of them, in faces of a voxel; zeros without one.
     bodies : tuple of BodyMesh
         Meshes it is joined from, in the order of vertices and tets; empty for a mesh of one body.
         Joined, `voxel_size` is that of the smallest voxels, and `moments` are along their edges.
@@ -172,6 +175,7 @@ class Mesh:
     cavities: tuple[MeshCavity, ...]
     fractions: NDArray[np.float64] | None = None
     moments: NDArray[np.float64] | None = None
+    surfaces: NDArray[np.float64] | None = None
     bodies: tuple[BodyMesh, ...] = ()
     report: ReadReport | None = None
     regions: Mapping[str, NDArray[np.integer]] = field(default_factory=dict)
@@ -243,6 +247,7 @@ class Mesh:
         self,
         fractions: ArrayLike,
         moments: ArrayLike | None = None,
+        surfaces: ArrayLike | None = None,
     ) -> Self:
         """Return the mesh with voxels that are partly filled.
 
@@ -253,6 +258,8 @@ class Mesh:
         moments : array_like, shape (v, 9) or (v, 6), optional
             Place of the material in each voxel, see the attribute; default: all over. Of six, the
             means of the products are the products of the means.
+        surfaces : array_like, shape (v, 9), optional
+            Surface in each voxel, see the attribute; default: none, so that no voxel warps there.
 
         Raises
         ------
@@ -279,7 +286,11 @@ class Mesh:
         where = _matrix("moments", where, len(_ALL_OVER), np.float64)
         if len(where) != count or not (np.isfinite(where).all() and (where[:, 3:6] > 0).all()):
             raise MeshError("moments", f"must be {count} rows of finite numbers, spreads positive")
-        return replace(self, fractions=values, moments=where)
+        across = np.zeros((count, 9)) if surfaces is None else np.asarray(surfaces)
+        across = _matrix("surfaces", across, 9, np.float64)
+        if len(across) != count or not np.isfinite(across).all():
+            raise MeshError("surfaces", f"must be {count} rows of finite numbers")
+        return replace(self, fractions=values, moments=where, surfaces=across)
 
     def with_voids(
         self,
@@ -487,6 +498,7 @@ _DTYPES: dict[str, type[np.generic]] = {
     "tet_voxel": np.int32,
     "fractions": np.float64,
     "moments": np.float64,
+    "surfaces": np.float64,
 }
 
 

@@ -14,9 +14,9 @@ use voxsoft_solid::fluid::{Network, Walls};
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Attachment, Clamp, Dielectric, Element, Filling, Floor, Fluid, Gravity, History, Hydrostatic,
-    Images, Load, LoadKind, Membrane, MembraneMaterial, Membranes, Mirrored, Motion, PointForces,
-    Pressure, ProblemError,
+    Attachment, Clamp, CutSurface, Dielectric, Element, Filling, Floor, Fluid, Gravity, History,
+    Hydrostatic, Images, Load, LoadKind, Membrane, MembraneMaterial, Membranes, Mirrored, Motion,
+    PointForces, Pressure, ProblemError,
 };
 
 use crate::arrays::rows;
@@ -473,11 +473,12 @@ impl PyProblemParts {
 
     /// Sets the filled part of each block, and the moments of its material: center and spread along the axes, and the
     /// means of the products of two coordinates, in halves of an edge.
-    #[pyo3(signature = (fractions, moments=None))]
+    #[pyo3(signature = (fractions, moments=None, surfaces=None))]
     fn fractions(
         &mut self,
         fractions: PyReadonlyArray1<'_, f64>,
         moments: Option<PyReadonlyArray2<'_, f64>>,
+        surfaces: Option<PyReadonlyArray2<'_, f64>>,
     ) -> PyResult<()> {
         self.block_fraction = fractions.as_array().to_vec();
         let rows: Vec<[f64; 9]> = moments.map_or(Ok(Vec::new()), |m| rows("moments", &m))?;
@@ -485,8 +486,14 @@ impl PyProblemParts {
             shift: [x, y, z],
             spread: [a, b, c],
             products: [yz, zx, xy],
+            surface: CutSurface::NONE,
         };
         self.block_filling = rows.into_iter().map(filling).collect();
+        let rows: Vec<[f64; 9]> =
+            surfaces.map_or(Ok(Vec::new()), |s| self::rows("surfaces", &s))?;
+        for (filling, [x, y, z, a, b, c, d, e, f]) in self.block_filling.iter_mut().zip(rows) {
+            filling.surface = CutSurface::of([x, y, z], [[a, b], [c, d], [e, f]]);
+        }
         Ok(())
     }
 

@@ -49,6 +49,8 @@ struct Mesh {
     block_fraction: Vec<f64>,
     /// Shift, spread and products of each block.
     block_filling: Vec<[Vec3; 3]>,
+    /// Frame and areas of the surface in each block.
+    block_surface: Vec<([Vec3; 3], [[f64; 2]; 3])>,
     /// Vertices, then Young's modulus, Poisson's ratio, thickness and density of each membrane.
     membranes: Vec<([u32; 3], [f64; 4])>,
     attachments: Vec<Attachment>,
@@ -241,6 +243,7 @@ impl TryFrom<Settings> for Dynamics {
 impl From<&solid::Mesh> for Mesh {
     fn from(mesh: &solid::Mesh) -> Self {
         let filling = |f: &solid::Filling| [f.shift, f.spread, f.products];
+        let surface = |f: &solid::Filling| (f.surface.frame, f.surface.areas);
         let membrane = |one: &solid::Membrane| {
             let m = one.material();
             (one.vertices(), [m.young, m.poisson, m.thickness, m.density])
@@ -252,6 +255,7 @@ impl From<&solid::Mesh> for Mesh {
             tet_block: mesh.tet_block.clone(),
             block_fraction: mesh.block_fraction.clone(),
             block_filling: mesh.block_filling.iter().map(filling).collect(),
+            block_surface: mesh.block_filling.iter().map(surface).collect(),
             membranes: mesh.membranes.iter().map(membrane).collect(),
             attachments: mesh.attachments.clone(),
             point_masses: mesh.point_masses.clone(),
@@ -279,11 +283,14 @@ impl TryFrom<Mesh> for solid::Mesh {
             Ok(solid::Membrane::new(vertices, corners, material)?)
         };
         let membranes: Result<_, SceneError> = form.membranes.into_iter().map(membrane).collect();
-        let filling = |[shift, spread, products]: [Vec3; 3]| solid::Filling {
-            shift,
-            spread,
-            products,
-        };
+        let surfaces = form.block_surface.into_iter();
+        let filling =
+            |([shift, spread, products], (frame, areas)): ([Vec3; 3], _)| solid::Filling {
+                surface: solid::CutSurface { frame, areas },
+                shift,
+                spread,
+                products,
+            };
         Ok(Self {
             membranes: membranes?,
             attachments: form.attachments,
@@ -295,7 +302,12 @@ impl TryFrom<Mesh> for solid::Mesh {
             tet_part: form.tet_part,
             tet_block: form.tet_block,
             block_fraction: form.block_fraction,
-            block_filling: form.block_filling.into_iter().map(filling).collect(),
+            block_filling: form
+                .block_filling
+                .into_iter()
+                .zip(surfaces)
+                .map(filling)
+                .collect(),
         })
     }
 }

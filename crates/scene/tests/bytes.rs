@@ -9,9 +9,9 @@ use voxsoft_scene::{Scene, SceneError, Touching};
 use voxsoft_solid::matrix::IDENTITY;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Attachment, Clamp, Fiber, Filling, Floor, History, HyperelasticMaterial, LatticeMaterial, Load,
-    Material, Membrane, MembraneMaterial, Mesh, Model, Motion, PointForces, Pressure, Rigid,
-    Spring, Springs, Winding,
+    Attachment, Clamp, CutSurface, Fiber, Filling, Floor, History, HyperelasticMaterial,
+    LatticeMaterial, Load, Material, Membrane, MembraneMaterial, Mesh, Model, Motion, PointForces,
+    Pressure, Rigid, Spring, Springs, Winding,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 use voxsoft_xpbd::{Damping, Dynamics};
@@ -87,6 +87,7 @@ fn full() -> Scene {
                 shift: [0.1, 0.0, 0.0],
                 spread: [0.9; 3],
                 products: [0.0, 0.02, -0.03],
+                surface: CutSurface::of([0.3, -0.2, 0.1], [[0.0, 0.8], [0.1, 0.0], [0.0; 2]]),
             },
         ],
         membranes: vec![Membrane::new(triangles[0], corners, fabric).unwrap()],

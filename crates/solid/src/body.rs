@@ -325,9 +325,13 @@ impl Body {
             faces = self.coarse.merged(&faces);
         }
         for (hex8, faces) in self.hex8s.hex8s.iter_mut().zip(&faces) {
-            hex8.warping = faces
-                .as_ref()
-                .map_or(WarpingModes::SURFACE, WarpingModes::of);
+            hex8.warping = match faces {
+                Some(faces) if free_faces::is_full(hex8) && !hex8.filling.surface.is_oblique() => {
+                    WarpingModes::of(faces)
+                }
+                Some(faces) => WarpingModes::of_cut(faces, &hex8.filling),
+                None => WarpingModes::SURFACE,
+            };
         }
     }
 

@@ -413,6 +413,7 @@ fn turned_voxels_measure_along_their_own_edges() {
         shift: [0.2, 0.0, -0.1],
         spread: [0.9, 1.0, 0.8],
         products: [0.02, -0.05, 0.01],
+        ..Filling::FULL
     };
     let upright = Mesh {
         tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),

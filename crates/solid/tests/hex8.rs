@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use voxsoft_solid::matrix::{apply, polar};
 use voxsoft_solid::vector::{Vec3, add};
 use voxsoft_solid::{
-    FaceConditions, Fiber, Filling, Hex8, HyperelasticMaterial, Model, WarpingModes,
+    CutSurface, FaceConditions, Fiber, Filling, Hex8, HyperelasticMaterial, Model, WarpingModes,
 };
 
 const SIDE: f64 = 0.5;
@@ -29,6 +29,7 @@ fn cut() -> Filling {
         shift: [0.4, -0.7, 1.1],
         spread: [0.6, 0.3, 1.2],
         products: [-0.7, 0.5, -0.2],
+        ..Filling::FULL
     }
 }
 
@@ -38,9 +39,18 @@ fn warping() -> impl Strategy<Value = WarpingModes> {
         free,
         stiff,
         held,
-        pressed: [[false; 2]; 3],
+        ..FaceConditions::default()
     });
-    prop_oneof![faces, clamped()].prop_map(|faces| WarpingModes::of(&faces))
+    let whole = prop_oneof![faces, clamped()].prop_map(|faces| WarpingModes::of(&faces));
+    let surface = (
+        prop::array::uniform3(-2.0..2.0f64),
+        prop::array::uniform3(prop::array::uniform2(0.0..1.0f64)),
+    );
+    let cut = surface.prop_map(|(turn, areas)| {
+        let surface = CutSurface::of(turn, areas);
+        WarpingModes::of_cut(&FaceConditions::default(), &Filling { surface, ..cut() })
+    });
+    prop_oneof![whole, cut]
 }
 
 /// Faces of a voxel with a clamp on one side of an axis, free faces across it, some of them under pressure.
@@ -158,7 +168,7 @@ proptest! {
     #[test]
     fn rigid_motion_costs_nothing(is_cut in any::<bool>(), warping in warping(), turn in prop::array::uniform3(prop::array::uniform3(-1.0..1.0f64)), shift in prop::array::uniform3(-9.0..9.0f64)) {
         let (full, rest) = cube();
-        let hex8 = Hex8 { filling: if is_cut { cut() } else { full.filling }, warping: if is_cut { full.warping } else { warping }, ..full };
+        let hex8 = Hex8 { filling: if is_cut { cut() } else { full.filling }, warping, ..full };
         let (rotation, _) = polar(&turn);
         let turned: Vec<Vec3> = rest.iter().map(|x| add(apply(&rotation, *x), shift)).collect();
         for material in materials() {

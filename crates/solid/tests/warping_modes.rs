@@ -192,7 +192,7 @@ fn clamped_face_is_held_and_does_not_warp() {
         free: [[false; 2], [true, false], [false, true]],
         stiff: [[true, false], [false; 2], [false; 2]],
         held: [[true, false], [false; 2], [false; 2]],
-        pressed: [[false; 2]; 3],
+        ..FaceConditions::default()
     };
     assert_eq!(at_clamp, WarpingModes::of(&faces));
     assert_ne!(at_clamp, with(&[(1, 0), (2, 1)], &[]));

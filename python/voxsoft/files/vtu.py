@@ -1,7 +1,7 @@
 """VTU (ParaView, PyVista): keeps all contents, also voxels and data.
 
 Tets come first, in their order, with cell arrays ``part`` and, for voxel meshes, ``voxel`` and
-``voxel_size``, and ``fraction`` and ``moments`` where voxels are partly filled. The triangles of
+``voxel_size``, and ``fraction``, ``moments`` and ``surfaces`` where voxels are partly filled. The triangles of
 cavities follow, with their number from 1 in the cell array ``cavity``; the share of cut voxels in a
 cavity is not kept. A region is the point array ``region:NAME``, 1 at its vertices.
 """
@@ -29,7 +29,7 @@ _CLOSE = b"</VTKFile>"
 #: End of a file: a comment of XML, skipped by readers, gives the unit.
 _END = f"<!-- VoxSoft mesh, {UNIT_COMMENT} -->\n".encode() + _CLOSE
 _OLDER = (b'Name="voxel_size"', b'Name="displacement"')
-_OWN_ARRAYS = {"part", "cavity", "voxel", "voxel_size", "fraction", "moments"}
+_OWN_ARRAYS = {"part", "cavity", "voxel", "voxel_size", "fraction", "moments", "surfaces"}
 
 
 def write(path: Path, content: MeshFile) -> None:
@@ -59,6 +59,8 @@ def write(path: Path, content: MeshFile) -> None:
             arrays["fraction"] = per_cell(mesh.fractions[mesh.tet_voxel])
         if mesh.moments is not None:
             arrays["moments"] = per_cell(mesh.moments[mesh.tet_voxel])
+        if mesh.surfaces is not None:
+            arrays["surfaces"] = per_cell(mesh.surfaces[mesh.tet_voxel])
 
     points = dict(content.point_data)
     for name, vertices in content.regions.items():
@@ -121,8 +123,10 @@ def read(path: Path) -> MeshFile:
         voxel_size = float(per_tet["voxel_size"].min())
         mesh = replace(mesh, tet_voxel=per_tet["voxel"], voxel_size=voxel_size)
         if "fraction" in per_tet:
-            moments = per_tet["moments"][::5] if "moments" in per_tet else None
-            mesh = mesh.with_fractions(per_tet["fraction"][::5], moments=moments)
+            moments, surfaces = (
+                per_tet[name][::5] if name in per_tet else None for name in ("moments", "surfaces")
+            )
+            mesh = mesh.with_fractions(per_tet["fraction"][::5], moments, surfaces)
     if "cavity" in data.cell_data:
         mesh = with_cavities(mesh, _cavity_triangles(data), str(path))
 

@@ -46,7 +46,8 @@ def test_products_of_coordinates_over_a_cut_cell():
     design = vs.Design(
         name="half", voxel_size=1.0, parts=[{"shape": half & box, "material": "ecoflex-00-30"}]
     )
-    (found,) = measures_of(design, np.zeros((1, 3), dtype=np.intp), 1.0, (0, 0, 0))
+    cell, none = np.zeros((1, 3), dtype=np.intp), np.full((1, 3, 2), -1)
+    (found,), _ = measures_of(design, cell, 1.0, (0, 0, 0), none, np.array([True]))
     # Over the triangle ξ + η < 0 of area 2 of 4: means -1/3, <ξ²> = 1/3, <ξη> = 0.
     expected = [0.5, -1 / 6, -1 / 6, 0, 1 / 6, 1 / 6, 1 / 6, 0, 0, 0]
     # Halves across a diagonal have a center 6 % off, in each of the four small cubes that are cut.

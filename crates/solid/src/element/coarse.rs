@@ -140,6 +140,7 @@ fn face_of_cube(all: &[FaceConditions]) -> FaceConditions {
             let parts = || (0..8).filter(on_face).map(|corner| &all[corner]);
             own.free[axis][side] = parts().all(|faces| faces.free[axis][side]);
             own.held[axis][side] = parts().all(|faces| faces.held[axis][side]);
+            own.covered[axis][side] = parts().any(|faces| faces.covered[axis][side]);
             own.stiff[axis][side] = parts().any(|faces| faces.stiff[axis][side]);
             own.pressed[axis][side] = parts().any(|faces| faces.pressed[axis][side]);
         }

@@ -1,9 +1,10 @@
 //! Faces of a voxel, and the corrections of its element that follow from them.
 
 use crate::element::coordinates::AXES;
+use crate::matrix::{IDENTITY, Mat3};
 
 /// `c` of a plate: the rest of Reissner's factor 5/6.
-const PLATE: f64 = 1.0 / 6.0;
+pub(crate) const PLATE: f64 = 1.0 / 6.0;
 
 /// The parts `cⱼ, cₖ` of the shear of each pair of axes by which free faces soften a voxel. Pairs are named by the axis
 /// that is not in them, `j` and `k` come after it in turn.
@@ -16,6 +17,8 @@ pub struct WarpingModes {
     pub(crate) surface: bool,
     /// Lateral contraction at a clamp, in place of the parts.
     pub(crate) clamped: Option<ClampModes>,
+    /// The axes of the pairs, as columns: those of the voxel, or the normals of the surface that cuts it.
+    pub(crate) frame: Mat3,
 }
 
 /// Classification of the faces of a voxel at the two sides of each axis.
@@ -29,6 +32,8 @@ pub struct FaceConditions {
     pub held: [[bool; 2]; 3],
     /// Faces under pressure.
     pub pressed: [[bool; 2]; 3],
+    /// Faces with nothing behind them that a clamp or a layer holds.
+    pub covered: [[bool; 2]; 3],
 }
 
 impl WarpingModes {
@@ -38,6 +43,7 @@ impl WarpingModes {
         pressed: [[0.0; 2]; 3],
         surface: false,
         clamped: None,
+        frame: IDENTITY,
     };
 
     /// No warping of a voxel at the surface.
@@ -49,6 +55,11 @@ impl WarpingModes {
     /// Tests whether free faces take a part of a shear.
     pub(crate) fn has_parts(&self) -> bool {
         self.parts != Self::NONE.parts
+    }
+
+    /// Tests whether the axes of the pairs are others than those of the voxel.
+    pub(crate) fn is_turned(&self) -> bool {
+        self.frame != IDENTITY
     }
 
     /// The roots of the remaining fractions `1 − cⱼ − cₖ` of each shear.
@@ -69,6 +80,16 @@ impl WarpingModes {
         self.pressed
     }
 
+    /// Parts in a frame, which thin the voxel as under pressure.
+    pub(crate) fn in_frame(frame: Mat3, parts: [[f64; 2]; 3]) -> Self {
+        Self {
+            parts,
+            pressed: parts,
+            frame,
+            ..Self::SURFACE
+        }
+    }
+
     /// The warping of a full voxel of isotropic rubber.
     pub fn of(faces: &FaceConditions) -> Self {
         let clamped = ClampModes::of(faces);
@@ -78,15 +99,15 @@ impl WarpingModes {
                 ..Self::SURFACE
             };
         }
-        let free = faces.free.map(|sides| sides.map(u8::from).iter().sum());
+        let free: [u8; 3] = faces.free.map(|sides| sides.map(u8::from).iter().sum());
         let stiff = faces.stiff.map(|[low, high]| low || high);
         let parts = AXES.map(|(b, j, k)| {
             // Modes of the faces of one axis move those of the other.
             let counts = [(j, k), (k, j)].map(|(n, t)| if stiff[t] { 0 } else { free[n] });
             let thin = [free[j], free[k]].map(|count| count == 2);
             match thin {
-                [false, false] => condensed(counts),
-                _ if free[b] == 1 => condensed(counts),
+                [false, false] => condensed(counts.map(f64::from)),
+                _ if free[b] == 1 => condensed(counts.map(f64::from)),
                 [true, true] => [0.0; 2],
                 _ => std::array::from_fn(|side| {
                     if thin[side] && counts[side] == 2 {
@@ -109,14 +130,13 @@ impl WarpingModes {
             parts,
             pressed,
             surface: faces.free.as_flattened().contains(&true),
-            clamped: None,
+            ..Self::NONE
         }
     }
 }
 
 /// `cⱼ, cₖ` for numbers of free faces.
-fn condensed([j, k]: [u8; 2]) -> [f64; 2] {
-    let [j, k] = [f64::from(j), f64::from(k)];
+pub(crate) fn condensed([j, k]: [f64; 2]) -> [f64; 2] {
     let determinant = (30.0 - 4.0 * j) * (30.0 - 4.0 * k) - 36.0 * j * k;
     [(j, k), (k, j)].map(|(own, other)| own * 5.0 * (30.0 - 10.0 * other) / determinant)
 }

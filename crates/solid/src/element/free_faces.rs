@@ -46,7 +46,7 @@ pub(crate) fn faces_of(
     let layers: HashSet<[u32; 3]> = membranes.iter().map(|m| sorted(m.vertices())).collect();
     let each = |(hex8, behind): (&Hex8, &[[Behind; 2]; 3])| {
         let fibers = !materials[hex8.material as usize].fibers().is_empty();
-        if fibers || !is_full(hex8) {
+        if fibers {
             return None;
         }
         let mut faces = FaceConditions::default();
@@ -60,6 +60,10 @@ pub(crate) fn faces_of(
                 faces.free[axis][side] = what == Behind::Nothing
                     && !held.contains(&true)
                     && !is_covered(corners, &layers);
+                // Held along its normal alone it is in a plane of symmetry, and has the rest of the voxel behind it.
+                let sticks = (0..3).any(|k| k != axis && held[k]);
+                faces.covered[axis][side] =
+                    what == Behind::Nothing && (sticks || is_covered(corners, &layers));
                 faces.pressed[axis][side] = is_covered(corners, &pressed);
                 let held = !held.contains(&false);
                 faces.held[axis][side] = held || what == Behind::Stiff;
@@ -140,6 +144,7 @@ pub(crate) fn is_full(hex8: &Hex8) -> bool {
         shift,
         spread,
         products,
+        ..
     } = hex8.filling;
     near(hex8.fraction, 1.0)
         && [shift, products]

@@ -4,6 +4,7 @@ pub mod assumed_strain;
 mod clamp_modes;
 pub(crate) mod coarse;
 mod coordinates;
+pub(crate) mod cut_surface;
 pub(crate) mod faces;
 pub(crate) mod free_faces;
 mod generalized_strain;

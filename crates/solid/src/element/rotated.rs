@@ -3,6 +3,7 @@
 use crate::element::coordinates::{
     AXES, Axes, Hex8Strain, Modes, OFF, STRAIN_COMPONENTS, StrainFunction, dot6, place,
 };
+use crate::element::cut_surface::CutSurface;
 use crate::element::faces::WarpingModes;
 use crate::element::thickness::Thickness;
 use crate::hyperelastic::Response;
@@ -21,6 +22,8 @@ pub struct Filling {
     pub spread: Vec3,
     /// The means of ηζ, ζξ, ξη over the material.
     pub products: Vec3,
+    /// The surface in the voxel.
+    pub surface: CutSurface,
 }
 
 impl Filling {
@@ -29,6 +32,7 @@ impl Filling {
         shift: [0.0; 3],
         spread: [1.0; 3],
         products: [0.0; 3],
+        surface: CutSurface::NONE,
     };
 
     /// Turns the mean gradient over the voxel into that over the material.

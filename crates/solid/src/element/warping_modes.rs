@@ -63,12 +63,31 @@ use crate::element::coordinates::{AXES, Hex8Strain, OFF, STRAIN_COMPONENTS, Stra
 use crate::element::faces::WarpingModes;
 use crate::element::rotated::Rotated;
 use crate::element::thickness::positive;
-use crate::hyperelastic::symmetric::{Response, Sym};
+use crate::hyperelastic::symmetric::{Response, Sym, to_matrix, to_sym};
+use crate::matrix::{multiply, transpose};
 
 const SQRT_2: f64 = std::f64::consts::SQRT_2;
 
 impl WarpingModes {
-    /// The relieved stretch, at which the isochoric energy is evaluated.
+    /// Turns a tensor into the frame of the surface.
+    fn to_frame(&self, tensor: &Sym) -> Sym {
+        if !self.is_turned() {
+            return *tensor;
+        }
+        let half = multiply(&to_matrix(tensor), &self.frame);
+        to_sym(&multiply(&transpose(&self.frame), &half))
+    }
+
+    /// Turns a tensor back from the frame of the surface.
+    fn from_frame(&self, tensor: &Sym) -> Sym {
+        if !self.is_turned() {
+            return *tensor;
+        }
+        let half = multiply(&self.frame, &to_matrix(tensor));
+        to_sym(&multiply(&half, &transpose(&self.frame)))
+    }
+
+    /// The relieved stretch, at which the isochoric energy is evaluated, in the frame of the surface.
     fn relieved(&self, stretch: &Sym) -> Sym {
         let mut relieved = *stretch;
         let shears = self.shears();
@@ -101,12 +120,7 @@ impl WarpingModes {
     }
 
     /// Adds the second derivatives of the relieved stretch, each component times its `force`.
-    fn add_curvature(
-        &self,
-        stretch: &Sym,
-        force: &Sym,
-        hessian: &mut [[f64; STRAIN_COMPONENTS]; STRAIN_COMPONENTS],
-    ) {
+    fn add_curvature(&self, stretch: &Sym, force: &Sym, hessian: &mut [Sym; 6]) {
         for (pair, (b, j, k)) in self.thinning_parts().iter().zip(AXES) {
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 let places = [OFF + b, n, t];
@@ -194,29 +208,39 @@ impl Rotated {
         if !warping.has_parts() {
             return self.mean(thinning, second.is_some(), function);
         }
+        let stretch = warping.to_frame(&self.stretch);
         let relieved = self.with_strain(&Hex8Strain {
-            stretch: warping.relieved(&self.stretch),
+            stretch: warping.from_frame(&warping.relieved(&stretch)),
             hourglass: self.hourglass,
         });
         let mut mean = relieved.mean(thinning, second.is_some(), function);
-        let slopes = warping.slopes(&self.stretch);
+        let slopes = warping.slopes(&stretch);
+        let back = |values: &Sym| warping.from_frame(&through(&slopes, &warping.to_frame(values)));
         let force: Sym = std::array::from_fn(|k| mean.gradient[k]);
-        mean.gradient[..6].copy_from_slice(&through(&slopes, &force));
+        mean.gradient[..6].copy_from_slice(&back(&force));
         if let Some(curvature) = second {
             for row in &mut mean.hessian {
                 let own: Sym = std::array::from_fn(|k| row[k]);
-                row[..6].copy_from_slice(&through(&slopes, &own));
+                row[..6].copy_from_slice(&back(&own));
             }
             let columns: [Sym; STRAIN_COMPONENTS] = std::array::from_fn(|column| {
-                through(&slopes, &std::array::from_fn(|k| mean.hessian[k][column]))
+                back(&std::array::from_fn(|k| mean.hessian[k][column]))
             });
             for (column, values) in columns.iter().enumerate() {
                 for k in 0..6 {
                     mean.hessian[k][column] = values[k];
                 }
             }
-            let force = force.map(|f| curvature * f);
-            warping.add_curvature(&self.stretch, &force, &mut mean.hessian);
+            let force = warping.to_frame(&force.map(|f| curvature * f));
+            let mut own = [[0.0; 6]; 6];
+            warping.add_curvature(&stretch, &force, &mut own);
+            let half = own.map(|row| warping.from_frame(&row));
+            for column in 0..6 {
+                let turned = warping.from_frame(&half.map(|row| row[column]));
+                for row in 0..6 {
+                    mean.hessian[row][column] += turned[row];
+                }
+            }
         }
         mean
     }

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft._memory import memory_limit
+from voxsoft.design.discretization.cut_surfaces import POWERS, SurfaceSums, unit_vectors
 from voxsoft.design.discretization.grid import phase_of
 from voxsoft.design.model import Design
 from voxsoft.errors import ShapeError
@@ -137,11 +138,19 @@ def built_parts(design: Design) -> list[_core.Shape]:
     return [_shape(design, part.shape).build(design.shapes) for part in design.parts]
 
 
-def measures_of(design: Design, cells: Ints, size: float, phase: Triple) -> Floats:
-    """Return integrals over the material of some cells, (k, 10).
+def measures_of(
+    design: Design,
+    cells: Ints,
+    size: float,
+    phase: Triple,
+    beside: Ints,
+    alone: NDArray[np.bool_],
+) -> tuple[Floats, Floats]:
+    """Return integrals over the material of some cells, (k, 10), and over its surface, (k, 25).
 
     The integrands are 1, ξ, η, ζ, ξ², η², ζ², ηζ, ζξ, ξη, in volumes of a cell. The coordinates
-    count from the center of a cell in halves of its edge. A full cell gives :data:`WHOLE`.
+    count from the center of a cell in halves of its edge. A full cell gives :data:`WHOLE`. Those
+    over the surface are of :mod:`~voxsoft.design.discretization.cut_surfaces`.
 
     Parameters
     ----------
@@ -153,15 +162,45 @@ def measures_of(design: Design, cells: Ints, size: float, phase: Triple) -> Floa
         Edge of a cell [m].
     phase
         Place of the grid: a corner of a cell [m].
+    beside, alone
+        See :class:`~voxsoft.design.discretization.cut_surfaces.SurfaceSums`.
     """
     found = np.zeros((len(cells), len(WHOLE)))
+    surface = SurfaceSums(np.zeros((len(cells), len(POWERS))), beside, alone)
+    parts = np.zeros((len(cells), SUBCELLS**3), dtype=np.float32)
+    vectors = np.zeros((len(cells), SUBCELLS**3, 3), dtype=np.float32)
     for start in range(0, len(cells), _CHUNK):
         chunk = slice(start, start + _CHUNK)
         filled, normals, _ = filled_parts(design, cells[chunk], size, phase)
         found[chunk] = integrals(filled, normals)
+        surface.add_cells(np.arange(len(cells))[chunk], filled, normals)
+        parts[chunk], vectors[chunk] = filled, unit_vectors(normals)
     found[found[:, 0] > 1.0 - _ROUNDING] = WHOLE
     found[found[:, 0] < _ROUNDING] = 0.0
-    return found
+    _add_common_faces(surface, cells, parts, vectors)
+    return found, surface.sums
+
+
+def _add_common_faces(
+    surface: SurfaceSums, cells: Ints, parts: NDArray[np.float32], vectors: NDArray[np.float32]
+) -> None:
+    """Add the surface at the common faces of cells, to the cell on the side of the material."""
+    low = cells.min(axis=0)
+    number = np.full(cells.max(axis=0) - low + 2, -1)
+    number[tuple((cells - low).T)] = np.arange(len(cells))
+    cubes = parts.reshape(-1, SUBCELLS, SUBCELLS, SUBCELLS)
+    for axis in range(3):
+        above = number[tuple((cells - low + np.eye(3, dtype=np.intp)[axis]).T)]
+        lower = np.flatnonzero(above >= 0)
+        upper = above[lower]
+        layers = np.moveaxis(cubes, axis + 1, 1)
+        normals = np.moveaxis(vectors.reshape(*cubes.shape, 3), axis + 1, 1)
+        for own, other, side in ((lower, upper, 1), (upper, lower, 0)):
+            at, beyond = (-1, 0) if side else (0, -1)
+            depth = layers[own].mean(axis=1)
+            surface.add_faces(
+                own, axis, side, layers[own, at], layers[other, beyond], normals[own, at], depth
+            )
 
 
 def integrals(filled: Floats, normals: Floats) -> Floats:
@@ -176,8 +215,7 @@ def integrals(filled: Floats, normals: Floats) -> Floats:
     filled, normals
         Values of each small cube, from :func:`voxsoft.shapes.fractions.fill`.
     """
-    lengths = np.linalg.norm(normals, axis=-1, keepdims=True)
-    unit = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+    unit = unit_vectors(normals)
     part = filled[..., None]
     edge = 2.0 / SUBCELLS
     center = _MIDDLES - (0.5 * edge) * (1.0 - part) * unit

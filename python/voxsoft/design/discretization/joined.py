@@ -64,6 +64,7 @@ def joined(placed: Iterable[Placed]) -> Mesh:
         cavities=tuple(sorted(cavities, key=lambda cavity: -cavity.volume)),
         fractions=np.concatenate([_fractions(mesh) for mesh in meshes]) if cut else None,
         moments=np.concatenate([_moments(mesh) for mesh in meshes]) if cut else None,
+        surfaces=np.concatenate([_surfaces(mesh) for mesh in meshes]) if cut else None,
         bodies=tuple(bodies),
     )
 
@@ -95,3 +96,7 @@ def _fractions(mesh: Mesh) -> Floats:
 def _moments(mesh: Mesh) -> Floats:
     full = [0.0] * 3 + [1.0] * 3 + [0.0] * 3
     return np.tile(full, (len(mesh.tets) // 5, 1)) if mesh.moments is None else mesh.moments
+
+
+def _surfaces(mesh: Mesh) -> Floats:
+    return np.zeros((len(mesh.tets) // 5, 9)) if mesh.surfaces is None else mesh.surfaces

@@ -515,7 +515,7 @@ def core_problem(
         Directions of the edges of voxels, (v, 9); default: those of the bodies of the mesh.
     """
     if mesh.fractions is not None:
-        parts.fractions(mesh.fractions, mesh.moments)
+        parts.fractions(mesh.fractions, mesh.moments, mesh.surfaces)
     if directions is None:
         directions = edge_directions(mesh)
     if directions is not None:

@@ -5,7 +5,7 @@
 
 use pulp::Simd;
 
-use super::frame::Constants;
+use super::frame::{Constants, turned};
 use super::number::{Nine, Number, Six, Three, cofactors, cross, dot, to_matrix, to_sym};
 use crate::element::coordinates::{AXES, Axes, OFF, STRAIN_COMPONENTS};
 use crate::hyperelastic::Model;
@@ -506,10 +506,15 @@ pub(super) fn add_deviatoric<S: Simd>(
 ) {
     let mut hessian = hessian;
     if constants.is_warped {
-        let (relieved, slopes) = relief(constants, &shape.stretch);
+        let stretch = into_frame(constants, &shape.stretch);
+        let (relieved, slopes) = relief(constants, &stretch);
         let seen = Shape {
-            stretch: relieved,
+            stretch: out_of_frame(constants, &relieved),
             hourglass: shape.hourglass,
+        };
+        let back = |values: &Six<S>| {
+            let own = through_relief(&slopes, &into_frame(constants, values));
+            out_of_frame(constants, &own)
         };
         let mut own = [constants.bulk.all(0.0); STRAIN_COMPONENTS];
         add_isochoric(constants, &seen, &mut own, hessian.as_deref_mut(), sound);
@@ -518,21 +523,39 @@ pub(super) fn add_deviatoric<S: Simd>(
             // The chain rule on rows, then on columns.
             for row in hessian.iter_mut() {
                 let seen = [row[0], row[1], row[2], row[3], row[4], row[5]];
-                row[..6].copy_from_slice(&through_relief(&slopes, &seen));
+                row[..6].copy_from_slice(&back(&seen));
             }
             for column in 0..STRAIN_COMPONENTS {
                 let mut seen = force;
                 for k in 0..6 {
                     seen[k] = hessian[k][column];
                 }
-                let own = through_relief(&slopes, &seen);
+                let own = back(&seen);
                 for k in 0..6 {
                     hessian[k][column] = own[k];
                 }
             }
-            add_relief_curvature(constants, &shape.stretch, &force, hessian);
+            let local = into_frame(constants, &force);
+            let mut curvature = [[constants.bulk.all(0.0); 6]; 6];
+            add_relief_curvature(constants, &stretch, &local, &mut curvature);
+            if constants.surface_frame.is_some() {
+                for row in &mut curvature {
+                    *row = out_of_frame(constants, row);
+                }
+                for column in 0..6 {
+                    let mut own = force;
+                    for k in 0..6 {
+                        own[k] = curvature[k][column];
+                    }
+                    let own = out_of_frame(constants, &own);
+                    for k in 0..6 {
+                        curvature[k][column] = own[k];
+                    }
+                }
+            }
+            add_square(hessian, &curvature);
         }
-        own[..6].copy_from_slice(&through_relief(&slopes, &force));
+        own[..6].copy_from_slice(&back(&force));
         for k in 0..STRAIN_COMPONENTS {
             gradient[k] += own[k];
         }
@@ -698,6 +721,30 @@ fn sheared<S: Simd>(stretch: &Six<S>, shear: usize, across: usize, along: usize)
     [s, a, b, a.times_plus(b, s * s).inverse()]
 }
 
+/// Turns a tensor into the frame of the surface.
+#[inline(always)]
+fn into_frame<S: Simd>(constants: &Constants<S>, tensor: &Six<S>) -> Six<S> {
+    let Some(frame) = &constants.surface_frame else {
+        return *tensor;
+    };
+    let mut transposed = *frame;
+    for i in 0..3 {
+        for j in 0..3 {
+            transposed[i][j] = frame[j][i];
+        }
+    }
+    to_sym(&turned(&transposed, &to_matrix(tensor)))
+}
+
+/// Turns a tensor back from the frame of the surface.
+#[inline(always)]
+fn out_of_frame<S: Simd>(constants: &Constants<S>, tensor: &Six<S>) -> Six<S> {
+    match &constants.surface_frame {
+        Some(frame) => to_sym(&turned(frame, &to_matrix(tensor))),
+        None => *tensor,
+    }
+}
+
 /// The relieved stretch at which the isochoric energy is evaluated, and its derivatives (rows).
 #[inline(always)]
 fn relief<S: Simd>(constants: &Constants<S>, stretch: &Six<S>) -> (Six<S>, [Six<S>; 6]) {
@@ -751,7 +798,7 @@ fn add_relief_curvature<S: Simd>(
     constants: &Constants<S>,
     stretch: &Six<S>,
     force: &Six<S>,
-    hessian: &mut Square<S>,
+    hessian: &mut [Six<S>; 6],
 ) {
     for (pair, side, shear, across, along) in RELIEFS {
         let [s, a, b, inverse] = sheared(stretch, shear, across, along);

@@ -42,6 +42,8 @@ pub(super) struct Constants<S: Simd> {
     pub warping: [[Number<S>; 2]; 3],
     pub shears: Three<S>,
     pub volume_shears: Three<S>,
+    /// The axes of these, as columns, where there are others than those of the voxel.
+    pub surface_frame: Option<Nine<S>>,
     /// One in voxels at the surface, zero inside, and whether there are such.
     pub surface: Number<S>,
     pub has_surface: bool,
@@ -147,6 +149,15 @@ impl<S: Simd> Constants<S> {
             has_surface: lanes().any(|hex8| hex8.warping.surface),
             has_inside: lanes().any(|hex8| !hex8.warping.surface),
             is_cut: lanes().any(|hex8| hex8.filling != Filling::FULL),
+            surface_frame: lanes().any(|hex8| hex8.warping.is_turned()).then(|| {
+                let mut frame = [[zero; 3]; 3];
+                for i in 0..3 {
+                    for j in 0..3 {
+                        frame[i][j] = gather(simd, hex8s, |hex8| hex8.warping.frame[i][j]);
+                    }
+                }
+                frame
+            }),
             is_warped: lanes().any(|hex8| hex8.warping.has_parts()),
             thinning: gather(simd, hex8s, |hex8| of_material(hex8).thinning()),
             bulk: gather(simd, hex8s, |hex8| of_material(hex8).bulk()),

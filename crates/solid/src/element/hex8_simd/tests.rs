@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 
 use super::{TOGETHER, Together};
+use crate::element::cut_surface::CutSurface;
 use crate::element::hex8::{
     FaceConditions, Filling, Hex8, Hex8AssumedStrain, Hex8Matrix, WarpingModes,
 };
@@ -72,10 +73,16 @@ fn warpings() -> Vec<WarpingModes> {
         held,
         ..free
     };
+    let oblique = Filling {
+        shift: [0.2, -0.3, 0.1],
+        surface: CutSurface::of([0.4, -0.3, 0.9], [[0.0, 0.7], [0.2, 0.1], [0.0, 0.4]]),
+        ..Filling::FULL
+    };
     vec![
         WarpingModes::NONE,
         WarpingModes::of(&free),
         WarpingModes::of(&clamped),
+        WarpingModes::of_cut(&FaceConditions::default(), &oblique),
     ]
 }
 
@@ -84,6 +91,7 @@ fn hex8(first: u32, material: u32, cut: bool, warping: WarpingModes) -> Hex8 {
         shift: [0.3, -0.1, 0.0],
         spread: [0.6, 0.9, 1.0],
         products: [0.05, -0.1, 0.02],
+        ..Filling::FULL
     };
     Hex8 {
         vertices: std::array::from_fn(|corner| first + corner as u32),

@@ -193,6 +193,7 @@ class Sector:
             cavities=(),
             fractions=None if whole.fractions is None else whole.fractions[voxels],
             moments=None if whole.moments is None else whole.moments[voxels],
+            surfaces=None if whole.surfaces is None else whole.surfaces[voxels],
         )
 
     def inside(self, elements: NDArray[np.integer]) -> NDArray[np.bool_]:

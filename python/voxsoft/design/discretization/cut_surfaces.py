@@ -1,0 +1,264 @@
+"""The surface in each cut voxel: directions across it, and its area on the two sides of each.
+
+Small cubes give pieces of the surface: one in each that the surface cuts, with the normal of its
+plane, and one between each full and empty pair, with that of their common face. Sums of third and
+fourth powers of the normals, weighted with the areas, add up over cells, and the frame of a voxel
+follows from them: three orthogonal axes q with the largest sum of A (n · q)⁴. These are the normals
+of a plane and of a right-angled edge or corner, and in a curved surface their mean.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import permutations, product
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.shapes.fractions import SUBCELLS
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+#: Powers of x, y, z in the sums of a cell: of degree 3, then of degree 4.
+POWERS: Final = np.array(
+    [
+        (a, b, degree - a - b)
+        for degree in (3, 4)
+        for a in range(degree, -1, -1)
+        for b in range(degree - a, -1, -1)
+    ]
+)
+_CUBIC = 10
+
+#: Part of a small cube from which on, and up to which from the other side, it counts as cut in full.
+_CUT = 0.125
+
+_ITERATIONS = 10
+_SWEEPS = 3
+_CHUNK = 16384
+
+
+@dataclass(frozen=True)
+class SurfaceSums:
+    """Sums over pieces of the surface, (k, 25), and the cells that they go to.
+
+    A piece belongs to its cell by the depth of the material behind it there, and with the rest to
+    the cell behind: a film at the face of a voxel ends the next voxel, as if it were not there.
+    """
+
+    sums: Floats
+    #: Cells behind each cell, below and above along the axes, (k, 3, 2), -1 for none.
+    beside: Ints
+    #: Marks of cells that are voxels, (k,). The others keep all, for those that take their material.
+    alone: NDArray[np.bool_]
+
+    def add_cells(self, cells: Ints, filled: Floats, normals: Floats) -> None:
+        """Add the pieces within cells.
+
+        Parameters
+        ----------
+        cells
+            Numbers of the cells, (m,).
+        filled, normals
+            Values of each small cube, from :func:`voxsoft.shapes.fractions.fill`.
+        """
+        areas = _cut(filled)
+        cubes = filled.reshape(-1, SUBCELLS, SUBCELLS, SUBCELLS)
+        unit = unit_vectors(normals)
+        across = unit.reshape(*cubes.shape, 3)
+        for axis in range(3):
+            layers = np.moveaxis(cubes, axis + 1, 1)
+            vectors = np.moveaxis(across, axis + 1, 1)
+            down, up = _depths(layers)
+            for side, depth in enumerate((down, up)):
+                looks = (unit[..., axis] > 0.0) == (side == 1)
+                part = np.where(looks, areas * unit[..., axis] ** 2, 0.0)
+                own = np.moveaxis(depth, 1, axis + 1).reshape(part.shape)
+                self._add(cells, axis, side, part, unit, own)
+            low, high = slice(None, -1), slice(1, None)
+            for side, depth, own, other in ((1, up, low, high), (0, down, high, low)):
+                self.add_faces(
+                    cells,
+                    axis,
+                    side,
+                    layers[:, own],
+                    layers[:, other],
+                    vectors[:, own],
+                    depth[:, own],
+                )
+
+    def add_faces(
+        self,
+        cells: Ints,
+        axis: int,
+        side: int,
+        own: Floats,
+        other: Floats,
+        normals: Floats,
+        depth: Floats,
+    ) -> None:
+        """Add pieces between small cubes of cells, and those beyond that are less full.
+
+        Parameters
+        ----------
+        cells
+            Numbers of the cells, (m,).
+        axis, side
+            The way the pieces look: 0 down, 1 up.
+        own, other
+            Filled parts on the inner and the outer side, (m, ...).
+        normals
+            Unit normals on the inner side, (m, ..., 3).
+        depth
+            Material behind in the cell, in edges, (m, ...).
+        """
+        areas = (1.0 - _cut(own)) * (1.0 - _cut(other)) * np.maximum(own - other, 0.0)
+        # A cube in a corner has the normal of one of its faces alone.
+        straight = np.eye(3)[axis] * (2 * side - 1)
+        alike = (normals @ straight)[..., None] > 0.5
+        self._add(cells, axis, side, areas, np.where(alike, normals, straight), depth)
+
+    def _add(
+        self, cells: Ints, axis: int, side: int, areas: Floats, normals: Floats, depth: Floats
+    ) -> None:
+        at = np.nonzero(areas)
+        powers = np.stack([normals[at] ** degree for degree in range(5)], axis=-1)
+        monomials = np.prod([powers[:, k, POWERS[:, k]] for k in range(3)], axis=0)
+        pieces = monomials * (areas[at] / SUBCELLS**2)[:, None]
+        to, within = cells[at[0]], depth[at][:, None]
+        behind = self.beside[to, axis, 1 - side]
+        behind = np.where(self.alone[to] & (behind >= 0), behind, to)
+        np.add.at(self.sums, to, pieces * within)
+        np.add.at(self.sums, behind, pieces * (1.0 - within))
+
+
+def unit_vectors(vectors: Floats) -> Floats:
+    """Divide vectors by their lengths, (..., 3); zeros stay."""
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)
+
+
+def _depths(layers: Floats) -> tuple[Floats, Floats]:
+    """Return the material behind surfaces that look down and up the first axis of cells."""
+    up = np.cumsum(layers, axis=1) / SUBCELLS
+    down = np.flip(np.cumsum(np.flip(layers, 1), axis=1), 1) / SUBCELLS
+    return down, up
+
+
+def surfaces(sums: Floats) -> Floats:
+    """Return the frame and the areas of each voxel, (v, 9).
+
+    The first three numbers are the rotation vector of the frame, the others the areas below and
+    above its axes, in faces of a voxel.
+    """
+    from scipy.spatial.transform import Rotation
+
+    found = np.zeros((len(sums), 9))
+    for start in range(0, len(sums), _CHUNK):
+        rows = np.flatnonzero(np.abs(sums[start : start + _CHUNK]).max(axis=1) > 1e-12) + start
+        if not len(rows):
+            continue
+        cubic, quartic = _tensor(sums[rows, :_CUBIC], 3), _tensor(sums[rows, _CUBIC:], 4)
+        frame = _frame(quartic)
+        fourth = np.einsum("vabcd,vai,vbi,vci,vdi->vi", quartic, *4 * [frame], optimize=True)
+        third = np.einsum("vabc,vai,vbi,vci->vi", cubic, *3 * [frame], optimize=True)
+        third = np.clip(third, -fourth, fourth)
+        areas = np.stack([(fourth - third) / 2.0, (fourth + third) / 2.0], axis=-1)
+        found[rows, :3] = Rotation.from_matrix(frame).as_rotvec()
+        found[rows, 3:] = areas.reshape(len(rows), 6)
+    return found
+
+
+def obliquity(sums: Floats) -> Floats:
+    """Return ``4 nₐ² (1 - nₐ²)`` of the normals for each axis, their mean over the surface, (k, 3).
+
+    Parameters
+    ----------
+    sums
+        Sums of cells, (k, 25).
+    """
+    quartic = _tensor(sums[:, _CUBIC:], 4)
+    fourth = np.stack([quartic[:, axis, axis, axis, axis] for axis in range(3)], axis=1)
+    second = np.einsum("vaabb->va", quartic)
+    area = np.maximum(second.sum(axis=1, keepdims=True), 1e-300)
+    return np.clip(4.0 * (second - fourth) / area, 0.0, 1.0)
+
+
+def _cut(filled: Floats) -> Floats:
+    found: Floats = np.clip(np.minimum(filled, 1.0 - filled) / _CUT, 0.0, 1.0)
+    return found
+
+
+def _tensor(sums: Floats, degree: int) -> Floats:
+    """Expand sums of monomials to a symmetric tensor, (v, 3, ...)."""
+    rows = POWERS[POWERS.sum(axis=1) == degree].tolist()
+    index = np.indices(degree * (3,)).reshape(degree, -1).T
+    number = [rows.index([(i == axis).sum() for axis in range(3)]) for i in index]
+    return sums[:, number].reshape(-1, *degree * (3,))
+
+
+def _frame(quartic: Floats) -> Floats:
+    """Return the axes of the largest sums of A (n · q)⁴ as columns, (v, 3, 3).
+
+    The first comes from the best of the directions between cells by a power iteration, which
+    raises its sum in each step, as fourth powers are convex. Then pairs are turned in their planes
+    in turn. Where nothing else tells, axes lie near those of the cell.
+    """
+    values = np.einsum("vabcd,ia,ib,ic,id->vi", quartic, *4 * [_STARTS], optimize=True)
+    first = _STARTS[values.argmax(axis=1)]
+    for _ in range(_ITERATIONS):
+        first = _unit(np.einsum("vabcd,vb,vc,vd->va", quartic, *3 * [first], optimize=True))
+    far = np.eye(3)[np.abs(first).round(9).argmin(axis=1)]
+    second = _unit(far - first * (first * far).sum(axis=1, keepdims=True))
+    frame = np.stack([first, second, np.cross(first, second)], axis=-1)
+    total = np.einsum("vaabb->v", quartic)[:, None, None, None, None]
+    biased = quartic + total * _BIAS
+    for pair in _SWEEPS * [(1, 2), (2, 0), (0, 1)]:
+        _turn(frame, pair, biased)
+    # Of the equal frames the one nearest to the axes of the cell.
+    nearest = np.einsum("vai,kia->vk", frame, _TURNS).argmax(axis=1)
+    return frame @ _TURNS[nearest]
+
+
+def _turn(frame: Floats, pair: tuple[int, int], quartic: Floats) -> None:
+    """Turn a pair of axes in place to the largest sum of both in their plane (Jacobi).
+
+    With n = ρ (cos φ, sin φ) there, n₁⁴ + n₂⁴ is ρ⁴ (3 + cos 4φ)/4.
+    """
+    plane = frame[:, :, pair]
+    t = np.einsum("vabcd,vai,vbj,vck,vdl->vijkl", quartic, *4 * [plane], optimize=True)
+    cosine = t[:, 0, 0, 0, 0] - 6.0 * t[:, 0, 0, 1, 1] + t[:, 1, 1, 1, 1]
+    sine = 4.0 * (t[:, 0, 0, 0, 1] - t[:, 0, 1, 1, 1])
+    total = np.einsum("vaabb->v", quartic)
+    clear = np.hypot(sine, cosine) > 1e-9 * total
+    angle = np.where(clear, np.arctan2(sine, cosine) / 4.0, 0.0)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    frame[:, :, pair] = np.einsum("vai,ijv->vaj", plane, turn)
+
+
+def _unit(vectors: Floats) -> Floats:
+    found: Floats = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return found
+
+
+def _starts() -> Floats:
+    """List the directions from a cell to its neighbors, one of each opposite pair, (13, 3)."""
+    steps = np.stack(np.meshgrid(*3 * [[-1.0, 0.0, 1.0]], indexing="ij"), axis=-1).reshape(-1, 3)
+    return _unit(steps[:13:-1])
+
+
+def _turns() -> Floats:
+    """List the rotations of a cube to itself, (24, 3, 3)."""
+    signs = [np.diag(s) for s in product((1.0, -1.0), repeat=3)]
+    found = np.array([np.eye(3)[list(p)] @ s for p in permutations(range(3)) for s in signs])
+    return found[np.linalg.det(found) > 0.0]
+
+
+_STARTS = _starts()
+_TURNS = _turns()
+#: Weak pieces of a surface along the faces of the cell, as a part of the whole.
+_BIAS = np.zeros((3, 3, 3, 3))
+for _axis in range(3):
+    _BIAS[_axis, _axis, _axis, _axis] = 0.01
