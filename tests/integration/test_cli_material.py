@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 import voxsoft as vs
 from voxsoft.cli.app import app
 from voxsoft.files.cards import load_card_file
+from voxsoft.materials import relaxing_stress
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "examples" / "data" / "tensile"
@@ -127,6 +128,51 @@ def test_bad_input_is_reported_in_words(content, options, words):
     assert words in outcome.stderr.replace("\n", " ")
     assert json.loads(outcome.stdout)["status"] == "failed"
     assert not Path("runs").exists()
+
+
+def relaxation_table():
+    """A strip of E 60 kPa of which a share 0.3 relaxes in 20 s, at a strain of 50 %."""
+    rubber = vs.NeoHookean(young="60 kPa", prony=[{"g": 0.3, "tau": "20 s"}])
+    time = [0.2 * 1.07**i for i in range(100)]
+    stress = relaxing_stress(rubber, time, [1.5] * len(time)) / 1e3
+    rows = "".join(f"{t:.6g},50,{s:.6g}\n" for t, s in zip(time, stress, strict=True))
+    return f"Time (s),Strain (%),Stress (kPa)\n{rows}"
+
+
+def test_a_relaxation_test_leaves_a_table_for_a_design():
+    Path("held.csv").write_text(relaxation_table(), encoding="utf-8")
+    outcome = call("fit", "--relaxation", "held.csv", "--name", "soft", "--json")
+    assert outcome.exit_code == 0, outcome.stderr
+    answer = json.loads(outcome.stdout)
+    # Tables of six digits: the branches come back to about as many.
+    assert answer["branches"][0]["g"]["value"] == pytest.approx(0.3, rel=1e-3)
+    assert answer["branches"][0]["tau"]["value"] == pytest.approx(20.0, rel=1e-3)
+    written = Path(answer["card"]).read_text(encoding="utf-8")
+    assert (Path(answer["folder"]) / "branches.png").read_bytes().startswith(b"\x89PNG")
+    design = (ROOT / "examples" / "beam.toml").read_text(encoding="utf-8")
+    table = written[written.index("[material]") : written.index("[calibration]")]
+    pasted = f"{design}\n{table.replace('[material]', '[materials.soft]')}"
+    Path("pasted.toml").write_text(pasted, encoding="utf-8")
+    found = vs.load("pasted.toml", assignments=["parts[0].material=soft"])
+    assert found.material_of(found.parts[0]).prony[0].tau == pytest.approx(20.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--rate", "held.csv"], "is not of one rate"),
+        (["--relaxation", "held.csv", "--cyclic", "cycles.csv"], "softening and relaxation in one"),
+        (["--relaxation", "held.csv", "--branches", "5"], "expected 1 to 4"),
+        (["held.csv", "--branches", "1"], "without a test over time"),
+    ],
+)
+def test_options_that_do_not_go_with_tests_over_time_are_refused(options, words):
+    Path("held.csv").write_text(relaxation_table(), encoding="utf-8")
+    cycles = "".join(f"{x},{x}\n" for x in (0, 2, 4, 6, 8, 10, 8, 6, 4, 2, 0))
+    Path("cycles.csv").write_text(f"strain (%),stress_kPa\n{cycles}", encoding="utf-8")
+    outcome = call("fit", *options)
+    assert outcome.exit_code == 3
+    assert words in outcome.stderr.replace("\n", " ")
 
 
 def test_no_curve_at_all():

@@ -20,6 +20,7 @@ from scipy.optimize import brentq
 import voxsoft as vs
 from voxsoft.comparison import path_error_bars
 from voxsoft.errors import SimulationError
+from voxsoft.materials import relaxing_stress
 from voxsoft.units import mm
 
 G, TAU, YOUNG, POISSON = 0.3, 100.0, 60e3, 0.45
@@ -232,6 +233,18 @@ def test_a_cube_at_a_large_strain_follows_the_ode_of_the_model():
     path = vs.follow(pulled(0.5 * LENGTH, end, prony=prony), "time=0..200 s/11")
     stresses = _uniaxial(path.values, lambda time: 1.0 + 0.5 * min(time / end, 1.0), prony)
     assert forces(path) == pytest.approx(stresses * SIDE**2, rel=STEPS, abs=1e-9)
+
+
+def test_the_law_that_tests_over_time_are_fitted_with_is_that_of_a_simulation():
+    prony, end = ((0.3, 10.0), (0.2, 1000.0)), 20.0
+    design = pulled(0.5 * LENGTH, end, prony=prony)
+    part = design.parts[0]
+    material = part.material.replace(young_modulus=YOUNG, poisson=0.499)
+    path = vs.follow(design.replace(parts=[part.replace(material=material)]), "time=0..200 s/11")
+    times = np.array(path.values[1:])
+    expected = relaxing_stress(material, times, 1.0 + 0.5 * np.minimum(times / end, 1.0))
+    # The closed form is incompressible and has Young's modulus 3 μ: of the order of μ/K = 0.002.
+    assert forces(path)[1:] == pytest.approx(expected * SIDE**2, rel=STEPS + 2e-3)
 
 
 def test_work_is_stored_or_lost_in_the_branches_and_never_created():

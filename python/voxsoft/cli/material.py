@@ -14,7 +14,15 @@ from voxsoft.cli.output import plain, print_json, quantity, say, show_table
 
 if TYPE_CHECKING:
     from voxsoft.materials import Card, Material, Mode
-    from voxsoft.materials.coupon import CouponFit, Curve, Interval, ToeCorrection
+    from voxsoft.materials.coupon import (
+        BranchFit,
+        CouponFit,
+        Curve,
+        Interval,
+        TestKind,
+        TimedTest,
+        ToeCorrection,
+    )
 
 material = typer.Typer(
     name="material",
@@ -54,6 +62,18 @@ def fit(
         list[Path] | None,
         _curves("--modulus", "Bending, frequency or known moduli (TOML). Repeatable."),
     ] = None,
+    relaxation: Annotated[
+        list[Path] | None,
+        _curves("--relaxation", "Uniaxial test over time, at a strain that is held. Repeatable."),
+    ] = None,
+    rate: Annotated[
+        list[Path] | None,
+        _curves("--rate", "Uniaxial test over time, at one strain rate. Repeatable."),
+    ] = None,
+    branches: Annotated[
+        int | None,
+        typer.Option("--branches", help="Number of branches, 1 to 4; default: as many as show."),
+    ] = None,
     model: Annotated[
         str | None, typer.Option("--model", help="Model of the card; default: the recommended one.")
     ] = None,
@@ -87,16 +107,21 @@ def fit(
     ] = None,
     json: Json = False,
 ) -> None:
-    """Fit all hyperelastic models to coupon tests, rank them, and write a card with a picture."""
+    """Fit all hyperelastic models to coupon tests, rank them, and write a card with a picture.
+
+    Tests over time (--relaxation, --rate) give the branches by which the material relaxes, too.
+    """
     from voxsoft.files.cards import card_name
     from voxsoft.files.coupons import (
         load_curve,
         load_cycles,
         load_modulus_tests,
+        load_timed_test,
+        write_branch_fit,
         write_coupon_fit,
     )
     from voxsoft.materials import NeoHookean
-    from voxsoft.materials.coupon import fit_coupons
+    from voxsoft.materials.coupon import fit_branches, fit_coupons
     from voxsoft.units import UnitOf
 
     with errors_in_words(json=json):
@@ -111,6 +136,33 @@ def fit(
             for mode, paths in files
             for path in paths or []
         ]
+        timed: list[TimedTest] = [
+            load_timed_test(path, kind=cast("TestKind", kind), area=section, length=gauge)
+            for kind, paths in (("relaxation", relaxation), ("rate", rate))
+            for path in paths or []
+        ]
+        _refuse_beside_time(timed, cyclic, modulus, branches)
+        if timed:
+            over_time = fit_branches(
+                timed,
+                curves,
+                branches=branches,
+                model=model,
+                toe=cast("ToeCorrection", toe),
+                max_strain=farthest,
+                poisson=rest.poisson,
+                density=rest.density,
+            )
+            chosen = name or card_name(Path(timed[0].name).stem)
+            card = over_time.card(chosen, source=source)
+            folder = out or Path("runs") / f"{folder_name(chosen, 'card')}-material"
+            written = write_branch_fit(over_time, card, folder)
+            if json:
+                print_json(over_time.summary() | {"card": str(written[0]), "folder": str(folder)})
+            else:
+                _show_branches(over_time)
+                say(f"wrote {plain(str(folder))}: {', '.join(file.name for file in written)}")
+            return
         observed = [seen for path in modulus or [] for seen in load_modulus_tests(path)]
         cycles = [load_cycles(path, area=section, length=gauge) for path in cyclic or []]
         answer = fit_coupons(
@@ -229,6 +281,70 @@ def _show_fit(answer: CouponFit, chosen: str) -> None:
     softening = [] if soft is None else list(soft.warnings)
     for warning in answer.of(chosen).warnings + answer.warnings + softening:
         say(f"[yellow]warning:[/yellow] {plain(warning)}")
+
+
+def _refuse_beside_time(
+    timed: list[TimedTest],
+    cyclic: list[Path] | None,
+    modulus: list[Path] | None,
+    branches: int | None,
+) -> None:
+    """Refuse options that have no meaning beside tests over time, or without them."""
+    from voxsoft.errors import MeasurementError
+
+    if timed and cyclic:
+        raise MeasurementError(
+            "--cyclic",
+            "beside a test over time: a way back shows softening and relaxation in one",
+            "fit the cycles alone, and write mullins into the table of the other card",
+        )
+    if timed and modulus:
+        raise MeasurementError(
+            "--modulus",
+            "beside a test over time: it does not say at which time the modulus is",
+            "leave it out, or give a quasi-static curve",
+        )
+    if branches is not None and not timed:
+        raise MeasurementError(
+            "--branches", "without a test over time", "give --relaxation or --rate"
+        )
+
+
+def _show_branches(answer: BranchFit) -> None:
+    for test in answer.tests:
+        kind = "held" if test.rate is None else f"{test.rate:.3g} /s"
+        error = _kpa(answer.errors[test.name])
+        say(plain(f"{test.name}: {kind}, {len(test.time)} points, error {error}"))
+    rows = [
+        [
+            _constant(name, each.value),
+            f"{_constant(name, each.low)} to {_constant(name, each.high)}",
+        ]
+        for name, each in answer.constants.items()
+    ]
+    names = list(answer.constants)
+    for number, branch in enumerate(answer.branches, 1):
+        names += [f"g{number}", f"tau{number}"]
+        rows.append([f"{branch.g.value:.4g}", f"{branch.g.low:.4g} to {branch.g.high:.4g}"])
+        rows.append(
+            [
+                _seconds(branch.tau.value),
+                f"{_seconds(branch.tau.low)} to {_seconds(branch.tau.high)}",
+            ]
+        )
+    show_table(
+        f"{answer.model}, long-term, and branches; error {_kpa(answer.rmse)}, "
+        f"{answer.relative_error:.2%} of the largest stress",
+        ["name", "value", "95 % interval"],
+        [[name, *row] for name, row in zip(names, rows, strict=True)],
+    )
+    say(plain(f"{answer.sentence}."))
+    for warning in answer.warnings:
+        say(f"[yellow]warning:[/yellow] {plain(warning)}")
+
+
+def _seconds(value: float) -> str:
+    return quantity(float(f"{value:.4g}"), "time")
 
 
 def _kpa(value: float) -> str:

@@ -13,14 +13,19 @@ from voxsoft.files.run_folder import make_folder, provenance, write_json
 from voxsoft.materials import Mode
 from voxsoft.materials.card import Card
 from voxsoft.materials.coupon import (
+    BranchFit,
     CouponFit,
     Curve,
     Cycles,
     MeasuredModulus,
+    TestKind,
+    TimedTest,
     read_curve,
     read_cycles,
     read_modulus_tests,
+    read_timed_test,
 )
+from voxsoft.plot.branches import plot_branches
 from voxsoft.plot.coupon import plot_coupons
 
 
@@ -74,6 +79,35 @@ def load_cycles(
         Text that is not UTF-8, a table that cannot be used, or no cycle in it.
     """
     return read_cycles(_table(path), name=Path(path).name, area=area, length=length)
+
+
+def load_timed_test(
+    path: FilePath,
+    *,
+    kind: TestKind,
+    area: float | None = None,
+    length: float | None = None,
+) -> TimedTest:
+    """Read a uniaxial test over time from a CSV file; see :func:`load_curve`.
+
+    Parameters
+    ----------
+    path
+        Path of the file; see :func:`voxsoft.materials.coupon.read_timed_test` for its format.
+    kind
+        ``"relaxation"`` or ``"rate"``.
+    area, length
+        Original cross section in m² and gauge length in m, for forces and displacements.
+
+    Raises
+    ------
+    FileError
+        A missing, unreadable or too large file.
+    MeasurementError
+        Text that is not UTF-8, a table that cannot be used, or a test unlike its kind.
+    """
+    text, name = _table(path), Path(path).name
+    return read_timed_test(text, kind=kind, name=name, area=area, length=length)
 
 
 def _table(path: FilePath) -> str:
@@ -140,4 +174,37 @@ def write_coupon_fit(fit: CouponFit, card: Card, folder: FilePath) -> list[Path]
     written.append(
         save_figure(plot_coupons(fit, str(card.calibration["model"])), place / "fits.png")
     )
+    return written
+
+
+def write_branch_fit(fit: BranchFit, card: Card, folder: FilePath) -> list[Path]:
+    """Write a fit to tests over time to a folder, which is made if it is not there.
+
+    The folder then holds ``NAME.toml``, the material card, whose ``[material]`` table a design may
+    take as it is; ``summary.json``, everything in SI units; and ``branches.png``, the picture.
+
+    Parameters
+    ----------
+    fit
+        Result of :func:`voxsoft.materials.coupon.fit_branches`.
+    card
+        Card of the fit, see :meth:`~voxsoft.materials.coupon.BranchFit.card`.
+    folder
+        Folder to write.
+
+    Returns
+    -------
+    list of pathlib.Path
+        Files that were written, the card first.
+
+    Raises
+    ------
+    FileError
+        The folder or a file in it cannot be written.
+    """
+    place = make_folder(folder)
+    written = [place / f"{folder_name(card.name, 'card')}.toml", place / "summary.json"]
+    save_card(card, written[0])
+    write_json(written[1], fit.summary() | provenance())
+    written.append(save_figure(plot_branches(fit), place / "branches.png"))
     return written

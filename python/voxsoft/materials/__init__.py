@@ -29,6 +29,7 @@ from voxsoft.materials.mooney_rivlin import MooneyRivlin
 from voxsoft.materials.mullins import Mullins
 from voxsoft.materials.neo_hookean import NeoHookean
 from voxsoft.materials.ogden import Ogden
+from voxsoft.materials.relaxing import relaxing_stress
 from voxsoft.materials.rigid import Rigid
 from voxsoft.materials.softening import cycled_stress
 from voxsoft.materials.stability import StableRange, stable_range, stable_ranges
@@ -65,6 +66,7 @@ __all__ = [
     "material_of",
     "nominal_stress",
     "nominal_tangent",
+    "relaxing_stress",
     "stable_range",
     "stable_ranges",
     "uniaxial_stress",

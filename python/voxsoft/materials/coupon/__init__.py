@@ -8,6 +8,7 @@ Examples
 'neo-hookean'
 """
 
+from voxsoft.materials.coupon.branches import Branch, BranchFit, fit_branches
 from voxsoft.materials.coupon.curve import TOE_CORRECTIONS, Curve, Toe, ToeCorrection
 from voxsoft.materials.coupon.cycles import Cycles, SofteningFit, fit_softening
 from voxsoft.materials.coupon.fit import DEFAULT_MAX_STRAIN, fit_coupons
@@ -20,13 +21,16 @@ from voxsoft.materials.coupon.modulus_test import (
     read_modulus_tests,
 )
 from voxsoft.materials.coupon.result import CouponFit, ModelFit
-from voxsoft.materials.coupon.table import read_curve, read_cycles
+from voxsoft.materials.coupon.table import read_curve, read_cycles, read_timed_test
+from voxsoft.materials.coupon.timed import TestKind, TimedTest
 from voxsoft.materials.coupon.untested import UntestedMode
 
 __all__ = [
     "DEFAULT_MAX_STRAIN",
     "TOE_CORRECTIONS",
     "BendingTest",
+    "Branch",
+    "BranchFit",
     "CouponFit",
     "Curve",
     "Cycles",
@@ -36,12 +40,16 @@ __all__ = [
     "MeasuredModulus",
     "ModelFit",
     "SofteningFit",
+    "TestKind",
+    "TimedTest",
     "Toe",
     "ToeCorrection",
     "UntestedMode",
+    "fit_branches",
     "fit_coupons",
     "fit_softening",
     "read_curve",
     "read_cycles",
     "read_modulus_tests",
+    "read_timed_test",
 ]

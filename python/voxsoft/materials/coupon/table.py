@@ -13,6 +13,7 @@ import numpy as np
 from voxsoft.errors import MeasurementError, UnitError
 from voxsoft.materials.coupon.curve import Curve
 from voxsoft.materials.coupon.cycles import Cycles
+from voxsoft.materials.coupon.timed import TestKind, TimedTest
 from voxsoft.materials.homogeneous import Mode
 from voxsoft.materials.hyperelastic import Floats
 from voxsoft.units import format_quantity, parse, to_si
@@ -34,6 +35,7 @@ _NAMES: Final = {
         *("spannung", "technische spannung", "nennspannung", "zugspannung"),
     ),
     "force": ("force", "load", "tensile load", "standard force", "kraft", "standardkraft"),
+    "time": ("time", "test time", "elapsed time", "zeit", "prüfzeit"),
 }
 _TRUE: Final = (
     *("true strain", "log strain", "true stress", "cauchy stress"),
@@ -41,8 +43,13 @@ _TRUE: Final = (
 )
 _STRAINS: Final = ("strain", "stretch", "displacement")
 _STRESSES: Final = ("stress", "force")
-_KIND: Final = {"displacement": "length", "stress": "pressure", "force": "force"}
-_EXAMPLE: Final = {"displacement": "displacement_mm", "stress": "stress_kPa", "force": "force_N"}
+_KIND: Final = {"displacement": "length", "stress": "pressure", "force": "force", "time": "time"}
+_EXAMPLE: Final = {
+    "displacement": "displacement_mm",
+    "stress": "stress_kPa",
+    "force": "force_N",
+    "time": "time_s",
+}
 _NO_UNIT: Final = ("", "-", "1", "mm/mm", "m/m", "in/in")
 _PERCENT: Final = ("%", "percent", "pct")
 # Machines write units in any case; "Mpa" is no millipascal.
@@ -147,15 +154,73 @@ def read_cycles(
     return Cycles(*_columns(text, name, area, length), mode, name)
 
 
+def read_timed_test(
+    text: str,
+    *,
+    kind: TestKind,
+    name: str = "test",
+    area: float | str | None = None,
+    length: float | str | None = None,
+) -> TimedTest:
+    r"""Read a uniaxial test over time from a table; see :func:`read_curve` for its form.
+
+    Parameters
+    ----------
+    text
+        Table with a column of the time besides, ``time_s`` (``Time (min)``, ``Zeit [s]``).
+    kind
+        ``"relaxation"``: the strain is held; ``"rate"``: it grows at one rate.
+    name, area, length
+        See :func:`read_curve`.
+
+    Raises
+    ------
+    MeasurementError
+        The errors of :func:`read_curve`; no column of the time; or a strain that is not held, or
+        does not grow at one rate.
+
+    Examples
+    --------
+    >>> rows = "".join(f"\n{10 * i},50,{20 + 10 / (1 + i)}" for i in range(8))
+    >>> read_timed_test("time_s,strain (%),stress_kPa" + rows, kind="relaxation").duration
+    70.0
+    """
+    strain, stress, time = _timed_columns(text, name, area, length)
+    return TimedTest(time, strain, stress, kind, name)
+
+
 def _columns(
     text: str, name: str, area: float | str | None, length: float | str | None
 ) -> tuple[Floats, Floats]:
     """Return strain and stress in Pa, uncorrected, from a table."""
+    return _quantities(text, name, area, length, timed=False)[:2]
+
+
+def _timed_columns(
+    text: str, name: str, area: float | str | None, length: float | str | None
+) -> tuple[Floats, Floats, Floats]:
+    """Return strain, stress in Pa and time in s from a table."""
+    strain, stress, time = _quantities(text, name, area, length, timed=True)
+    assert time is not None
+    return strain, stress, time
+
+
+def _quantities(
+    text: str,
+    name: str,
+    area: float | str | None,
+    length: float | str | None,
+    *,
+    timed: bool,
+) -> tuple[Floats, Floats, Floats | None]:
+    """Return strain, stress in Pa and, if asked, time in s from a table."""
     length = None if length is None else to_si(length, "length", "length")
     area = None if area is None else to_si(area, "area", "area")
     separator, rows = _rows(text, name)
     start, across, along = _header(rows, name)
     columns = [across, along]
+    if timed:
+        columns.append(_time_column(rows[start], f"{name}, line {start + 1}"))
     if _is_units_row(rows, start, columns):
         unit_row = rows[start + 1]
         columns = [c._replace(unit=unit_row[c.at].strip(" ()[]")) for c in columns]
@@ -163,7 +228,18 @@ def _columns(
     numbers = _numbers(rows, start + 1, columns, name, decimal_comma=separator != ",")
     strain = _strain(numbers[:, 0], columns[0], length, name)
     stress = _stress(numbers[:, 1], columns[1], area, name)
-    return strain, stress
+    return strain, stress, numbers[:, 2] * _factor(columns[2], name) if timed else None
+
+
+def _time_column(header: Sequence[str], where: str) -> _Column:
+    columns = [column for i, cell in enumerate(header) if (column := _column(i, cell))]
+    found = _one_of(columns, ("time",), where)
+    if found is None:
+        heads = ", ".join(f'"{cell.strip()}"' for cell in header if cell.strip())
+        raise MeasurementError(
+            where, f"no column of the time among {heads}", "call it time_s (or _min, _h)"
+        )
+    return found
 
 
 def _rows(text: str, name: str) -> tuple[str, list[list[str]]]:
@@ -295,7 +371,7 @@ def _numbers(
                     "take the line out if nothing was measured there",
                 ) from None
         found.append(pair)
-    return np.array(found, dtype=np.float64).reshape(-1, 2)
+    return np.array(found, dtype=np.float64).reshape(-1, len(columns))
 
 
 def _factor(column: _Column, name: str) -> float:
