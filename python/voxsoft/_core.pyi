@@ -712,6 +712,12 @@ class Problem:
         """The largest energy in J/m³ that each hyperelastic voxel has had, if any softens."""
 
     def set_peaks(self, peaks: NDArray[np.float64]) -> None: ...
+    def creep(self) -> NDArray[np.float64] | None:
+        """Viscous stress of a creep as numbers, or None without one."""
+
+    def with_creep(self, time: float, row: NDArray[np.float64]) -> Problem:
+        """The problem at a time in s of a creep, with the numbers of :meth:`creep` there."""
+
     def tendons(self, positions: NDArray[np.float64]) -> list[Tendon]: ...
     def net_forces(
         self, positions: NDArray[np.float64], taut: list[bool] = ...

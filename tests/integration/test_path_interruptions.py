@@ -52,7 +52,27 @@ def notify(event):
 file, folder, over = sys.argv[1:4]
 run_job(RunSpec(design=DesignSource.of_file(file, []), over=over), folder, notify)
 """
+#: A beam of rubber that relaxes, whose load falls while it creeps.
+CREEPING = BEAM.replace(
+    parts=[
+        vs.Part(
+            shape=BEAM.parts[0].shape,
+            material=RUBBER.replace(prony=[{"g": 0.2, "tau": "2 s"}, {"g": 0.2, "tau": "50 s"}]),
+        )
+    ],
+    loads=[
+        vs.Gravity(),
+        vs.Force(
+            region=END,
+            value=(0, 0, "-10 mN"),
+            history={"time": [0, "30 s", "40 s"], "factor": [1, 1, 0.5]},
+        ),
+    ],
+    solver={"method": "statics", "error": "off"},
+)
+DESIGNS = {"beam": BEAM, "rubbed": RUBBED, "creeping": CREEPING}
 OVER = {
+    "creeping": "time=0..100 s/5",
     "beam": "loads[1].value[2]=0..-20 mN/5",
     "rubbed": "clamps[0].motion.displacement[0]=0..2 mm/5",
 }
@@ -62,7 +82,7 @@ def killed(design, folder, signal_name="SIGKILL"):
     """Follow the path of a design in a process that is killed; its file."""
     file = folder.with_name("design.toml")
     vs.save(design, file)
-    over = OVER["beam" if design is BEAM else "rubbed"]
+    over = next(OVER[key] for key, known in DESIGNS.items() if known is design)
     command = [sys.executable, "-c", KILLED, str(file), str(folder), over, signal_name]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     assert ended.returncode == -getattr(signal, signal_name), ended.stderr
@@ -104,6 +124,31 @@ def test_a_path_that_is_killed_half_way_goes_on(tmp_path, solved, signal_name):
     assert not (folder / FOLDER).exists()
     assert follow(file, whole, over).exit_code == 0
     assert (folder / "path.csv").read_bytes() == (whole / "path.csv").read_bytes()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("signal_name", ["SIGKILL", "SIGINT"])
+def test_a_creep_that_is_stopped_goes_on_to_the_same_table(tmp_path, solved, signal_name):
+    folder, whole, over = tmp_path / "stopped", tmp_path / "whole", OVER["creeping"]
+    file = killed(CREEPING, folder, signal_name)
+    kept = sorted(file.name for file in (folder / FOLDER).iterdir())
+    assert kept == ["0000.npz", "0001.npz", "0002.npz", "creep-0002.npz"]
+    done = follow(file, folder, over)
+    assert done.exit_code == 0, done.output
+    assert solved == [75.0, 100.0]
+    assert not (folder / FOLDER).exists()
+    assert follow(file, whole, over).exit_code == 0
+    assert (folder / "path.csv").read_bytes() == (whole / "path.csv").read_bytes()
+
+
+@pytest.mark.long
+def test_a_creep_without_its_viscous_stress_begins_anew(tmp_path, solved):
+    folder, over = tmp_path / "stopped", OVER["creeping"]
+    file = killed(CREEPING, folder)
+    damaged = folder / FOLDER / "creep-0002.npz"
+    damaged.write_bytes(damaged.read_bytes()[:200])
+    assert follow(file, folder, over).exit_code == 0
+    assert solved[0] == 0.0
 
 
 @pytest.mark.slow

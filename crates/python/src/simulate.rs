@@ -183,6 +183,24 @@ impl PyProblem {
         Ok(())
     }
 
+    /// Viscous stress of a creep as numbers; `None` without one.
+    fn creep<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let row = self.now().creep_row()?;
+        Some(PyArray1::from_vec(py, row))
+    }
+
+    /// The problem at a time in s of a creep, with the numbers of `creep` there.
+    fn with_creep(&self, time: f64, row: PyReadonlyArray1<'_, f64>) -> PyResult<Self> {
+        let row = row.as_array().to_vec();
+        let mut fits = false;
+        let resumed = self.with(|problem| fits = problem.resume_creep(time, &row));
+        if fits {
+            Ok(resumed)
+        } else {
+            Err(PyValueError::new_err("creep: numbers of another body"))
+        }
+    }
+
     /// Elastic energy in J and forces in N at the given positions.
     fn elastic<'py>(
         &self,

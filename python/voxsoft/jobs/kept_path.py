@@ -54,8 +54,10 @@ class KeptPath:
         described = f"{write_toml(design.resolved)}\n{over.key}: {values}"
         self._key = hashlib.sha256(described.encode()).hexdigest()
 
-    def keep(self, number: int, result: Result) -> None:
+    def keep(self, number: int, result: Result, creep: NDArray[np.float64] | None = None) -> None:
         """Write the equilibrium at a value, counted from 0.
+
+        The viscous stress of a creep, `creep`, is kept at the last equilibrium alone.
 
         Raises
         ------
@@ -66,10 +68,16 @@ class KeptPath:
         arrays = {f"array{at}": each for at, each in enumerate(state.arrays)}
         content: dict[str, Any] = {"key": self._key, "state": state.text, **arrays}
         make_folder(self._folder)
+        if creep is not None:
+            # Before the equilibrium, so that a job that is killed between them has the last one's.
+            row: dict[str, Any] = {"key": self._key, "creep": creep}
+            replace_whole(self._creep_file(number), lambda beside: np.savez(beside, **row))
         replace_whole(
             self._file(number),
             lambda beside: np.savez(beside, positions=result.positions, **content),
         )
+        if creep is not None and number > 0:
+            self._creep_file(number - 1).unlink(missing_ok=True)
 
     def read(self) -> list[tuple[NDArray[np.float64], SolvedState]]:
         """Read positions and states of the equilibria from the first value on, without a gap.
@@ -96,9 +104,22 @@ class KeptPath:
             yield found
             number += 1
 
+    def read_creep(self, number: int) -> NDArray[np.float64] | None:
+        """Read the viscous stress at an equilibrium; None if it was not kept or cannot be read."""
+        with (
+            suppress(OSError, ValueError, KeyError, EOFError, BadZipFile),
+            np.load(self._creep_file(number), allow_pickle=False) as content,
+        ):
+            if str(content["key"]) == self._key:
+                return np.asarray(content["creep"], dtype=np.float64)
+        return None
+
     def clear(self) -> None:
         """Remove all equilibria: the path is finished, and a repeated job begins anew."""
         shutil.rmtree(self._folder, ignore_errors=True)
 
     def _file(self, number: int) -> Path:
         return self._folder / f"{number:04}.npz"
+
+    def _creep_file(self, number: int) -> Path:
+        return self._folder / f"creep-{number:04}.npz"

@@ -105,6 +105,7 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
     earlier = kept.read()
     if not earlier:
         kept.clear()  # equilibria of another path
+    creep = kept.read_creep(len(earlier) - 1)
     followed: simulation.LoadPath | None = None
 
     def step(path: simulation.LoadPath) -> None:
@@ -115,7 +116,7 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
             write_job(spec.replace(kept=False), folder)
         followed = path
         if done > len(earlier):
-            kept.keep(done - 1, path.results[-1])
+            kept.keep(done - 1, path.results[-1], path.creep)
         files.write_path(path, (), folder)
         notify(path)
         reached = f"{over.in_words(over.values[done - 1])} reached"
@@ -123,7 +124,7 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
 
     unwritten = Unwritten(folder)
     try:
-        path = simulation.follow(design, over, step=step, earlier=earlier)
+        path = simulation.follow(design, over, step=step, earlier=earlier, creep=creep)
     except BaseException:
         # Every exception, Ctrl-C too, leaves the equilibria that were found.
         if followed is not None:

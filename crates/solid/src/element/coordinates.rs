@@ -46,6 +46,23 @@ impl Hex8Stress {
         hourglass: [[0.0; 3]; 3],
     };
 
+    /// All components in one row.
+    pub(crate) fn row(&self) -> [f64; STRAIN_COMPONENTS] {
+        let mut row = [0.0; STRAIN_COMPONENTS];
+        row[..6].copy_from_slice(&self.stress);
+        row[6..].copy_from_slice(self.hourglass.as_flattened());
+        row
+    }
+
+    /// The stress with the components of such a row.
+    pub(crate) fn of_row(row: &[f64; STRAIN_COMPONENTS]) -> Self {
+        let mut found = Self::ZERO;
+        found.stress.copy_from_slice(&row[..6]);
+        let hourglass = found.hourglass.as_flattened_mut();
+        hourglass.copy_from_slice(&row[6..]);
+        found
+    }
+
     /// The work per rest volume (J/m³) done along a strain.
     pub(crate) fn along(&self, stretch: &Sym, hourglass: &[Vec3; 3]) -> f64 {
         let own = self.hourglass.as_flattened().iter();

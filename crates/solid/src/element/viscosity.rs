@@ -16,6 +16,7 @@
 //! `s` is the gradient of the deviatoric energy, the other is linear in the strain.
 
 use crate::Body;
+use crate::element::coordinates::STRAIN_COMPONENTS;
 use crate::element::hex8::{Hex8Stress, Within};
 use crate::element::viscous_error::Pace;
 use crate::vector::Vec3;
@@ -156,6 +157,43 @@ impl Viscosity {
             }
         }
         self.before = Some(now);
+    }
+
+    /// All of it as numbers, for storage; [`Self::restored`] reads them.
+    pub fn row(&self) -> Vec<f64> {
+        let (largest, next, length, rates) = self.pace.numbers();
+        let known = f64::from(u8::from(self.before.is_some()));
+        let mut row = vec![known, largest, next, length];
+        let branches = self.branches.iter().flatten();
+        let stresses = self.before.iter().flatten().chain(rates).chain(branches);
+        row.extend(stresses.flat_map(Hex8Stress::row));
+        row
+    }
+
+    /// History variables of steps without inertia from the numbers of [`Self::row`]; `None` where they are not of this
+    /// body.
+    pub fn restored(body: &Body, row: &[f64]) -> Option<Self> {
+        let mut new = Self::without_inertia(body)?;
+        let (&[known, largest, next, length], rest) = row.split_first_chunk::<4>()?;
+        let (rows, left) = rest.as_chunks::<STRAIN_COMPONENTS>();
+        let mut stresses = rows.iter().map(Hex8Stress::of_row);
+        let count = body.hex8s().len();
+        let part = |found: Vec<Hex8Stress>| (found.len() == count).then_some(found);
+        new.before = if known > 0.0 {
+            Some(part(stresses.by_ref().take(count).collect())?)
+        } else {
+            None
+        };
+        let rates = if length.is_finite() {
+            Some(part(stresses.by_ref().take(count).collect())?)
+        } else {
+            None
+        };
+        new.pace = Pace::of_numbers(largest, next, length, rates);
+        for branch in new.branches.iter_mut().flatten() {
+            *branch = stresses.next()?;
+        }
+        (left.is_empty() && stresses.next().is_none()).then_some(new)
     }
 
     /// Sets the stress of the branches as it is, for a state that is looked at.

@@ -50,6 +50,31 @@ impl Pace {
     }
 }
 
+impl Pace {
+    /// Largest norm, length of the next and of the last step (NaN where there is none), and the rates in the last one.
+    pub(super) fn numbers(&self) -> (f64, f64, f64, &[Hex8Stress]) {
+        let next = self.next.unwrap_or(f64::NAN);
+        match &self.last {
+            Some((rates, length)) => (self.largest, next, *length, rates),
+            None => (self.largest, next, f64::NAN, &[]),
+        }
+    }
+
+    /// The course with these numbers.
+    pub(super) fn of_numbers(
+        largest: f64,
+        next: f64,
+        length: f64,
+        rates: Option<Vec<Hex8Stress>>,
+    ) -> Self {
+        Self {
+            last: rates.map(|rates| (rates, length)),
+            largest,
+            next: next.is_finite().then_some(next),
+        }
+    }
+}
+
 impl Viscosity {
     /// Discards the rates of the last step: the loads have a corner here.
     pub fn turn_corner(&mut self) {

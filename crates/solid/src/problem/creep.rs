@@ -11,6 +11,23 @@ impl Problem {
         self.viscosity = Viscosity::without_inertia(&self.body);
     }
 
+    /// History of viscous stress as numbers, see [`Viscosity::row`]; `None` without viscous stress.
+    pub fn creep_row(&self) -> Option<Vec<f64>> {
+        self.viscosity.as_ref().map(Viscosity::row)
+    }
+
+    /// Returns to a state of a creep at a time in s, with the numbers of [`Self::creep_row`]; returns false, and changes
+    /// nothing, where they are not of this body.
+    pub fn resume_creep(&mut self, time: f64, row: &[f64]) -> bool {
+        let Some(viscosity) = Viscosity::restored(&self.body, row) else {
+            return false;
+        };
+        self.begin(time);
+        self.viscosity = Some(viscosity);
+        self.hold_creep();
+        true
+    }
+
     /// History of viscous stress, to choose the length of its steps.
     pub fn viscosity_mut(&mut self) -> Option<&mut Viscosity> {
         self.viscosity.as_mut()

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from statistics import fmean
 from typing import Any, Final
@@ -19,6 +19,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft import _core
 from voxsoft.design import Design, Solver, require_design
 from voxsoft.design.activation import AnyActivation
 from voxsoft.design.dielectric import Dielectric
@@ -73,11 +74,14 @@ class LoadPath:
     results
         The equilibrium at each value that was reached; where the path was lost the last one is not
         at rest.
+    creep
+        Viscous stress at the last equilibrium of a creep, as numbers; else None.
     """
 
     design: Design
     over: Over
     results: tuple[Result, ...]
+    creep: NDArray[np.float64] | None = field(default=None, repr=False, compare=False)
 
     @property
     def status(self) -> str:
@@ -161,6 +165,7 @@ def follow(
     progress: ProgressCallback | None = None,
     step: Callable[[LoadPath], None] | None = None,
     earlier: Sequence[tuple[NDArray[np.float64], SolvedState]] = (),
+    creep: NDArray[np.float64] | None = None,
     **settings: Any,  # noqa: ANN401 - the fields of Solver declare the types
 ) -> LoadPath:
     """Follow equilibria along the values of a load, a motion or a parameter of them.
@@ -187,7 +192,9 @@ def follow(
     earlier
         Vertex positions and all other state of the first equilibria of a path that was stopped.
         It resumes behind them where positions determine an equilibrium; contact, tendons, supplies,
-        softening, creep and planes of symmetry make it start over.
+        softening and planes of symmetry make it start over.
+    creep
+        Viscous stress at the last of these, :attr:`LoadPath.creep`: a creep starts over without it.
     **settings
         Fields of :class:`voxsoft.design.Solver` that replace the design's own.
 
@@ -256,15 +263,21 @@ def follow(
     start: Start | None = None
     before: float | None = None
     share = max(1, len(instants) - 1)
-    if part is None and is_given_by_positions(given) and not given.tendons and not creeps:
+    known = part is None and is_given_by_positions(given) and not given.tendons
+    if known and (creep is not None or not creeps):
         for number, (positions, state) in enumerate(earlier):
             found = state.result(setup, positions)
             if found.status != "ok":
                 break
             results.append(replace(found, design=designs[number]))
             start, before = Start(positions), instants[number]
+    if creeps and results:
+        try:
+            problem = _crept(problem, instants[: len(results)], earlier, creep)
+        except ValueError:
+            results, start, before = [], None, None
     if results and step is not None:
-        step(LoadPath(given, asked, tuple(results)))
+        step(LoadPath(given, asked, tuple(results), creep))
     for number, instant in enumerate(instants):
         if number < len(results):
             continue
@@ -286,12 +299,24 @@ def follow(
         problem, start, before = report.answer.problem, Start(result.positions), instant
         whole = result if part is None else part.unfolded(result)
         results.append(replace(whole, design=designs[number]))
-        path = LoadPath(given, asked, tuple(results))
+        path = LoadPath(given, asked, tuple(results), problem.creep() if creeps else None)
         if step is not None:
             step(path)
         if result.status != "ok":
             break
     return path
+
+
+def _crept(
+    problem: _core.Problem,
+    instants: Sequence[float],
+    earlier: Sequence[object],
+    creep: NDArray[np.float64] | None,
+) -> _core.Problem:
+    """Return to a creep at the last of some instants; ValueError if its state is unknown."""
+    if creep is None or len(earlier) != len(instants):
+        raise ValueError("not all equilibria can be read")
+    return problem.with_creep(instants[-1], creep)
 
 
 def _read(over: str, values: Sequence[float | str] | None, design: Design) -> Over:
