@@ -10,6 +10,7 @@ A step has an error of at most 1e-5 of the largest stress in its branches (`ERRO
 branches: 1e-4 is allowed for all of them.
 """
 
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -326,3 +327,83 @@ def test_a_stiffness_of_a_crept_state_says_that_it_is_the_long_term_one():
     # The tangent of the elastic body at that shape, which is strained by some thousandths.
     elastic = vs.simulate(bar(prony=(), loads=[load], objectives=goal))
     assert float(crept.metrics["pitch"]) == pytest.approx(float(elastic.metrics["pitch"]), rel=2e-3)
+
+
+def _arch(force, *, g, end, **solver):
+    """A flat arch, clamped at both ends, on whose top a force grows until `end` seconds."""
+    material = {"model": "neo-hookean", "young": "100 kPa", "poisson": 0.45}
+    if g:
+        material["prony"] = [{"g": g, "tau": "10 s"}]
+    tube = {"kind": "difference", "of": ["outer", "inner"]}
+    round_bar = {"kind": "cylinder", "axis": "y"}
+    top = {"kind": "box", "size": ["120 mm", "10 mm", "20 mm"], "center": [0, 0, "60 mm"]}
+    middle = {"x": ["-1.5 mm", "1.5 mm"]}
+    sides = [{"x": ["-80 mm", "-30 mm"]}, {"x": ["30 mm", "80 mm"]}]
+    return vs.Design.from_document(
+        {
+            "schema": "voxsoft/1",
+            "name": "arch",
+            "voxel_size": "2 mm",
+            "shapes": {
+                "outer": {**round_bar, "radius": "62 mm", "height": "4 mm"},
+                "inner": {**round_bar, "radius": "58 mm", "height": "10 mm"},
+                "tube": tube,
+                "top": top,
+                "arch": {"kind": "intersection", "of": ["tube", "top"]},
+            },
+            "parts": [{"shape": "arch", "material": material}],
+            "clamps": [
+                *({"region": side} for side in sides),
+                {"region": {"z": [0, "80 mm"]}, "axes": "y"},
+            ],
+            "loads": [
+                {
+                    "kind": "force",
+                    "region": {**middle, "z": ["59 mm", "70 mm"]},
+                    "value": [0, 0, f"{-force} N"],
+                    "history": ramp(end),
+                }
+            ],
+            "probes": {"top": middle},
+            "solver": {"error": "off", **solver},
+        }
+    )
+
+
+@pytest.mark.long
+def test_a_snap_is_reported_with_its_time():
+    force, end, g = 0.05, 20.0, 0.2
+    static = vs.simulate(_arch(force, g=0.0, end=end, control="arc-length", steps=20))
+    path = vs.follow(_arch(force, g=g, end=end), f"time=0..{end} s/5")
+    assert path.status == "ok"
+    (snap,) = [time for result in path.results for time in result.snaps]
+    # The load at which it snaps lies between the limits of the long-term and of the
+    # instantaneous stiffness, as branches have relaxed in part.
+    assert static.limit_factor * end < snap < static.limit_factor / (1.0 - g) * end
+    snapped = next(result for result in path.results if result.snaps)
+    assert f"the body snapped at {snap:.6g} s" in snapped.message
+    assert any(f"snapped to another one at {snap:.6g} s" in str(w) for w in snapped.warnings)
+
+
+@pytest.mark.long
+def test_a_creep_past_a_limit_is_lost_at_a_time_and_a_load():
+    design = bar().replace(
+        voxel_size=2 * mm,
+        shapes={
+            "outer": {"kind": "sphere", "radius": "10 mm"},
+            "inner": {"kind": "sphere", "radius": "6 mm"},
+            "bar": {"kind": "difference", "of": ["outer", "inner"]},
+        },
+        clamps=[],
+        probes={},
+        symmetry=[{"plane": axis} for axis in "xyz"],
+        loads=[{"kind": "pressure", "value": "40 kPa", "history": ramp(20.0)}],
+    )
+    path = vs.follow(design, "time=0..20 s/2")
+    assert path.status == "not-at-rest"
+    found = re.search(r"found after ([\d.]+) s under pressure .*? of ([\d.]+) kPa", path.message)
+    time, pressure = map(float, found.groups())
+    # The load of its history at that time, both to four digits.
+    assert pressure == pytest.approx(2.0 * time, rel=1e-3)
+    assert 0.0 < time < 20.0
+    assert "motion with inertia" in path.message

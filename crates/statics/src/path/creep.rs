@@ -4,8 +4,9 @@
 //! an equilibrium like any other. Its error is that of the branches alone ([`voxsoft_solid::Viscosity::error`]), which
 //! chooses the length of steps: they grow as the creep slows, and fall at a corner of the loads, on which a step ends.
 
-use voxsoft_solid::Status;
-use voxsoft_solid::vector::{Vec3, add, scale, sub};
+use voxsoft_solid::elastic;
+use voxsoft_solid::vector::{Vec3, add, dot, scale, sub};
+use voxsoft_solid::{Contact, Status};
 
 use crate::path::contact_loop::AtLoad;
 use crate::path::equilibrium::Failure;
@@ -26,6 +27,12 @@ const GROWTH: f64 = 3.0;
 const FALL: f64 = 0.2;
 /// Part of the length at which the error would be just [`ERROR`].
 const SAFETY: f64 = 0.85;
+/// Longest step that is sudden for all branches, in the shortest relaxation time: they lose this part of their stress.
+const SUDDEN: f64 = 0.02;
+/// Part of the work of the loads that a snap sets free at least, beyond the work of the forces at its start.
+const SET_FREE: f64 = 0.01;
+/// Part of the energy that is rounding.
+const ROUNDING: f64 = 1e-9;
 /// Divisor of the length of a step without an equilibrium.
 const CUT: f64 = 4.0;
 
@@ -71,7 +78,8 @@ impl Path<'_, '_> {
         loose: Option<&PseudoTransient>,
     ) -> Ending {
         let whole = span.to - span.from;
-        let first = FIRST * self.equilibrium.problem.shortest_relaxation();
+        let shortest = self.equilibrium.problem.shortest_relaxation();
+        let first = FIRST * shortest;
         let problem = &self.equilibrium.problem;
         let mut longest = f64::INFINITY;
         if problem.depends_on_way() {
@@ -123,6 +131,12 @@ impl Path<'_, '_> {
                     self.with_contact(|contact| contact.rollback());
                     let hopeless = !matches!(failure, Failure::Lost | Failure::Singular);
                     cut = step / CUT;
+                    if !hopeless && cut < least && self.snap_within(next, step, settings) {
+                        cut = f64::INFINITY;
+                        last = None;
+                        now = next;
+                        continue;
+                    }
                     if hopeless || cut < least {
                         let failure = match failure {
                             Failure::Singular if self.touches() => Failure::Lost,
@@ -137,6 +151,7 @@ impl Path<'_, '_> {
             };
             let error = self.equilibrium.problem.creep_error(&trial, step) / ERROR;
             let factor = (SAFETY / error.cbrt()).clamp(FALL, GROWTH);
+            let snapped = step < SUDDEN * shortest && self.has_snapped(&trial, point);
             let problem = &mut self.equilibrium.problem;
             if error > 1.0 {
                 self.with_contact(|contact| contact.rollback());
@@ -148,7 +163,7 @@ impl Path<'_, '_> {
                 self.equilibrium.back_offs += 1;
                 continue;
             }
-            if let Some(viscosity) = problem.viscosity_mut() {
+            if let Some(viscosity) = problem.viscosity_mut().filter(|_| !snapped) {
                 // A step that was shortened to end here does not shorten the next one.
                 let least = if step < asked { asked } else { 0.0 };
                 viscosity.set_next_step(f64::max(factor * step, least));
@@ -175,9 +190,68 @@ impl Path<'_, '_> {
                 length: step,
                 start,
             });
+            if snapped {
+                self.turn_after_snap(next);
+                last = None;
+            }
             now = next;
         }
         Ending::new(Status::AtRest, None, 1.0)
+    }
+
+    /// Snaps within a step of time that has no equilibrium near its start, however short; returns true if the body came to
+    /// rest elsewhere under the loads of its end, `next`. The branches take the motion for a sudden one.
+    fn snap_within(&mut self, next: f64, step: f64, settings: &Settings) -> bool {
+        let recorded = |contact: &dyn Contact| contact.is_recorded();
+        if self.equilibrium.problem.contact().is_some_and(recorded) {
+            return false;
+        }
+        let mut search = AtLoad {
+            point: LoadParameter::at(next),
+            safe: true,
+            can_be_cut: false,
+        };
+        if !self.snap(&mut search, settings) {
+            return false;
+        }
+        self.snaps.pop();
+        self.equilibrium
+            .problem
+            .end_viscosity(&self.positions, step);
+        self.turn_after_snap(next);
+        true
+    }
+
+    /// Tests whether a step was a snap: forces that are out of balance at its start fall on the way to a neighboring
+    /// equilibrium, and grow on the way to one beyond an unstable state, where they do more work than at first.
+    fn has_snapped(&self, trial: &[Vec3], point: LoadParameter) -> bool {
+        let problem = &self.equilibrium.problem;
+        if problem.contact().is_some() || problem.floor().is_some() || problem.fluid().is_some() {
+            return false;
+        }
+        let start = &self.positions;
+        let mut net = vec![[0.0; 3]; start.len()];
+        problem.add_scaled_loads(start, &point.factor_of(), &mut net);
+        elastic::add_forces(problem.body(), start, &mut net);
+        let ways = trial.iter().zip(start).map(|(to, from)| sub(*to, *from));
+        let straight: f64 = net
+            .iter()
+            .zip(ways)
+            .map(|(force, way)| dot(*force, way))
+            .sum();
+        let loads = |at: &[Vec3]| problem.load_potential(at, &point.factor_of());
+        let (before, size) = self.equilibrium.potential(start, point);
+        let free = before - self.equilibrium.potential(trial, point).0;
+        let work = (loads(start) - loads(trial)).abs();
+        free - straight > f64::max(SET_FREE * work, ROUNDING * size)
+    }
+
+    /// Begins anew with the length of steps after a snap at a time, which is recorded.
+    fn turn_after_snap(&mut self, time: f64) {
+        self.snaps.push(time);
+        if let Some(viscosity) = self.equilibrium.problem.viscosity_mut() {
+            viscosity.turn_corner();
+        }
     }
 
     /// Starting guess of a step: the motion of the last one goes on, where nothing stops it.

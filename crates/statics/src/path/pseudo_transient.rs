@@ -87,9 +87,10 @@ impl PseudoTransient {
     }
 
     /// Dampers on all vertices with mass, each about as stiff as the body is there at first, for motions of the size of
-    /// a `length` (m).
-    pub fn of_everything(problem: &Problem, length: f64) -> Self {
+    /// a `length` (m) of contact; without contact of that between vertices of a compact body.
+    pub fn of_everything(problem: &Problem, length: Option<f64>) -> Self {
         let rest = problem.body().rest();
+        let length = length.unwrap_or_else(|| extent(rest) / (rest.len() as f64).cbrt());
         let masses = problem.body().masses();
         let each = problem.body().unit_strain_force() / (length * (rest.len() as f64).sqrt());
         let weight = |mass: &f64| if *mass > 0.0 { each } else { 0.0 };

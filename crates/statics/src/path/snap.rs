@@ -60,10 +60,8 @@ impl Path<'_, '_> {
     /// If not, nothing has changed.
     pub fn snap(&mut self, search: &mut impl Search, settings: &Settings) -> bool {
         let problem = &self.equilibrium.problem;
-        let Some(contact) = problem.contact() else {
-            return false;
-        };
-        let dampers = PseudoTransient::of_everything(problem, contact.length());
+        let length = problem.contact().map(|contact| contact.length());
+        let dampers = PseudoTransient::of_everything(problem, length);
         let term = Arc::clone(&dampers.dampers) as Arc<dyn Term>;
         let Ok(damped) = problem.clone().with_term(term) else {
             return false;

@@ -143,7 +143,8 @@ class Result(Shown):
     stable
         True for a stable equilibrium; None where the solver does not decide it.
     snaps
-        The load factors at which a body with contact snapped to another equilibrium on the way.
+        The load factors at which a body with contact snapped to another equilibrium on the way; of
+        a creep the times in s at which any body did.
     contacts
         Contacts with their forces; pairs that are apart are left out.
     objects
@@ -458,8 +459,10 @@ class Result(Shown):
             hint = "lower the loads to what the body carries"
             found = (Diagnostic("warning", "equilibrium", what, hint), *found)
         if self.snaps:
-            where = format_percent(self.snaps[0])
-            what = f"snapped to another one at {where} of the loads"
+            where = f"{format_percent(self.snaps[0])} of the loads"
+            if self.solver["way"] == "creep":
+                where = format_quantity(float(f"{self.snaps[0]:.6g}"), "time")
+            what = f"snapped to another one at {where}"
             hint = 'check by motion over time (method = "dynamics") where it ends'
             found = (Diagnostic("warning", "equilibrium", what, hint), *found)
         if self.contacts and self.stable is not None and self.residual > LARGE_RESIDUAL:

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
+from voxsoft._core import Status
 from voxsoft.design import Design, Solver, require_design
 from voxsoft.design.activation import AnyActivation
 from voxsoft.design.dielectric import Dielectric
@@ -41,7 +42,12 @@ from voxsoft.simulation.runs.symmetric_body import SectorSetup
 from voxsoft.simulation.setup.materials import core_materials
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.simulation.solving.choice import method_of
-from voxsoft.simulation.solving.equilibrium import LoadControl, Stretch, find_equilibrium
+from voxsoft.simulation.solving.equilibrium import (
+    LoadControl,
+    Stretch,
+    find_equilibrium,
+    lost_creep,
+)
 from voxsoft.simulation.solving.start import Start
 
 #: Longest step where the answer depends on the path, as a part of all of it.
@@ -285,16 +291,14 @@ def follow(
         if swells and not creeps:
             own = core_materials(designs[number], setup.materials, solved.mesh, solved.origin)
             problem = problem.with_materials(own)
+        stretch = Stretch(before, instant, min(1.0, _LONGEST * share), creeps)
         used, report = find_equilibrium(
-            solved,
-            statics,
-            progress,
-            problem,
-            start=start,
-            stretch=Stretch(before, instant, min(1.0, _LONGEST * share), creeps),
+            solved, statics, progress, problem, start=start, stretch=stretch
         )
         used["refine"] = solver.refine
         result = result_of(solved, used, report, time.perf_counter() - started)
+        if creeps and report.status == Status.NOT_CONVERGED:
+            result = replace(result, message=lost_creep(solved, stretch, report))
         # The next equilibrium continues from the whole state of this one.
         problem, start, before = report.answer.problem, Start(result.positions), instant
         whole = result if part is None else part.unfolded(result)

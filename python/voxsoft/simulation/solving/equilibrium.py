@@ -10,13 +10,13 @@ from voxsoft._core import Status
 from voxsoft._memory import memory_limit
 from voxsoft.design.solver import Count, Ratio, Share, Tolerance
 from voxsoft.errors import SimulationError
-from voxsoft.simulation.loads import readings
+from voxsoft.simulation.loads import LoadReading, readings
 from voxsoft.simulation.setup.freedom import free_motion
 from voxsoft.simulation.setup.materials import core_materials
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.simulation.solving.method import Answer, Method, Progress, Report, Watch
 from voxsoft.simulation.solving.start import Start
-from voxsoft.units import format_percent
+from voxsoft.units import format_percent, format_quantity
 
 DEFAULT_STATICS_TOLERANCE: Final = 1e-8
 DEFAULT_STEPS: Final = 20
@@ -195,7 +195,10 @@ def find_equilibrium(
         progress=progress,
     )
     path, status = path_of(answer), answer.status
-    if status == Status.NOT_CONVERGED and free_motion(setup):
+    if stretch is not None and stretch.creeps and stretch.since is not None:
+        # A body that was at rest before is no mechanism: its tangent is singular at a limit.
+        status = Status.NOT_CONVERGED if status == Status.MECHANISM else status
+    elif status == Status.NOT_CONVERGED and free_motion(setup):
         # The factorization shows a mechanism only as a tangent that is singular up to rounding.
         status = Status.MECHANISM
     if status == Status.OUT_OF_MEMORY:
@@ -207,6 +210,35 @@ def find_equilibrium(
     way = "creep" if stretch is not None and stretch.creeps else statics.control
     used = {"method": "statics", "way": way, **settings}
     return used, Report(answer, status, answer.steps)
+
+
+def lost_creep(setup: Setup, stretch: Stretch, report: Report) -> str:
+    """Describe where a creep was lost: its time, its loads, and other ways."""
+    since = stretch.since or 0.0
+    reached = path_of(report.answer).reached
+    last = since + reached * (stretch.until - since)
+    if stretch.since is None and reached == 0.0:
+        at, met = "at time zero, when loads act suddenly", "the instantaneous stiffness"
+    else:
+        at, met = f"after {_instant(last)}", "the stiffness that is left"
+    loads = ", ".join(_at_instant(each, last) for each in readings(setup.design))
+    under = f" under {loads}" if loads else ""
+    return (
+        f"no equilibrium found {at}{under}, after {report.steps} Newton iterations: {met} may not "
+        "carry the load (a limit, as of a balloon that bursts or a column that buckles); kept is "
+        "the last one. Try a smaller load, an earlier end, smaller voxels, or motion with inertia "
+        '(end_time, method = "dynamics")'
+    )
+
+
+def _at_instant(reading: LoadReading, instant: float) -> str:
+    factor = 1.0 if reading.history is None else reading.history.at(instant)
+    size = float(f"{factor * reading.size:.4g}")
+    return f"{reading.label} of {format_quantity(size, reading.quantity)}"
+
+
+def _instant(seconds: float) -> str:
+    return format_quantity(float(f"{seconds:.6g}"), "time")
 
 
 def path_of(answer: _core.Answer) -> _core.LoadPath:
@@ -244,7 +276,9 @@ def sentence(
     match status:
         case Status.AT_REST:
             words = f"equilibrium after {iterations}, {residual}"
-            if path.snaps:
+            if path.snaps and way == "creep":
+                words += f"; the body snapped at {_instant(path.snaps[0])}"
+            elif path.snaps:
                 words += f"; the body snapped at {100 * path.snaps[0]:.4g} % of the load"
             if path.limit is not None:
                 words += f"; the path has a limit at {limit}"
