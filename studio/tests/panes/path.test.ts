@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { changeable, overText } from "../../src/panes/path/lines";
+import { changeable, overText, stiffnessNote } from "../../src/panes/path/lines";
 import type { Parameter } from "../../src/protocol";
 
 const DESIGN = {
@@ -37,6 +37,28 @@ describe("changeable", () => {
     ]);
     // Heat begins where the part has its size: at zero kelvin there is nothing to solve.
     expect(found.find((one) => one.kind === "temperature")?.start).toBe(293);
+  });
+});
+
+describe("time", () => {
+  const rubber = { materials: { soft: { model: "yeoh", prony: [{ g: 0.2, tau: 3 }] } } };
+
+  it("is offered where rubber relaxes, for five of its times, or where a history is followed", () => {
+    const times = (design: object) =>
+      changeable({ ...design }, []).flatMap((one) => (one.key === "time" ? [one.value] : []));
+    expect(times(DESIGN)).toEqual([]);
+    expect(times(rubber)).toEqual([15]);
+    expect(times({ ...rubber, loads: [{ history: { time: [0, 40], factor: [0, 1] } }] })).toEqual([
+      40,
+    ]);
+    const [time] = changeable(rubber, []);
+    expect(time && overText(time, 0, 15, 4)).toBe("time=0..15 s/4");
+  });
+
+  it("says which stiffness rubber that relaxes has", () => {
+    expect(stiffnessNote(DESIGN, "time")).toBeNull();
+    expect(stiffnessNote(rubber, "time")).toContain("instantaneous");
+    expect(stiffnessNote(rubber, "loads[0].value")).toContain("long-term");
   });
 });
 

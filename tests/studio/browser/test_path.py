@@ -48,6 +48,36 @@ def test_a_field_is_followed_and_seen_again_after_a_reload(gripper, open_tab, tm
     assert tab.errors == []
 
 
+def test_rubber_creeps_over_time_and_names_its_stiffness(serving, tmp_path, open_tab, coarse):
+    rubber = (
+        '{ model = "neo-hookean", young = "60 kPa", density = "1000 kg/m^3", '
+        'prony = [{ g = 0.4, tau = "10 s" }] }'
+    )
+    text = coarse.replace('material = "ecoflex-00-30-lattice"', f"material = {rubber}")
+    server = serving(tmp_path, text=text)
+    try:
+        tab = open_tab(server.address)
+        tab.page.get_by_text("Path", exact=True).click()
+        pane = tab.find("path-pane")
+        assert "long-term stiffness" in tab.find("path-stiffness").inner_text()
+        pane.get_by_label("Change", exact=True).select_option("time")
+        assert "instantaneous" in tab.find("path-stiffness").inner_text()
+        # Five relaxation times: less than a hundredth is left.
+        assert pane.get_by_label("To", exact=True).input_value().startswith("50")
+        pane.get_by_label("Equilibria", exact=True).fill("3")
+        pane.get_by_label("Equilibria", exact=True).press("Enter")
+        tab.find("path-start").click()
+        end = tab.find("path-end")
+        end.wait_for()
+        assert "3 equilibria" in end.inner_text()
+        pane.get_by_label("Number along the path").select_option("tip.z")
+        tab.page.get_by_label("tip.z over time").wait_for()
+        tab.shot("path-creep")
+        assert tab.errors == []
+    finally:
+        server.stop()
+
+
 def test_a_path_that_is_lost_says_where(serving, tmp_path, open_tab, coarse):
     heavy = coarse.replace(
         'kind = "gravity"',

@@ -12,7 +12,7 @@ import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
 import { useJob } from "../study/current";
 import { useNewJob } from "../study/StudyPane";
-import { type Changeable, changeable, overText, unitOfValue } from "./lines";
+import { type Changeable, changeable, overText, stiffnessNote, unitOfValue } from "./lines";
 import { type Measured, misfit, readMeasured, together } from "./measured";
 import "../design/design.css";
 import "./path.css";
@@ -39,7 +39,11 @@ export default function PathPane() {
   return (
     <div className="pane" data-testid="path-pane">
       <div className="section">
-        <Setup choices={choices} valid={document?.valid ?? false} />
+        <Setup
+          choices={choices}
+          note={(key) => (form?.design ? stiffnessNote(form.design, key) : null)}
+          valid={document?.valid ?? false}
+        />
       </div>
       {path ? (
         <>
@@ -60,7 +64,11 @@ export default function PathPane() {
   );
 }
 
-function Setup(props: { choices: readonly Changeable[]; valid: boolean }) {
+function Setup(props: {
+  choices: readonly Changeable[];
+  note: (key: string) => string | null;
+  valid: boolean;
+}) {
   const { choices } = props;
   const [key, setKey] = useState("");
   const [range, setRange] = useState<readonly [number, number] | null>(null);
@@ -76,6 +84,7 @@ function Setup(props: { choices: readonly Changeable[]; valid: boolean }) {
       spec: { kind: "run", name, solver: {}, over: overText(what, from, to, count) },
     });
   };
+  const note = props.note(what.key);
   const trouble = !props.valid
     ? "Fix the errors of the design first."
     : from === to
@@ -112,6 +121,11 @@ function Setup(props: { choices: readonly Changeable[]; valid: boolean }) {
         step={1}
         onChange={(value) => setCount(Math.round(value))}
       />
+      {note && (
+        <p className="muted" data-testid="path-stiffness">
+          {note}
+        </p>
+      )}
       {trouble && <p className="muted">{trouble}</p>}
       <Button kind="primary" testId="path-start" disabled={trouble !== null} onClick={start}>
         Follow

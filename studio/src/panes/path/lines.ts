@@ -36,6 +36,11 @@ const DRIVES = ["tension", "shortening", "length"] as const;
 
 type Table = Readonly<Record<string, unknown>>;
 
+/** Key of a path over time, along which histories are followed and rubber relaxes. */
+export const TIME = "time";
+/** Relaxation times after which less than a hundredth of a branch is left. */
+const RELAXED = 5;
+
 function tables(value: unknown): readonly Table[] {
   return Array.isArray(value) ? (value as Table[]) : [];
 }
@@ -60,7 +65,41 @@ function numbers(value: unknown, key: string, label: string, kind: string): Chan
   );
 }
 
-/** Values that a path may change: loads, tendons, activations, moved clamps, and parameters of them. */
+/** All tables of a design, at any depth. */
+function everyTable(value: unknown): readonly Table[] {
+  if (Array.isArray(value)) return value.flatMap(everyTable);
+  if (typeof value !== "object" || value === null) return [];
+  return [value as Table, ...Object.values(value).flatMap(everyTable)];
+}
+
+/** Relaxation times in s of the rubber of a design. */
+export function relaxationTimes(design: Table): readonly number[] {
+  const branches = everyTable(design).flatMap((table) => tables(table.prony));
+  return branches.flatMap(({ tau }) => (typeof tau === "number" ? [tau] : []));
+}
+
+/** End in s of the histories and of the relaxation of a design; null where it has neither. */
+function endOfTime(design: Table): number | null {
+  const histories = everyTable(design).flatMap((table) => {
+    const time = (table.history as Table | null | undefined)?.time;
+    return Array.isArray(time) ? time.filter((one) => typeof one === "number") : [];
+  });
+  const ends = [...histories, ...relaxationTimes(design).map((tau) => RELAXED * tau)];
+  const end = Math.max(0, ...ends);
+  return end > 0 ? end : null;
+}
+
+/** Stiffness along a path over a value, of a design whose rubber relaxes; null for any other design. */
+export function stiffnessNote(design: Table, key: string): string | null {
+  if (relaxationTimes(design).length === 0) return null;
+  if (key !== TIME) return "Rubber has its long-term stiffness here: follow time to see it relax.";
+  return (
+    "A load without a history acts suddenly at time zero, on the instantaneous stiffness; " +
+    "later the rubber relaxes toward the long-term one."
+  );
+}
+
+/** Values that a path may change: loads, tendons, activations, moved clamps, time, and parameters of them. */
 export function changeable(design: Table, parameters: readonly Parameter[]): Changeable[] {
   const found: Changeable[] = [];
   tables(design.loads).forEach((load, i) => {
@@ -91,6 +130,10 @@ export function changeable(design: Table, parameters: readonly Parameter[]): Cha
     const key = `clamps[${i}].motion.displacement`;
     found.push(...numbers(way, key, `motion of clamp ${i + 1}`, "length"));
   });
+  const end = endOfTime(design);
+  if (end !== null) {
+    found.push({ key: TIME, label: "time", kind: "time", value: end, start: 0 });
+  }
   for (const one of parameters) {
     if (one.formula) continue;
     const { name, kind, value } = one;
