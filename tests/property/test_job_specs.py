@@ -43,6 +43,7 @@ SPECS = st.one_of(
         design=DESIGNS,
         solver=st.dictionaries(NAMES, st.booleans() | st.integers(-9, 9) | FINITE | TEXT),
         figure=st.booleans(),
+        frequencies=st.integers(0, 9),
         kept=st.booleans(),
     ),
     st.builds(

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from voxsoft.comparison import ErrorBar, ErrorBars
+    from voxsoft.jobs import JobOutcome
     from voxsoft.simulation import Diagnostic, LoadPath, Result
 
 
@@ -56,6 +57,14 @@ def run(
             "'loads[0].value=0..30 kPa/16', there and back 0..30..0, or 'time=0..2 s/21'.",
         ),
     ] = None,
+    frequencies: Annotated[
+        int,
+        typer.Option(
+            "--frequencies",
+            min=0,
+            help="How many natural frequencies of small vibrations about the equilibrium to find.",
+        ),
+    ] = 0,
     json: Json = False,
 ) -> None:
     """Simulate a design and write a run folder.
@@ -75,6 +84,7 @@ def run(
             solver={name: value for name, value in settings.items() if value is not None},
             over=over,
             figure=figure,
+            frequencies=frequencies,
         )
         folder = out or Path("runs") / f"{folder_name(loaded.name)}-{loaded.hash[:8]}"
         with JobBar() as bar:
@@ -84,7 +94,7 @@ def run(
         else:
             if outcome.path is not None:
                 _show_path(outcome.path, outcome.path_bars)
-            _show(outcome.found, outcome.error_bars, folder)
+            _show(outcome, folder)
     for problem in outcome.unwritten:
         say(f"[red]error:[/red] {plain(str(problem))}")
     if outcome.unwritten:
@@ -123,10 +133,11 @@ def _show_path(path: LoadPath, bars: Sequence[ErrorBars]) -> None:
     say("The last equilibrium:")
 
 
-def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
+def _show(outcome: JobOutcome[Result], folder: Path) -> None:
     from voxsoft.design.chamber import name_of_cavity
     from voxsoft.metrics import METRICS
 
+    result, bars = outcome.found, outcome.error_bars
     spoiled = any(found.severity == "error" for found in result.warnings)
     color = "red" if result.status != "ok" or spoiled else "yellow" if result.warnings else "green"
     say(f"[{color}]{result.status}[/{color}]: {plain(result.message)}")
@@ -159,6 +170,7 @@ def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
         say(f"{plain(contact.sentence)}{_contact_in_words(bars, contact.of)}")
     if bars is not None:
         _show_grips(result, bars)
+    _show_frequencies(outcome)
     say(_stress_line(result))
     say(_stretch_line(result))
     for found in result.warnings:
@@ -187,6 +199,21 @@ def _show_factors(result: Result, bars: ErrorBars | None) -> None:
         if value is not None and (name == "limit_factor" or value != 1.0):
             bar = getattr(bars, name) if bars else None
             say(f"{name.replace('_', ' ')}: {quantity(value, 'number')}{_with(bar)}")
+    for index, snap in enumerate(result.snaps):
+        bar = bars.snaps[index] if bars and bars.snaps else None
+        say(f"snapped at load factor {quantity(snap, 'number')}{_with(bar)}")
+
+
+def _show_frequencies(outcome: JobOutcome[Result]) -> None:
+    """Show the natural frequencies that were asked for with error bars, or why there are none."""
+    if outcome.modes_missing:
+        say(f"[yellow]no natural frequencies: {plain(outcome.modes_missing)}[/yellow]")
+    if outcome.modes is None:
+        return
+    known = outcome.error_bars.frequencies if outcome.error_bars else ()
+    for index, value in enumerate(outcome.modes.frequencies.tolist()):
+        bar = known[index] if index < len(known) else None
+        say(f"natural frequency {index + 1}: {quantity(value, 'rate')}{_with(bar)}")
 
 
 def _show_reactions(result: Result, bars: ErrorBars | None) -> None:

@@ -19,12 +19,12 @@ import numpy as np
 from voxsoft.comparison.contact_patch import REGULAR_PATCH, voxels_across
 from voxsoft.comparison.error_bar import ErrorBar, ErrorBars
 from voxsoft.comparison.number import Number, Numbers
-from voxsoft.comparison.numbers import asked_of, numbers_of
+from voxsoft.comparison.numbers import asked_of, frequencies_of, numbers_of
 from voxsoft.comparison.other_voxels import TIMES_AS_LONG, cost_on_voxels, on_voxels
 from voxsoft.comparison.richardson import Estimate, discretization_error
 from voxsoft.design import Design
 from voxsoft.design.discretization.discretize import voxels_of
-from voxsoft.errors import VoxSoftError
+from voxsoft.errors import SimulationError, VoxSoftError
 from voxsoft.materials import Lattice
 from voxsoft.simulation import Result, Setup, simulate
 from voxsoft.simulation.setup.contact import has_contact
@@ -85,6 +85,7 @@ def error_bars(
         default: :func:`voxsoft.simulate`.
     frequencies
         Number of natural frequencies that get a bar too, see :func:`voxsoft.modes`; default: none.
+        Where one of the runs has no modes the bars say why in `missing`.
 
     Returns
     -------
@@ -152,6 +153,8 @@ class _Run:
     result: Result
     #: Voxel size in m; with several bodies the design's, to which all sizes keep their ratio.
     size: float
+    #: Reason and hint why it has no natural frequencies, where these were asked for.
+    refused: tuple[str, str] | None = None
     _numbers: Numbers | None = None
 
     @cached_property
@@ -169,7 +172,15 @@ class _Run:
 
     def numbers(self, frequencies: int) -> Numbers:
         if self._numbers is None:
-            self._numbers = numbers_of(self.setup, self.result, frequencies)
+            self._numbers = numbers_of(self.setup, self.result)
+            if frequencies:
+                try:
+                    self._numbers = {
+                        **self._numbers,
+                        **frequencies_of(self.result, frequencies),
+                    }
+                except SimulationError as error:
+                    self.refused = f"no natural frequencies: {error.where} {error.what}", error.hint
         return self._numbers
 
     def doubts(self, finer: _Run) -> list[str]:
@@ -310,6 +321,9 @@ class _Search:
         own = runs.index(self.own)
         sizes = [run.size for run in runs]
         numbers = [run.numbers(self._frequencies) for run in runs]
+        refused = next((run.refused for run in runs if run.refused), None)
+        if refused is not None and not missing:
+            missing, hint = refused
         bars = {
             key: _bar(sizes, [each[key] for each in numbers], own, regular=not doubts)
             for key in numbers[own]
@@ -317,9 +331,10 @@ class _Search:
         }
         # A cavity more or less shifts the index of all.
         alike = len({len(run.result.mesh.cavities) for run in runs}) == 1
-        kept = {
-            key: bar for key, bar in bars.items() if alike or key[0] not in ("volumes", "pressures")
-        }
+        shifted = set() if alike else {"volumes", "pressures"}
+        if len({len(run.result.snaps) for run in runs}) > 1:
+            shifted.add("snaps")
+        kept = {key: bar for key, bar in bars.items() if key[0] not in shifted}
         cavities = self.own.result.mesh.cavities
         return ErrorBars.of(
             kept,

@@ -203,6 +203,9 @@ class ErrorBars:
         None without error bars.
     limit_factor
         Error bar of the largest load factor; None where the path met no limit.
+    snaps
+        Error bars of the load factors at which the body snapped on its way, where it snapped as
+        often on all voxels.
     reactions
         Error bars of the components of each clamp's reaction.
     contacts
@@ -232,7 +235,8 @@ class ErrorBars:
     doubt
         Reason why the bars are wide; empty where they are regular.
     missing
-        Reason why there are no error bars, or why an accuracy was not reached; empty otherwise.
+        Reason why there are no error bars, or no natural frequencies, or why an accuracy was not
+        reached; empty otherwise.
     hint
         Hint to the user for that reason.
     seconds
@@ -252,6 +256,7 @@ class ErrorBars:
     pressures: tuple[ErrorBar, ...] = ()
     load_factor: ErrorBar | None = None
     limit_factor: ErrorBar | None = None
+    snaps: tuple[ErrorBar, ...] = ()
     reactions: Mapping[str, Triple] = field(default_factory=dict)
     contacts: Mapping[tuple[str, str], Named] = field(default_factory=dict)
     objects: Mapping[str, Named] = field(default_factory=dict)
@@ -301,6 +306,7 @@ class ErrorBars:
             pressures=_row(bars, "pressures"),
             load_factor=bars.get(("load_factor",)),
             limit_factor=bars.get(("limit_factor",)),
+            snaps=_row(bars, "snaps"),
             reactions=_vectors(bars, "reactions"),
             contacts=pairs,
             objects=_named(bars, "objects"),
@@ -340,6 +346,7 @@ class ErrorBars:
             ],
             "load_factor": None if self.load_factor is None else self.load_factor.summary(),
             "limit_factor": None if self.limit_factor is None else self.limit_factor.summary(),
+            "snaps": [bar.summary() for bar in self.snaps],
             "reactions": {
                 name: {axis: bar.summary() for axis, bar in zip("xyz", bars, strict=True)}
                 for name, bars in self.reactions.items()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -26,27 +27,20 @@ _BOUNDLESS: Final = 1e8
 Entries = dict[tuple[str, ...], Number]
 
 
-def numbers_of(setup: Setup, result: Result, frequencies: int = 0) -> Numbers:
+def numbers_of(setup: Setup, result: Result) -> Numbers:
     """Collect the numbers of a run, each with the part that the deformation of the body makes.
 
     Parameters
     ----------
     setup, result
         The run.
-    frequencies
-        Number of natural frequencies; default: none.
 
     Returns
     -------
     dict
-        Numbers by group, entry and name: ``load_factor``, ``limit_factor``, ``metrics``,
-        ``probes``, ``volumes`` and ``pressures`` of cavities by their index, ``reactions``,
-        ``contacts``, ``objects``, ``tendons``, ``supplies`` and ``frequencies`` by theirs.
-
-    Raises
-    ------
-    SimulationError
-        Frequencies of a state that is no stable equilibrium.
+        Numbers by group, entry and name: ``load_factor``, ``limit_factor``, ``snaps`` by their
+        index, ``metrics``, ``probes``, ``volumes`` and ``pressures`` of cavities by their index,
+        ``reactions``, ``contacts``, ``objects``, ``tendons`` and ``supplies``.
 
     Examples
     --------
@@ -72,11 +66,29 @@ def numbers_of(setup: Setup, result: Result, frequencies: int = 0) -> Numbers:
         found.supplies(),
     ):
         entries.update(part)
-    if frequencies:
-        for index, frequency in enumerate(modes(result, frequencies).frequencies.tolist()):
-            key = ("frequencies", str(index))
-            entries[key] = Number.of(frequency, "rate", bounds=NOT_NEGATIVE)
     return entries
+
+
+def frequencies_of(result: Result, count: int) -> Numbers:
+    """Collect the slowest natural frequencies of a run, as ``frequencies`` by their index.
+
+    Raises
+    ------
+    SimulationError
+        See :func:`voxsoft.modes`.
+
+    Examples
+    --------
+    >>> import voxsoft as vs
+    >>> from voxsoft.design import families
+    >>> beam = families.beam(length="60 mm").with_values("parts.0.material=ecoflex-00-30")
+    >>> round(frequencies_of(vs.simulate(beam), 1)["frequencies", "0"].value, 1)
+    5.6
+    """
+    return {
+        ("frequencies", str(index)): Number.of(frequency, "rate", bounds=NOT_NEGATIVE)
+        for index, frequency in enumerate(modes(result, count).frequencies.tolist())
+    }
 
 
 def is_peak(name: str, design: Design) -> bool:
@@ -125,6 +137,8 @@ class _Found:
         found: Entries = {("load_factor",): Number.of(result.load_factor, "number")}
         if result.limit_factor is not None:
             found["limit_factor",] = Number.of(result.limit_factor, "number")
+        for index, snap in enumerate(result.snaps):
+            found["snaps", str(index)] = Number.of(snap, "number")
         return found
 
     def metrics(self) -> Entries:
@@ -150,6 +164,8 @@ class _Found:
             case "chamber_pressure":
                 chosen = set(chosen_cavities(target.cavity, result.mesh, "cavity"))
                 return max((self.pressure(index).deformed for index in chosen), default=0.0)
+            case "contact_gap":
+                return min(abs(value), abs(value - self.gap_at_rest(target)))
             case "tendon_length":
                 return self.drawn(target.tendon or next(iter(result.tendons)))
             case "reaction" if target.region is None and target.object is None:
@@ -161,6 +177,11 @@ class _Found:
                 part = change if target.axis is None else change["xyz".index(target.axis)]
                 return min(abs(value), float(np.linalg.norm(part)))
         return abs(value)
+
+    def gap_at_rest(self, target: Target) -> float:
+        """Measure the gap between the unloaded body and an object where that is now, m."""
+        still = replace(self.result, positions=self.setup.mesh.vertices, contacts=())
+        return float(METRICS[target.metric].value(still, target))
 
     @property
     def carried(self) -> NDArray[np.float64]:

@@ -15,6 +15,7 @@ def path_error_bars(
     *,
     progress: Callable[[int, float, float], None] | None = None,
     announce: Announce | None = None,
+    frequencies: int = 0,
 ) -> tuple[ErrorBars, ...]:
     """Estimate the discretization errors at each value of a path.
 
@@ -22,7 +23,7 @@ def path_error_bars(
     ----------
     path
         The path. Its design's ``solver.error`` and ``solver.accuracy`` select the voxels.
-    progress, announce
+    progress, announce, frequencies
         See :func:`voxsoft.error_bars`.
 
     Returns
@@ -59,7 +60,13 @@ def path_error_bars(
         return solve
 
     return tuple(
-        error_bars(result, progress=progress, announce=announce_all, solve=at(number))
+        error_bars(
+            result,
+            progress=progress,
+            announce=announce_all,
+            solve=at(number),
+            frequencies=frequencies,
+        )
         for number, result in enumerate(path.results)
     )
 

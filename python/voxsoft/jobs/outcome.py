@@ -12,6 +12,7 @@ from voxsoft.errors import ErrorDetail, details_as_data
 if TYPE_CHECKING:
     from voxsoft.comparison import Confirmation, ErrorBars
     from voxsoft.simulation import LoadPath
+    from voxsoft.simulation.results.vibration import Modes
 
 
 class Summarized(Protocol):
@@ -49,6 +50,10 @@ class JobOutcome(Generic[Found]):
         Path that a run followed, whose last equilibrium is the result.
     path_bars
         Error bars along it, as far as it was followed.
+    modes
+        Slowest natural vibrations of a run, where they were asked for and exist.
+    modes_missing
+        Reason why they do not exist; empty otherwise.
     unwritten
         Files that could not be written after the numbers were, each with the reason.
     """
@@ -62,6 +67,8 @@ class JobOutcome(Generic[Found]):
     error_bars: ErrorBars | None = None
     path: LoadPath | None = None
     path_bars: tuple[ErrorBars, ...] = ()
+    modes: Modes | None = None
+    modes_missing: str = ""
     unwritten: tuple[ErrorDetail, ...] = ()
 
     @property
@@ -74,9 +81,17 @@ class JobOutcome(Generic[Found]):
             more["error_bars"] = self.error_bars.summary()
         if self.path is not None:
             more |= path_summary(self.path, self.path_bars)
+        more |= modes_summary(self.modes, self.modes_missing)
         if self.unwritten:
             more["problems"] = details_as_data(self.unwritten)
         return self.found.summary() | more | {"folder": str(self.folder)}
+
+
+def modes_summary(modes: Modes | None, missing: str) -> dict[str, Any]:
+    """Summarize natural vibrations that were asked for, or why there are none."""
+    if modes is not None:
+        return modes.summary()
+    return {"frequencies": [], "frequencies_missing": missing} if missing else {}
 
 
 def path_summary(path: LoadPath, bars: Sequence[ErrorBars] = ()) -> dict[str, Any]:

@@ -13,15 +13,17 @@ from voxsoft.comparison.bars import error_bars
 from voxsoft.comparison.error_bar import ErrorBars
 from voxsoft.comparison.path_bars import path_error_bars
 from voxsoft.design import Design, require_design
+from voxsoft.errors import SimulationError
 from voxsoft.files.figures import save_figure, save_thumbnail
 from voxsoft.files.run_folder import Unwritten, make_folder, write_summary
 from voxsoft.jobs.events import Listener, Progress
 from voxsoft.jobs.folder import write_job
 from voxsoft.jobs.kept_path import KeptPath
 from voxsoft.jobs.nearness import Nearness
-from voxsoft.jobs.outcome import JobOutcome, path_summary
+from voxsoft.jobs.outcome import JobOutcome, modes_summary, path_summary
 from voxsoft.jobs.spec import RunSpec
 from voxsoft.simulation import Result, Setup
+from voxsoft.simulation.results.vibration import Modes, modes
 from voxsoft.simulation.solving.choice import check_solver, method_of
 from voxsoft.simulation.solving.cost import cost_of
 from voxsoft.simulation.solving.equilibrium import Statics
@@ -54,16 +56,30 @@ def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[
     result = simulation.simulate(setup, progress=_reporting(setup, notify))
     unwritten = Unwritten(folder)
     _write(spec, result, folder, unwritten)
-    bars = _error_bars(result, notify)
-    write_summary(result, folder, more={"error_bars": bars.summary()})
+    found, no_modes = _modes(spec, result)
+    bars = _error_bars(result, notify, spec.frequencies)
+    more = modes_summary(found, no_modes)
+    write_summary(result, folder, more=more | {"error_bars": bars.summary()})
     notify(Progress(100, 100, "percent"))
     return JobOutcome(
         folder,
         result,
         _sentence(result.message, unwritten),
         error_bars=bars,
+        modes=found,
+        modes_missing=no_modes,
         unwritten=unwritten.problems,
     )
+
+
+def _modes(spec: RunSpec, result: Result) -> tuple[Modes | None, str]:
+    """Find the natural vibrations that a spec asks for, or the reason why there are none."""
+    if not spec.frequencies:
+        return None, ""
+    try:
+        return modes(result, spec.frequencies), ""
+    except SimulationError as error:
+        return None, str(error)
 
 
 def _sentence(message: str, unwritten: Unwritten) -> str:
@@ -139,11 +155,13 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
         notify(Progress(0, 100, FURTHER, words))
 
     try:
-        bars = path_error_bars(path, announce=announce)
+        bars = path_error_bars(path, announce=announce, frequencies=spec.frequencies)
     except KeyboardInterrupt:
         bars = ()
     kept.clear()
-    write_summary(result, folder, more=path_summary(path, bars))
+    found, no_modes = _modes(spec, result)
+    more = modes_summary(found, no_modes)
+    write_summary(result, folder, more=more | path_summary(path, bars))
     files.write_path(path, bars, folder)
     if spec.figure:
         from voxsoft.plot import plot_path
@@ -160,11 +178,13 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
         error_bars=last,
         path=path,
         path_bars=bars,
+        modes=found,
+        modes_missing=no_modes,
         unwritten=unwritten.problems,
     )
 
 
-def _error_bars(result: Result, notify: Listener) -> ErrorBars:
+def _error_bars(result: Result, notify: Listener, frequencies: int) -> ErrorBars:
     """Compute the error bars of a run that is stored already; Ctrl-C leaves them out."""
     nearness, stage = Nearness(result.design.solver), ""
 
@@ -179,7 +199,7 @@ def _error_bars(result: Result, notify: Listener) -> ErrorBars:
         notify(Progress(min(99, int(100 * nearness.at(when, residual))), 100, FURTHER, stage))
 
     try:
-        return error_bars(result, progress=report, announce=announce)
+        return error_bars(result, progress=report, announce=announce, frequencies=frequencies)
     except KeyboardInterrupt:
         return ErrorBars.none("they were stopped before they were found", "run it again")
 

@@ -63,6 +63,8 @@ class RunSpec(JobSpec):
     figure
         True to draw ``body.png`` too, ``contact.png`` where something touches, and ``path.png``
         of a path.
+    frequencies
+        Number of natural frequencies to find at the end, with error bars; default: none.
     kept
         True if the folder holds the state on the studio's screen, which no job repeats.
 
@@ -77,6 +79,7 @@ class RunSpec(JobSpec):
     solver: Table[str, Scalar] = Field(default_factory=FrozenDict)
     over: str | None = None
     figure: bool = False
+    frequencies: int = Field(0, ge=0)
     kept: bool = False
 
 

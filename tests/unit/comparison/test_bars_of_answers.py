@@ -1,13 +1,19 @@
 """Error bars of load factors, pressures, contacts, tendons, reactions and frequencies."""
 
+import json
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import voxsoft as vs
+from voxsoft.cli.app import app
 from voxsoft.comparison import path_error_bars
 from voxsoft.comparison.contact_patch import voxels_across
 from voxsoft.comparison.path_bars import bars_of
 from voxsoft.design import Contact, MassSupply, Object, Symmetry, Tendon, VolumeSupply
+from voxsoft.errors import SimulationError
 from voxsoft.jobs import RunSpec, run_job
 from voxsoft.units import kPa, mm
 
@@ -240,19 +246,105 @@ def test_a_tendon_of_given_length_has_a_bar_of_its_tension():
     assert bars["length"].error < 1e-4 * mm
 
 
-def test_frequencies_have_bars_where_they_are_asked_for():
-    beam = vs.Design(
+def swinging(**entries):
+    """A bar of 2 x 2 voxels, clamped at one end."""
+    return vs.Design(
         name="bar",
         voxel_size=5 * mm,
         parts=[vs.Part(shape=vs.Box(size=(40 * mm, 10 * mm, 10 * mm)), material=RUBBER)],
         clamps=[vs.Clamp(region=vs.Region(x=(0, 0)))],
+        **entries,
     )
+
+
+def test_frequencies_have_bars_where_they_are_asked_for():
+    beam = swinging()
     result = vs.simulate(beam)
     assert vs.error_bars(result).frequencies == ()
     bars = vs.error_bars(result, frequencies=3).frequencies
     finest = vs.modes(vs.simulate(beam.replace(voxel_size=1.25 * mm)), 3).frequencies
     assert [bar.value for bar in bars] == vs.modes(result, 3).frequencies.tolist()
     assert all(holds(bar, truth) for bar, truth in zip(bars, finest, strict=True))
+
+
+def called(design, folder, *options):
+    """The words and the JSON of a run from a file."""
+    file = folder / "design.toml"
+    vs.files.save(design, file)
+    options = [str(file), "--out", str(folder / "run"), "--json", *options]
+    shown = CliRunner().invoke(app, ["run", *options[:3], *options[4:]])
+    return shown.stderr, json.loads(CliRunner().invoke(app, ["run", *options]).stdout)
+
+
+def test_a_run_from_a_file_gives_frequencies_with_bars(tmp_path):
+    slowest = vs.Constraint(metric="natural_frequency", min="1 1/s")
+    beam = swinging(constraints={"slowest": slowest})
+    words, data = called(beam, tmp_path, "--frequencies", "2")
+    expected = vs.error_bars(vs.simulate(beam), frequencies=2)
+    bars = expected.frequencies
+    assert data["frequencies"] == [bar.value for bar in bars]
+    assert data["error_bars"]["frequencies"] == [bar.summary() for bar in bars]
+    assert f"natural frequency 2: {bars[1].value:.2f} 1/s, estimate {bars[1]}" in words
+    kept = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert kept["frequencies"] == data["frequencies"]
+    # As a constraint the slowest has the bar that it has among the others.
+    slow = expected.metrics["slowest"]
+    # A search for one mode and one for two end within their tolerance of each other.
+    assert slow.value == pytest.approx(bars[0].value, rel=1e-6)
+    assert slow.error == pytest.approx(bars[0].error, rel=1e-4)
+    assert f"slowest: {bars[0].value:.2f} 1/s, estimate {slow}" in words
+
+
+def test_a_run_without_modes_says_why(tmp_path):
+    moving = swinging(solver=vs.Solver(end_time="1 ms", time_step="0.5 ms", error="off"))
+    words, data = called(moving, tmp_path, "--frequencies", "2", "--solver", "dynamics")
+    assert "no natural frequencies: modes: are those of an equilibrium" in words
+    assert data["frequencies"] == []
+    assert "motion over time" in data["frequencies_missing"]
+
+
+def test_frequencies_that_one_size_lacks_leave_the_other_bars(monkeypatch):
+    def refuse(result, count):
+        raise SimulationError("modes", "the body moves freely", "hold it")
+
+    result = vs.simulate(swinging(loads=[vs.Gravity()]))
+    expected = vs.error_bars(result).metrics["max_displacement"]
+    monkeypatch.setattr("voxsoft.comparison.bars.frequencies_of", refuse)
+    bars = vs.error_bars(result, frequencies=2)
+    assert bars.frequencies == ()
+    assert bars.missing == "no natural frequencies: modes the body moves freely"
+    assert bars.metrics["max_displacement"] == expected
+
+
+@pytest.mark.long
+def test_the_bar_of_a_gap_is_a_part_of_its_change():
+    """A bar sags by 0.2 mm toward a table 5 mm below it: voxels decide of the sag alone."""
+    table = vs.Box(size=(40 * mm, 20 * mm, 5 * mm), corner=(0, -5 * mm, -10 * mm))
+    gap = vs.Constraint(metric="contact_gap", object="table", min="0 mm")
+    loads = [vs.Gravity(value=1.0)]
+    beam = swinging(
+        loads=loads, objects=[Object(name="table", shape=table)], constraints={"gap": gap}
+    )
+    bars = vs.error_bars(vs.simulate(beam))
+    sag = 5 * mm - bars.metrics["gap"].value
+    assert 0.1 * mm < sag < 1 * mm
+    finest = vs.simulate(beam.replace(voxel_size=1.25 * mm))
+    assert holds(bars.metrics["gap"], finest.metrics["gap"])
+    assert bars.metrics["gap"].error < 0.2 * sag
+
+
+@pytest.mark.parametrize(("finer", "count"), [((0.45,), 1), ((), 0), ((0.2, 0.45), 0)])
+def test_a_load_at_which_a_body_snaps_has_a_bar_where_all_sizes_snap(finer, count):
+    result = replace(vs.simulate(swinging(loads=[vs.Gravity()])), snaps=(0.5,))
+
+    def solve(design, _):
+        return replace(vs.simulate(design), snaps=finer)
+
+    bars = vs.error_bars(result, solve=solve)
+    assert len(bars.snaps) == len(bars.summary()["snaps"]) == count
+    for bar in bars.snaps:
+        assert bar.value == 0.5
+        assert bar.error > 0.05
 
 
 def test_volumes_and_pressures_along_a_path_have_bars():
