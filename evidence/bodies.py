@@ -2,10 +2,10 @@
 
 ``python evidence/bodies.py --results FILE [--kinds KIND ...] [--again] [--table]``. The bodies are
 those of `evidence/bar_bodies.py`. Each is run with its error bar as ``voxsoft run`` does, and again
-on voxels half and a quarter as large (a third where these are too many); the truth is their
-extrapolation. A bar holds where the truth, give or take a quarter of the extrapolated part, is
-within it. FILE holds a line for each body and question that is done, and a run goes on from there;
-`--again` asks for the bars anew and keeps the truths, `--table` prints alone.
+on smaller voxels, the smallest below those of the bar; the truth is the extrapolation of three
+sizes. A bar holds where the truth, give or take a quarter of the extrapolated part, is within it.
+FILE holds a line for each body and question that is done, and a run goes on from there; `--again`
+asks for the bars anew and keeps the truths, `--table` prints alone.
 """
 
 from __future__ import annotations
@@ -32,9 +32,14 @@ sys.path.insert(0, str(Path(__file__).parent))
 from bar_bodies import EACH, KINDS, ROUND, TOUCHING, Case, case
 
 #: Voxels that the finest size of a truth may have, in the part that symmetry leaves.
-MOST: Final = 32_000
+MOST: Final = 45_000
 #: Sizes of a truth, as parts of the voxels of the run.
-FACTORS: Final = ((1.0, 2.0, 4.0), (1.0, 2.0, 3.0), (1.0, 1.5, 2.0))
+FACTORS: Final = (
+    (2.0, 4.0, 6.0),
+    (1.0, 2.0, 4.0),
+    (1.0, 2.0, 3.0),
+    (1.0, 1.5, 2.0),
+)
 #: Seconds after which a run is given up.
 PATIENCE: Final = 240.0
 
@@ -97,7 +102,7 @@ def truth_of(each: Case) -> Row:
         if result.status != "ok":
             why = result.message
             break
-        coarser = result
+        coarser = result if factor == 2.0 else None
         values.append(float(result.metrics["number"]))
     sizes = [1.0 / factor for factor in factors[: len(values)]]
     row: Row = {"sizes": sizes, "values": values, "why": why}
@@ -128,16 +133,28 @@ def answered(file: Path) -> dict[tuple[str, int, str], Row]:
     return {(row["kind"], row["number"], row["question"]): row for row in rows}
 
 
+def is_finer(truth: Row, bar: Row | None, each: Case) -> bool:
+    """Whether a truth has smaller voxels than the bar, or there is nothing to compare."""
+    if not bar or not bar.get("sizes") or not truth.get("sizes"):
+        return True
+    voxel_size = (each.quick or each.design).voxel_size
+    return bool(truth["sizes"][-1] * voxel_size < 0.99 * bar["sizes"][-1])
+
+
 def ask(file: Path, kinds: Iterable[str], *, again: bool) -> None:
     """Answer what is not answered yet, a line for each question."""
-    known = answered(file)
     for kind in kinds:
         for number in range(EACH):
+            each = case(kind, number)
             for question, answer in QUESTIONS.items():
-                if (kind, number, question) in known and not (again and question == "bar"):
+                known = answered(file).get((kind, number, question))
+                bar = answered(file).get((kind, number, "bar"))
+                if known is not None and (
+                    not again if question == "bar" else is_finer(known, bar, each)
+                ):
                     continue
                 try:
-                    row = answer(case(kind, number))
+                    row = answer(each)
                 except (VoxSoftError, TooSlowError) as error:
                     row = {"missing": str(error), "why": str(error)}
                 row |= {"kind": kind, "number": number, "question": question}
@@ -163,9 +180,9 @@ class Judged(NamedTuple):
         return self.width / max(self.off, 1e-12)
 
 
-def judged(bar: Row | None, truth: Row | None) -> Judged | str:
+def judged(bar: Row | None, truth: Row | None, each: Case) -> Judged | str:
     """Hold a bar against the truth; a text where one of them is missing."""
-    if bar is None or truth is None:
+    if bar is None or truth is None or not is_finer(truth, bar, each):
         return "not done"
     if "error" not in bar:
         return f"no bar: {bar.get('missing')}"
@@ -181,7 +198,9 @@ def show(file: Path) -> None:
     """Print how many bars hold, and their width, by kind."""
     known = answered(file)
     found = {
-        (kind, number): judged(known.get((kind, number, "bar")), known.get((kind, number, "truth")))
+        (kind, number): judged(
+            known.get((kind, number, "bar")), known.get((kind, number, "truth")), case(kind, number)
+        )
         for kind in KINDS
         for number in range(EACH)
     }

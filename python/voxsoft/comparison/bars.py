@@ -3,7 +3,10 @@
 The run is made again on voxels of another size, and each number that both give is extrapolated
 (:mod:`voxsoft.comparison.richardson`). Voxels half as large show more and cost about twelve times
 the run; voxels twice as large cost a tenth of it, and show something only while they still are
-the same body. So small bodies get finer voxels and large ones coarser.
+the same body. So small bodies get finer voxels and large ones coarser. Where two sizes are not
+regular, as of walls of one voxel, a third one halves the voxels once more while that is as quick.
+Where the first choice is another body, or has no answer, others follow: every run that can be
+solved on any other voxels has bars.
 """
 
 from __future__ import annotations
@@ -30,10 +33,16 @@ from voxsoft.simulation import Result, Setup, simulate
 from voxsoft.simulation.setup.contact import has_contact
 from voxsoft.simulation.solving.choice import kind_of, settings_at_rest
 
-#: Most voxels of a finer run that was not asked for: some 10 s for a body of rubber.
+#: Most voxels of a finer run that was not asked for, in the part that symmetry leaves: some 10 s
+#: for a body of rubber.
 FINER_UP_TO: Final = 20_000
-#: Same limit where steps take ten times as long: with contact, friction of tendons, and supplies.
+#: Same limit where a run takes ten times as long: with contact, friction of tendons, supplies, and
+#: control by volume or arc length.
 FINER_UP_TO_IF_SLOW: Final = 2_000
+#: Multiple of these that a run may have if coarser voxels are another body: about a minute.
+IF_NEEDED: Final = 4
+#: Ratio of the sizes where neither halved nor doubled voxels have an answer.
+LAST_RATIO: Final = 1.5
 #: Most voxels of a run for a requested accuracy.
 ACCURATE_UP_TO: Final = 400_000
 #: Two sizes hold the same body if volumes are the same to this part: those of cut voxels follow
@@ -42,9 +51,12 @@ SAME_VOLUME: Final = 0.01
 #: Voxels through a wall from which on errors are regular; see `richardson`.
 REGULAR_WALL: Final = 2
 #: Walls of one voxel may hide their error: one and two voxels can give the same number and both be
-#: off. Of the chambers, plates and fins of `evidence/make_estimate_truths.py` those with two
-#: voxels through a wall were 2 to 29 % off, seven of eight by less than this.
-HIDDEN: Final = 0.25
+#: off, as a part of it. Of the 24 thin walls of `evidence/error_bars.py` those with two voxels were
+#: 1 to 7.7 % off, and estimates whose sizes agree too well by up to 6.4 %.
+HIDDEN_BY_WALLS: Final = 0.1
+#: Same part where sizes are not the same body, whose walls may be any, and under a contact patch of
+#: few voxels: forces of balls pressed into a block were 3 to 32 % off there, see `contact_patch`.
+HIDDEN_BY_SHAPES: Final = 0.25
 #: Least error from two sizes, as a part of the number: errors of corners and of free sides have
 #: either sign, and may cancel in both. Among 70 bodies with known truth those that two sizes missed
 #: agreed within 0.4 %, and all but one were less than this off.
@@ -165,6 +177,12 @@ class _Run:
     def voxels(self) -> int:
         return self.setup.elements
 
+    @property
+    def solved(self) -> int:
+        """Number of voxels in the part that planes of symmetry leave."""
+        sector = self.setup.sector
+        return self.voxels // (1 if sector is None else sector.count)
+
     @cached_property
     def patch(self) -> float | None:
         """Voxels across the narrowest contact patch; None without contact."""
@@ -183,15 +201,20 @@ class _Run:
                     self.refused = f"no natural frequencies: {error.where} {error.what}", error.hint
         return self._numbers
 
-    def doubts(self, finer: _Run) -> list[str]:
-        """Say why the errors of this run and a finer one may be no regular ones."""
-        found = []
-        if not self.is_like(finer) or self.wall < REGULAR_WALL:
-            found.append("the voxels are not the same body or have walls of one voxel")
+    def doubts(self, finer: _Run) -> dict[str, float]:
+        """Say why the errors of this run and a finer one may be no regular ones.
+
+        Each reason has the part of a number that such sizes may hide.
+        """
+        found = {}
+        if not self.is_like(finer):
+            found["the voxels are not the same body"] = HIDDEN_BY_SHAPES
+        if self.wall < REGULAR_WALL:
+            found["walls are single voxels"] = HIDDEN_BY_WALLS
         if self.patch is not None and self.patch < REGULAR_PATCH:
             across = f"{self.patch:.2g}"
             plural = "" if across == "1" else "s"
-            found.append(f"the contact patch is {across} voxel{plural} across")
+            found[f"the contact patch is {across} voxel{plural} across"] = HIDDEN_BY_SHAPES
         return found
 
     @cached_property
@@ -242,14 +265,11 @@ class _Search:
         self._seconds = 0.0
 
     def pair(self) -> ErrorBars:
-        """Make error bars from one other size."""
-        design = self.own.result.design
-        asked = design.solver.error
-        rubs = any(tendon.friction > 0.0 for tendon in design.tendons)
-        slow = has_contact(design) or rubs or bool(design.supplies)
-        limit = FINER_UP_TO_IF_SLOW if slow else FINER_UP_TO
-        small = 8 * self.own.voxels <= limit
-        reasons = []
+        """Make error bars from one other size, or a third one where two are not regular."""
+        asked, limit = self.own.result.design.solver.error, self._limit
+        reasons: list[str] = []
+        unlike: _Run | None = None
+        small = 8 * self.own.solved <= limit
         if asked == "coarser" or (asked == "auto" and not small):
             other = self._solved(2.0 * self.own.size, None)
             if isinstance(other, str):
@@ -257,17 +277,55 @@ class _Search:
             elif asked == "coarser" or other.is_like(self.own):
                 return self._bars([other, self.own])
             else:
+                unlike = other
                 reasons.append("voxels twice as large are another body")
-        if asked == "finer" or (asked == "auto" and small):
+        if asked == "finer" or (asked == "auto" and 8 * self.own.solved <= IF_NEEDED * limit):
             other = self._solved(0.5 * self.own.size, self.own)
             if not isinstance(other, str):
-                return self._bars([self.own, other])
+                return self._bars(self._with_third([self.own, other]))
             reasons.append(f"on voxels half as large {other}")
+        if asked == "auto":
+            last = self._last_resort(unlike, small=small)
+            if last is not None:
+                return self._bars(last)
         hint = "compare several voxel sizes"
         if asked != "finer" and not small:
             about = TIMES_AS_LONG * self.own.result.seconds
             hint = f'error = "finer", which takes about {float(f"{about:.2g}"):g} s'
         return ErrorBars.none("; ".join(reasons), hint)
+
+    @cached_property
+    def _limit(self) -> int:
+        """Most voxels of a finer run that is taken without more ado."""
+        design = self.own.result.design
+        rubs = any(tendon.friction > 0.0 for tendon in design.tendons)
+        stepwise = self.own.result.solver["way"] in ("volume", "arc-length")
+        slow = has_contact(design) or rubs or bool(design.supplies) or stepwise
+        return FINER_UP_TO_IF_SLOW if slow else FINER_UP_TO
+
+    def _with_third(self, runs: list[_Run]) -> list[_Run]:
+        """Add voxels half as large to two sizes that show no order, if that is as quick."""
+        asked = self.own.result.design.solver.error
+        quick = 8 * runs[-1].solved <= self._limit
+        if asked == "auto" and quick and runs[-2].doubts(runs[-1]):
+            other = self._solved(0.5 * runs[-1].size, runs[-1])
+            if not isinstance(other, str):
+                return [*runs, other]
+        return runs
+
+    def _last_resort(self, unlike: _Run | None, *, small: bool) -> list[_Run] | None:
+        """Find any other size with an answer, on which bars are wide; None if there is none."""
+        if small:
+            other = self._solved(2.0 * self.own.size, None)
+            unlike = None if isinstance(other, str) else other
+        cavities = len(self.own.result.mesh.cavities)
+        if unlike is not None and len(unlike.result.mesh.cavities) == cavities:
+            return [unlike, self.own]
+        if LAST_RATIO**3 * self.own.solved <= IF_NEEDED * self._limit:
+            other = self._solved(self.own.size / LAST_RATIO, None)
+            if not isinstance(other, str):
+                return [self.own, other]
+        return None
 
     def until_accurate(self) -> ErrorBars:
         """Make error bars from ever smaller voxels, until all errors are within the accuracy."""
@@ -318,6 +376,7 @@ class _Search:
     def _bars(self, runs: Sequence[_Run], missing: str = "", hint: str = "") -> ErrorBars:
         """Make the bars of runs on falling sizes, of which one is that of the design."""
         doubts = runs[-2].doubts(runs[-1])
+        hidden = max(doubts.values(), default=0.0)
         own = runs.index(self.own)
         sizes = [run.size for run in runs]
         numbers = [run.numbers(self._frequencies) for run in runs]
@@ -325,7 +384,7 @@ class _Search:
         if refused is not None and not missing:
             missing, hint = refused
         bars = {
-            key: _bar(sizes, [each[key] for each in numbers], own, regular=not doubts)
+            key: _bar(sizes, [each[key] for each in numbers], own, hidden)
             for key in numbers[own]
             if all(key in each for each in numbers)
         }
@@ -350,8 +409,9 @@ class _Search:
         )
 
 
-def _bar(sizes: Sequence[float], numbers: Sequence[Number], own: int, *, regular: bool) -> ErrorBar:
-    """Make the bar of one number on falling sizes, with the errors that these may hide."""
+def _bar(sizes: Sequence[float], numbers: Sequence[Number], own: int, hidden: float) -> ErrorBar:
+    """Make the bar of one number on falling sizes; two that are not regular may hide a part."""
+    regular = not hidden
     # Components that symmetry makes zero hold only rounding.
     rounding = ROUNDING * max(number.scale for number in numbers)
     values = [each.value if abs(each.value) > rounding else 0.0 for each in numbers]
@@ -359,7 +419,9 @@ def _bar(sizes: Sequence[float], numbers: Sequence[Number], own: int, *, regular
     found: Estimate = discretization_error(sizes[-3:], values[-3:], regular=regular)
     error = found.error
     if abs(values[-1] - values[-2]) > UNCHANGED * abs(values[-1]):
-        least = (UNKNOWN if len(values) == 2 else 0.0) if regular else HIDDEN
+        further = len(values) - 2
+        # A halving more leaves a quarter of that.
+        least = (0.0 if further else UNKNOWN) if regular else hidden / 4**further
         error = max(error, least * (last.deformed if values[-1] else 0.0))
     return ErrorBar.within(values[own], found.limit, error, last.kind, last.bounds)
 

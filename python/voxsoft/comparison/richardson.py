@@ -14,7 +14,8 @@ of which voxels have many, lower the order to about 1: on ten varied bodies 0.9 
 keep the observed order between 0.5 and 2.
 
 Above 2 the elements cannot converge: where three sizes show more than 2.2, the change from the
-coarsest was no part of a convergence yet, and the other two assume the order 1 as if alone.
+coarsest was no part of a convergence yet, and the other two assume the order 1 as if alone. They
+may agree by chance: that change itself, by the order 2, gives the least error.
 
 An estimate is not a bound. It is multiplied by a safety factor, as in Roache's grid convergence
 index (doi 10.1115/1.2910291). Two sizes do not show their order, and Roache takes 3 for them;
@@ -143,18 +144,25 @@ def discretization_error(
         seen = _order(sizes[-3:], before, after)
         if seen < NO_ORDER:
             order, basis = min(seen, HIGHEST_ORDER), "three sizes"
+    least = 0.0
+    if len(sizes) > 2 and basis == "two sizes":
+        shrink = (sizes[-3] ** HIGHEST_ORDER - sizes[-2] ** HIGHEST_ORDER) / sizes[
+            -1
+        ] ** HIGHEST_ORDER
+        least = SEEN * abs(values[-3] - values[-2]) / shrink
     if regular and basis == "two sizes":
-        return _regular(sizes, values)
+        return _regular(sizes, values, least)
     step = (values[-1] - values[-2]) / ((sizes[-2] / sizes[-1]) ** order - 1.0)
     safety = SEEN if basis == "three sizes" else ASSUMED
-    return Estimate(sizes, values, order, values[-1] + step, safety * abs(step), basis)
+    error = max(safety * abs(step), least)
+    return Estimate(sizes, values, order, values[-1] + step, error, basis)
 
 
-def _regular(sizes: tuple[float, ...], values: tuple[float, ...]) -> Estimate:
+def _regular(sizes: tuple[float, ...], values: tuple[float, ...], least: float) -> Estimate:
     change = values[-1] - values[-2]
     farthest = 1.0 / ((sizes[-2] / sizes[-1]) ** LOWEST_ORDER - 1.0)
     limit = values[-1] + 0.5 * (farthest - PASSED) * change
-    error = 0.5 * (farthest + PASSED) * abs(change)
+    error = max(0.5 * (farthest + PASSED) * abs(change), least)
     return Estimate(sizes, values, USUAL_ORDER, limit, error, "regular sizes")
 
 

@@ -24,7 +24,8 @@ QUARTER = (Symmetry(plane="x"), Symmetry(plane="y"))
 
 
 def vessel(size=4 * mm, material=RUBBER, **entries):
-    """A cube with a cubic chamber and walls of one voxel of 4 mm."""
+    """A cube with a cubic chamber and walls of one voxel of 4 mm; bars from two sizes alone."""
+    entries.setdefault("solver", vs.Solver(error="finer"))
     block = vs.Box(size=(24 * mm,) * 3, corner=(-12 * mm, -12 * mm, 0))
     room = vs.Box(size=(SIDE,) * 3, corner=(-SIDE / 2, -SIDE / 2, 4 * mm))
     return vs.Design(
@@ -38,7 +39,7 @@ def vessel(size=4 * mm, material=RUBBER, **entries):
 
 def blown(size=4 * mm):
     """The vessel under volume control."""
-    solver = vs.Solver(control="volume", volume_ratio=1.2)
+    solver = vs.Solver(control="volume", volume_ratio=1.2, error="finer")
     loads = [vs.Pressure(value=10 * kPa)]
     return vessel(size, loads=loads, solver=solver, symmetry=QUARTER)
 
@@ -380,10 +381,11 @@ def test_a_prescribed_volume_of_a_round_chamber_has_that_of_its_shape(control):
         fill="fraction",
     )
     if control == "load":
-        design = design.replace(solver=vs.Solver())
+        design = design.replace(solver=vs.Solver(error="finer"))
     result = vs.simulate(design)
     bars = vs.error_bars(result)
     growth = result.cavity_volumes[0] - float(result.mesh.cavities[0].volume)
-    assert "walls of one voxel" in bars.doubt
-    assert (bars.volumes[0].error < 0.1 * growth) is (control == "volume")
-    assert (bars.metrics["cavity_volume"].error < 0.1 * growth) is (control == "volume")
+    assert "walls are single voxels" in bars.doubt
+    # Walls of one voxel hide a tenth of what they decide; the shape leaves 5 % of the growth.
+    assert (bars.volumes[0].error < 0.08 * growth) is (control == "volume")
+    assert (bars.metrics["cavity_volume"].error < 0.08 * growth) is (control == "volume")
