@@ -127,10 +127,16 @@ QUESTIONS: Final[dict[str, Callable[[Case], Row]]] = {"bar": bar_of, "truth": tr
 
 
 def answered(file: Path) -> dict[tuple[str, int, str], Row]:
-    """The lines of a file by kind, number and question; the last of each counts."""
+    """The lines of a file by kind, number and question; the last truth that was found counts."""
     lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
-    rows = map(json.loads, lines)
-    return {(row["kind"], row["number"], row["question"]): row for row in rows}
+    known: dict[tuple[str, int, str], Row] = {}
+    for row in map(json.loads, lines):
+        key = row["kind"], row["number"], row["question"]
+        if "truth" in row or "truth" not in known.get(key, {}):
+            known[key] = row
+        elif row["question"] == "truth":
+            known[key]["tried"] = True
+    return known
 
 
 def is_finer(truth: Row, bar: Row | None, each: Case) -> bool:
@@ -150,7 +156,9 @@ def ask(file: Path, kinds: Iterable[str], *, again: bool) -> None:
                 known = answered(file).get((kind, number, question))
                 bar = answered(file).get((kind, number, "bar"))
                 if known is not None and (
-                    not again if question == "bar" else is_finer(known, bar, each)
+                    not again
+                    if question == "bar"
+                    else known.get("tried") or is_finer(known, bar, each)
                 ):
                     continue
                 try:
@@ -173,6 +181,8 @@ class Judged(NamedTuple):
     off: float
     width: float
     regular: bool
+    #: Whether the truth has smaller voxels than the bar.
+    apart: bool
 
     @property
     def ratio(self) -> float:
@@ -182,7 +192,10 @@ class Judged(NamedTuple):
 
 def judged(bar: Row | None, truth: Row | None, each: Case) -> Judged | str:
     """Hold a bar against the truth; a text where one of them is missing."""
-    if bar is None or truth is None or not is_finer(truth, bar, each):
+    if bar is None or truth is None:
+        return "not done"
+    finer = is_finer(truth, bar, each)
+    if not finer and not truth.get("tried"):
         return "not done"
     if "error" not in bar:
         return f"no bar: {bar.get('missing')}"
@@ -191,7 +204,8 @@ def judged(bar: Row | None, truth: Row | None, each: Case) -> Judged | str:
     true = truth["truth"]
     held = abs(true - bar["estimate"]) <= bar["error"] + truth["unsure"]
     size = max(abs(true), 1e-300)
-    return Judged(held, abs(bar["value"] - true) / size, bar["error"] / size, bar["regular"])
+    off, width = abs(bar["value"] - true) / size, bar["error"] / size
+    return Judged(held, off, width, bar["regular"], finer)
 
 
 def show(file: Path) -> None:
@@ -215,6 +229,7 @@ def show(file: Path) -> None:
         "regular": lambda _, each: each.regular,
         "wide": lambda _, each: not each.regular,
         "all": lambda *_: True,
+        "truth as coarse": lambda _, each: not each.apart,
     }
     print(f"{'':16}{'held':>9}{'width/error':>13}{'error':>9}{'width':>9}  (medians; %)")
     for name, belongs in groups.items():
