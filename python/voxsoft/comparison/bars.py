@@ -263,6 +263,8 @@ class _Search:
         self._solve, self._frequencies = solve, frequencies
         self._progress, self._announce = progress, announce
         self._seconds = 0.0
+        #: Doubt of bars that stand in for those of voxels without an answer.
+        self._failed: dict[str, float] = {}
 
     def pair(self) -> ErrorBars:
         """Make error bars from one other size, or a third one where two are not regular."""
@@ -284,6 +286,7 @@ class _Search:
             if not isinstance(other, str):
                 return self._bars(self._with_third([self.own, other]))
             reasons.append(f"on voxels half as large {other}")
+            self._failed["voxels half as large have no answer"] = HIDDEN_BY_SHAPES
         if asked == "auto":
             last = self._last_resort(unlike, small=small)
             if last is not None:
@@ -375,7 +378,7 @@ class _Search:
 
     def _bars(self, runs: Sequence[_Run], missing: str = "", hint: str = "") -> ErrorBars:
         """Make the bars of runs on falling sizes, of which one is that of the design."""
-        doubts = runs[-2].doubts(runs[-1])
+        doubts = self._failed | runs[-2].doubts(runs[-1])
         hidden = max(doubts.values(), default=0.0)
         own = runs.index(self.own)
         sizes = [run.size for run in runs]

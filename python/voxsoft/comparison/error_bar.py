@@ -231,7 +231,7 @@ class ErrorBars:
     regular
         True if all sizes hold the same body with two voxels or more through each wall; if not,
         the bars are wide, and may be too small where walls are single voxels. False too where a
-        contact patch is less than four voxels across.
+        contact patch is less than four voxels across, or voxels half as large have no answer.
     doubt
         Reason why the bars are wide; empty where they are regular.
     missing
