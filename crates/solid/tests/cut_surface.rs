@@ -105,7 +105,7 @@ proptest! {
         let [yz, zx, xy] = filling.products;
         let covariance = [[a, xy - x * y, zx - z * x], [xy - x * y, b, yz - y * z], [zx - z * x, yz - y * z, c]];
         let v = dot(normal, apply(&covariance, normal));
-        // As a free face of the voxel, 5/26, and by the displacement within it; no more than 10/17.
+        // A free face has 5/26, to which the displacement within the voxel adds; no more than 10/17.
         let whole = 1.0 / (1.0 + m * m / v + 5.0 / 21.0);
         for t in [1, 2] {
             prop_assert!((left(&hex8, &frame, 0, t) - whole.max(7.0 / 17.0)).abs() < 3e-5, "{}", left(&hex8, &frame, 0, t));
@@ -158,7 +158,7 @@ fn edge_relieves_the_shear_of_its_two_walls_more_than_each() {
 }
 
 #[test]
-fn what_holds_the_voxel_takes_the_relief_away() {
+fn neighbor_that_holds_the_voxel_takes_the_relief_away() {
     let filling = plane(FRAME, 0.0);
     let mut covered = FaceConditions::default();
     covered.covered[0][1] = true;

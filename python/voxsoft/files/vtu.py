@@ -1,9 +1,9 @@
 """VTU (ParaView, PyVista): keeps all contents, also voxels and data.
 
 Tets come first, in their order, with cell arrays ``part`` and, for voxel meshes, ``voxel`` and
-``voxel_size``, and ``fraction``, ``moments`` and ``surfaces`` where voxels are partly filled. The triangles of
-cavities follow, with their number from 1 in the cell array ``cavity``; the share of cut voxels in a
-cavity is not kept. A region is the point array ``region:NAME``, 1 at its vertices.
+``voxel_size``, and ``fraction``, ``moments`` and ``surfaces`` where voxels are partly filled. The
+triangles of cavities follow, with their number from 1 in the cell array ``cavity``; the share of
+cut voxels in a cavity is not kept. A region is the point array ``region:NAME``, 1 at its vertices.
 """
 
 from __future__ import annotations

@@ -75,7 +75,7 @@ impl CutSurface {
         self.frame != IDENTITY
     }
 
-    /// The areas, without those that face what holds the voxel.
+    /// The areas, without those toward a clamp or a layer.
     fn open_areas(&self, faces: &FaceConditions) -> [[f64; 2]; 3] {
         let mut areas = self
             .areas

@@ -32,7 +32,7 @@ POWERS: Final = np.array(
 )
 _CUBIC = 10
 
-#: Part of a small cube from which on, and up to which from the other side, it counts as cut in full.
+#: A small cube counts as cut in full from this part on, and up to the rest of it.
 _CUT = 0.125
 
 _ITERATIONS = 10
@@ -51,7 +51,7 @@ class SurfaceSums:
     sums: Floats
     #: Cells behind each cell, below and above along the axes, (k, 3, 2), -1 for none.
     beside: Ints
-    #: Marks of cells that are voxels, (k,). The others keep all, for those that take their material.
+    #: Marks of cells that are voxels, (k,). The others keep all, for the takers of their material.
     alone: NDArray[np.bool_]
 
     def add_cells(self, cells: Ints, filled: Floats, normals: Floats) -> None:
@@ -78,15 +78,15 @@ class SurfaceSums:
                 own = np.moveaxis(depth, 1, axis + 1).reshape(part.shape)
                 self._add(cells, axis, side, part, unit, own)
             low, high = slice(None, -1), slice(1, None)
-            for side, depth, own, other in ((1, up, low, high), (0, down, high, low)):
+            for side, behind, inner, outer in ((1, up, low, high), (0, down, high, low)):
                 self.add_faces(
                     cells,
                     axis,
                     side,
-                    layers[:, own],
-                    layers[:, other],
-                    vectors[:, own],
-                    depth[:, own],
+                    layers[:, inner],
+                    layers[:, outer],
+                    vectors[:, inner],
+                    behind[:, inner],
                 )
 
     def add_faces(
@@ -137,7 +137,8 @@ class SurfaceSums:
 def unit_vectors(vectors: Floats) -> Floats:
     """Divide vectors by their lengths, (..., 3); zeros stay."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)
+    unit: Floats = np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)
+    return unit
 
 
 def _depths(layers: Floats) -> tuple[Floats, Floats]:
@@ -183,7 +184,8 @@ def obliquity(sums: Floats) -> Floats:
     fourth = np.stack([quartic[:, axis, axis, axis, axis] for axis in range(3)], axis=1)
     second = np.einsum("vaabb->va", quartic)
     area = np.maximum(second.sum(axis=1, keepdims=True), 1e-300)
-    return np.clip(4.0 * (second - fourth) / area, 0.0, 1.0)
+    found: Floats = np.clip(4.0 * (second - fourth) / area, 0.0, 1.0)
+    return found
 
 
 def _cut(filled: Floats) -> Floats:
@@ -217,9 +219,10 @@ def _frame(quartic: Floats) -> Floats:
     biased = quartic + total * _BIAS
     for pair in _SWEEPS * [(1, 2), (2, 0), (0, 1)]:
         _turn(frame, pair, biased)
-    # Of the equal frames the one nearest to the axes of the cell.
+    # Take the one of the equal frames that is nearest to the axes of the cell.
     nearest = np.einsum("vai,kia->vk", frame, _TURNS).argmax(axis=1)
-    return frame @ _TURNS[nearest]
+    found: Floats = frame @ _TURNS[nearest]
+    return found
 
 
 def _turn(frame: Floats, pair: tuple[int, int], quartic: Floats) -> None:
@@ -253,7 +256,8 @@ def _turns() -> Floats:
     """List the rotations of a cube to itself, (24, 3, 3)."""
     signs = [np.diag(s) for s in product((1.0, -1.0), repeat=3)]
     found = np.array([np.eye(3)[list(p)] @ s for p in permutations(range(3)) for s in signs])
-    return found[np.linalg.det(found) > 0.0]
+    proper: Floats = found[np.linalg.det(found) > 0.0]
+    return proper
 
 
 _STARTS = _starts()

@@ -33,8 +33,8 @@ from voxsoft.voxels import Voxels
 #: measures give and which should not stand at an edge.
 LEAST_FILLED = 0.22
 
-#: A voxel keeps as much of its material when it gives some to the voxels behind it. Those of 5 % give
-#: way where the pressure is a fifth of the modulus.
+#: A voxel keeps as much of its material when it gives some to the voxels behind it. Those of 5 %
+#: give way where the pressure is a fifth of the modulus.
 _LEAST_KEPT = 0.11
 
 #: Measurement error of a part with a sharp edge in it.
@@ -52,8 +52,8 @@ class _Topology:
 
     `places` are the cells near the surface on the grid at `phase`, (k, 3). `voxel` is the number
     of each as a voxel, -1 for the others; `whole` is the number of voxels. `donors`, `receivers`
-    are pairs of such a cell and a neighboring one that takes its material. `beside` are the cells of
-    voxels of the own part below and above each along the axes, (k, 3, 2), -1 for none.
+    are pairs of such a cell and a neighboring one that takes its material. `beside` are the cells
+    of voxels of the own part below and above each along the axes, (k, 3, 2), -1 for none.
     `region` tells for each
     cell the cavity (from 0) around it or that its void belongs to, -1 for none, and -2 where
     `zones`, by small cube, (z, n³), tell: those of the cells `torn`, (z,).
