@@ -119,9 +119,9 @@ def rubber(poisson):
     return NeoHookean(young=YOUNG, poisson=poisson, density=DENSITY)
 
 
-# Measured with 2.5 mm: -0.8 and -1.5 % at small stretch, -2.9 and -3.4 % at large, where growth
-# answers to pressure four times as strongly; with 1.25 mm: -0.2 and -0.3, -0.7 and -0.8 %, order
-# 2.1 to 2.2. Triangles that load nodes 2 : 1 in a checkerboard gave +5 to +14 and +5 to +9 %.
+# Measured with 2.5 mm: +0.6 and 0.0 % at small stretch, -1.1 and -1.8 % at large, where growth
+# answers to pressure four times as strongly. Of errors that near to zero no order can be told.
+# Triangles that load nodes 2 : 1 in a checkerboard gave +5 to +14 and +5 to +9 %.
 @pytest.mark.slow
 @pytest.mark.parametrize(("poisson", "stretch"), [(0.3, 1.1), (0.49, 1.1), (0.3, 1.4), (0.49, 1.4)])
 def test_a_thick_sphere_of_rubber_swells_as_it_should(poisson, stretch):
@@ -143,9 +143,8 @@ def test_a_thick_sphere_of_rubber_swells_as_it_should(poisson, stretch):
     volume = 4 / 3 * np.pi * inner**3
     coarse = swelling(design, volume, stretch, 3)
     fine = swelling(design.replace(voxel_size=1.25 * mm), volume, stretch, 3)
-    assert abs(coarse) < (0.02 if stretch < 1.2 else 0.04)
+    assert abs(coarse) < (0.02 if stretch < 1.2 else 0.03)
     assert abs(fine) < 0.01
-    assert np.log2(coarse / fine) > 1.8
 
 
 # Measured: -0.5 to -1.4 % with 2 mm, -0.2 to -0.4 % with 1 mm, a third. Triangles of unlike shares

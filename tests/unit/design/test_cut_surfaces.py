@@ -76,7 +76,7 @@ def test_obliquity_is_the_square_of_twice_the_sine(angle):
     cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     (found,) = obliquity(sums_of(((0.5, 0.5, 0.5), (cos, sin, 0))))
     square = np.sin(2 * np.radians(angle)) ** 2
-    # Cubes that are cut by a little have their piece shared with the next.
+    # Cubes that are cut by a little have their facet shared with the next.
     assert_allclose(found, [square, square, 0], atol=3e-3)
 
 

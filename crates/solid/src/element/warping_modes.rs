@@ -70,7 +70,7 @@ const SQRT_2: f64 = std::f64::consts::SQRT_2;
 
 impl WarpingModes {
     /// Turns a tensor into the frame of the surface.
-    fn to_frame(&self, tensor: &Sym) -> Sym {
+    fn turned_in(&self, tensor: &Sym) -> Sym {
         if !self.is_turned() {
             return *tensor;
         }
@@ -79,7 +79,7 @@ impl WarpingModes {
     }
 
     /// Turns a tensor back from the frame of the surface.
-    fn from_frame(&self, tensor: &Sym) -> Sym {
+    fn turned_back(&self, tensor: &Sym) -> Sym {
         if !self.is_turned() {
             return *tensor;
         }
@@ -208,14 +208,15 @@ impl Rotated {
         if !warping.has_parts() {
             return self.mean(thinning, second.is_some(), function);
         }
-        let stretch = warping.to_frame(&self.stretch);
+        let stretch = warping.turned_in(&self.stretch);
         let relieved = self.with_strain(&Hex8Strain {
-            stretch: warping.from_frame(&warping.relieved(&stretch)),
+            stretch: warping.turned_back(&warping.relieved(&stretch)),
             hourglass: self.hourglass,
         });
         let mut mean = relieved.mean(thinning, second.is_some(), function);
         let slopes = warping.slopes(&stretch);
-        let back = |values: &Sym| warping.from_frame(&through(&slopes, &warping.to_frame(values)));
+        let back =
+            |values: &Sym| warping.turned_back(&through(&slopes, &warping.turned_in(values)));
         let force: Sym = std::array::from_fn(|k| mean.gradient[k]);
         mean.gradient[..6].copy_from_slice(&back(&force));
         if let Some(curvature) = second {
@@ -231,12 +232,12 @@ impl Rotated {
                     mean.hessian[k][column] = values[k];
                 }
             }
-            let force = warping.to_frame(&force.map(|f| curvature * f));
+            let force = warping.turned_in(&force.map(|f| curvature * f));
             let mut own = [[0.0; 6]; 6];
             warping.add_curvature(&stretch, &force, &mut own);
-            let half = own.map(|row| warping.from_frame(&row));
+            let half = own.map(|row| warping.turned_back(&row));
             for column in 0..6 {
-                let turned = warping.from_frame(&half.map(|row| row[column]));
+                let turned = warping.turned_back(&half.map(|row| row[column]));
                 for row in 0..6 {
                     mean.hessian[row][column] += turned[row];
                 }

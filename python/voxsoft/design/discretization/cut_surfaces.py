@@ -1,6 +1,6 @@
 """The surface in each cut voxel: directions across it, and its area on the two sides of each.
 
-Small cubes give pieces of the surface: one in each that the surface cuts, with the normal of its
+Small cubes give facets of the surface: one in each that the surface cuts, with the normal of its
 plane, and one between each full and empty pair, with that of their common face. Sums of third and
 fourth powers of the normals, weighted with the areas, add up over cells, and the frame of a voxel
 follows from them: three orthogonal axes q with the largest sum of A (n · q)⁴. These are the normals
@@ -42,9 +42,9 @@ _CHUNK = 16384
 
 @dataclass(frozen=True)
 class SurfaceSums:
-    """Sums over pieces of the surface, (k, 25), and the cells that they go to.
+    """Sums over facets of the surface, (k, 25), and the cells that they go to.
 
-    A piece belongs to its cell by the depth of the material behind it there, and with the rest to
+    A facet belongs to its cell by the depth of the material behind it there, and with the rest to
     the cell behind: a film at the face of a voxel ends the next voxel, as if it were not there.
     """
 
@@ -55,7 +55,7 @@ class SurfaceSums:
     alone: NDArray[np.bool_]
 
     def add_cells(self, cells: Ints, filled: Floats, normals: Floats) -> None:
-        """Add the pieces within cells.
+        """Add the facets within cells.
 
         Parameters
         ----------
@@ -99,14 +99,14 @@ class SurfaceSums:
         normals: Floats,
         depth: Floats,
     ) -> None:
-        """Add pieces between small cubes of cells, and those beyond that are less full.
+        """Add facets between small cubes of cells, and those beyond that are less full.
 
         Parameters
         ----------
         cells
             Numbers of the cells, (m,).
         axis, side
-            The way the pieces look: 0 down, 1 up.
+            The way the facets look: 0 down, 1 up.
         own, other
             Filled parts on the inner and the outer side, (m, ...).
         normals
@@ -126,12 +126,12 @@ class SurfaceSums:
         at = np.nonzero(areas)
         powers = np.stack([normals[at] ** degree for degree in range(5)], axis=-1)
         monomials = np.prod([powers[:, k, POWERS[:, k]] for k in range(3)], axis=0)
-        pieces = monomials * (areas[at] / SUBCELLS**2)[:, None]
+        facets = monomials * (areas[at] / SUBCELLS**2)[:, None]
         to, within = cells[at[0]], depth[at][:, None]
         behind = self.beside[to, axis, 1 - side]
         behind = np.where(self.alone[to] & (behind >= 0), behind, to)
-        np.add.at(self.sums, to, pieces * within)
-        np.add.at(self.sums, behind, pieces * (1.0 - within))
+        np.add.at(self.sums, to, facets * within)
+        np.add.at(self.sums, behind, facets * (1.0 - within))
 
 
 def unit_vectors(vectors: Floats) -> Floats:
@@ -262,7 +262,7 @@ def _turns() -> Floats:
 
 _STARTS = _starts()
 _TURNS = _turns()
-#: Weak pieces of a surface along the faces of the cell, as a part of the whole.
+#: Weak facets of a surface along the faces of the cell, as a part of the whole.
 _BIAS = np.zeros((3, 3, 3, 3))
 for _axis in range(3):
     _BIAS[_axis, _axis, _axis, _axis] = 0.01
