@@ -2,8 +2,8 @@
 
 Twelve kinds of six bodies, drawn by kind and number: half of them round with thin walls, away from
 the grid or turned, a quarter in contact. Lengths are in voxels of 2 mm; a body away from the grid
-has voxels larger by up to a tenth, as the grid follows the ends of a body. `evidence/bars_judged.py`
-solves them. Twelve recipes make the file long.
+has voxels larger by up to a tenth, as the grid follows the ends of a body.
+`evidence/bars_judged.py` solves them. Twelve recipes make the file long.
 """
 
 from __future__ import annotations

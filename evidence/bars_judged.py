@@ -1,6 +1,6 @@
 """Width of error bars beside true errors, on 72 bodies that were fixed before one was solved.
 
-``python evidence/bars_judged.py --results FILE [--kinds KIND ...] [--again] [--table]``. The bodies are
+``python evidence/bars_judged.py --results FILE [--kinds KIND ...] [--again] [--table]``. Bodies are
 those of `evidence/bar_bodies.py`. Each is run with its error bar as ``voxsoft run`` does, and again
 on smaller voxels, the smallest below those of the bar; the truth is the extrapolation of three
 sizes. A bar holds where the truth, give or take a quarter of the extrapolated part, is within it.
