@@ -120,3 +120,16 @@ def test_surfaces_change_little_as_a_wall_passes_through_a_voxel():
         (found,) = surfaces(sums_of(((0, 0, height), (0.1, 0.2, 1))))
         areas.append(found[3:].max())
     assert np.abs(np.diff(areas)).max() < 0.12
+
+
+def test_a_box_on_the_grid_has_the_frame_of_its_voxels():
+    shape = vs.Box(size=(12 * mm, 8 * mm, 10 * mm), corner=(0, 0, 0)) - vs.Box(
+        size=(4 * mm, 4 * mm, 6 * mm), corner=(4 * mm, 2 * mm, 2 * mm)
+    )
+    design = block(0.0).replace(parts=[{"shape": shape, "material": RUBBER}])
+    cut = CutVoxels.of(design)
+    # A small cube with a corner in it is met by one plane.
+    assert cut.fractions.min() > 1.0 - 1.0 / 3000.0
+    # Rounding would turn some by 1e-29.
+    assert (cut.surfaces[:, :3] == 0.0).all()
+    assert cut.surfaces[:, 3:].max() == pytest.approx(1.0)

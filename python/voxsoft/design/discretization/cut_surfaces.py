@@ -35,6 +35,9 @@ _CUBIC = 10
 #: A small cube counts as cut in full from this part on, and up to the rest of it.
 _CUT = 0.125
 
+#: Frames turned by less [rad] are those of the cell, whose full voxels then warp by their faces.
+_STRAIGHT = 1e-4
+
 _ITERATIONS = 10
 _SWEEPS = 3
 _CHUNK = 16384
@@ -167,7 +170,9 @@ def surfaces(sums: Floats) -> Floats:
         third = np.einsum("vabc,vai,vbi,vci->vi", cubic, *3 * [frame], optimize=True)
         third = np.clip(third, -fourth, fourth)
         areas = np.stack([(fourth - third) / 2.0, (fourth + third) / 2.0], axis=-1)
-        found[rows, :3] = Rotation.from_matrix(frame).as_rotvec()
+        turns = Rotation.from_matrix(frame).as_rotvec()
+        turned = np.linalg.norm(turns, axis=1, keepdims=True) > _STRAIGHT
+        found[rows, :3] = np.where(turned, turns, 0.0)
         found[rows, 3:] = areas.reshape(len(rows), 6)
     return found
 
