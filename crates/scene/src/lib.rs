@@ -19,7 +19,7 @@ pub use touching::Touching;
 const MAGIC: [u8; 4] = *b"VXSC";
 
 /// The version that is written and read.
-pub const VERSION: u32 = 6;
+pub const VERSION: u32 = 7;
 
 /// Error of reading a scene.
 #[derive(Debug, Error, Clone, PartialEq)]
