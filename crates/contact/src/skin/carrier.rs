@@ -33,17 +33,34 @@ impl<'a> Carriers<'a> {
         }
     }
 
+    /// Adds vertices that no voxel has, with the voxels near each.
+    pub(crate) fn with(mut self, near: Vec<Vec<u32>>) -> Self {
+        self.around.extend(near);
+        self
+    }
+
     /// Weights of a point on the corners of the voxel that contains it or is nearest, among the voxels at all vertices
-    /// of `share`; the mean of several that are equally near.
+    /// of `share`, or near any of them where none is at all; the mean of several that are equally near.
     pub(crate) fn carry(&self, share: &Carried, point: Vec3) -> Carried {
         let (first, others) = share.vertices.split_first().expect("a point has vertices");
         let at_all = |voxel: &&u32| {
             let corners = &self.voxels[**voxel as usize];
             others.iter().all(|vertex| corners.contains(vertex))
         };
-        let candidates = self.around[*first as usize].iter().filter(at_all);
+        let mut candidates: Vec<u32> = self.around[*first as usize]
+            .iter()
+            .filter(at_all)
+            .copied()
+            .collect();
+        if candidates.is_empty() {
+            let near = share.vertices.iter().map(|v| &self.around[*v as usize]);
+            candidates = near.flatten().copied().collect();
+            candidates.sort_unstable();
+            candidates.dedup();
+        }
         let placed: Vec<(u32, Vec3)> = candidates
-            .map(|voxel| (*voxel, self.local(*voxel, point)))
+            .into_iter()
+            .map(|voxel| (voxel, self.local(voxel, point)))
             .collect();
         let least = placed
             .iter()

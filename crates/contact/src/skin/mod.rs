@@ -9,10 +9,13 @@
 //! pass through each other (Ju and Udeshi 2006, "Intersection-free contouring on an octree grid"). The surface stays
 //! as closed as the faces of the voxels are, and walls keep both sides.
 //!
+//! Where a surface cuts voxels, the faces are those of the cells with their center inside ([`cells`]).
+//!
 //! A point moves with the corners of one voxel as if the displacement between them, which is trilinear, went on up to
 //! half a voxel beyond its faces.
 
 mod carrier;
+mod cells;
 mod crossing;
 mod feature;
 mod folds;
@@ -27,6 +30,7 @@ use crate::gap::{doubled, unit};
 use crate::surface::{Carried, Surface};
 use crate::surface::{Face, outer_faces};
 pub(crate) use carrier::Carriers;
+use cells::Cells;
 use crossing::{Crossing, Field};
 use folds::Folds;
 
@@ -45,7 +49,7 @@ const APPROACHES: usize = 3;
 pub struct Skin {
     /// Points, carried by vertices of voxels, also inner ones, with weights of both signs; and triangles.
     pub surface: Surface,
-    /// Vertices on the outer faces that stand for each point, with positive weights.
+    /// Vertices at the surface that stand for each point, with positive weights.
     pub shares: Vec<Carried>,
     /// Positions of the points, m.
     pub points: Vec<Vec3>,
@@ -64,14 +68,11 @@ impl Skin {
         vertices: &[Vec3],
         mut function: impl FnMut(&[Vec3]) -> Result<Vec<f64>, E>,
     ) -> Result<Self, E> {
-        let faces = outer_faces(voxels);
-        let flat = Surface::of_faces(&faces, PARTS);
         let Some(first) = voxels.first() else {
-            let (surface, shares, points) = (flat, Vec::new(), Vec::new());
             return Ok(Self {
-                surface,
-                shares,
-                points,
+                surface: Surface::default(),
+                shares: Vec::new(),
+                points: Vec::new(),
             });
         };
         let voxel = norm(sub(
@@ -82,9 +83,12 @@ impl Skin {
             values: &mut function,
             voxel,
         };
-        let middles = middles(&faces, vertices);
+        let cells = Cells::of(voxels, vertices, &mut field)?;
+        let faces = outer_faces(&cells.corners);
+        let flat = Surface::of_faces(&faces, PARTS);
+        let middles = middles(&faces, &cells.vertices);
         let found = field.crossings(&middles)?;
-        let mut moved = Moved::new(&flat, vertices, &found);
+        let mut moved = Moved::new(&flat, &cells.vertices, &found);
         // A face without a crossing stays in place.
         let either = |(found, middle): (Option<Crossing>, Crossing)| found.unwrap_or(middle);
         let crossings: Vec<Crossing> = found.into_iter().zip(middles).map(either).collect();
@@ -96,7 +100,7 @@ impl Skin {
             voxel,
         };
         let points = folds.unfolded([&targets, &moved.means, &moved.starts]);
-        let carriers = Carriers::new(voxels, vertices);
+        let carriers = Carriers::new(voxels, vertices).with(cells.near.clone());
         let carried = flat.points.iter().zip(&points);
         let carried = carried
             .map(|(share, point)| carriers.carry(share, *point))
@@ -106,7 +110,7 @@ impl Skin {
                 points: carried,
                 triangles: flat.triangles,
             },
-            shares: flat.points,
+            shares: flat.points.iter().map(|p| cells.share(p)).collect(),
             points,
         })
     }

@@ -1,5 +1,6 @@
 //! Skins of bodies with known surface.
 
+use std::array;
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 
@@ -232,22 +233,47 @@ fn chambers_are_surfaces_too() {
     assert!((volume(&skin) / ideal - 1.0).abs() < 0.01);
 }
 
+/// Cells of which at least 22 % of places are in the shape, as of voxels that a surface cuts.
+fn cut(size: i32, shape: impl Fn(Vec3) -> f64) -> Filled {
+    let parts = 8;
+    Filled::of(size, |center| {
+        let inside = (0..parts * parts * parts).filter(|number| {
+            let steps = [
+                number / (parts * parts),
+                number / parts % parts,
+                number % parts,
+            ];
+            let place = |i: usize| (f64::from(steps[i]) + 0.5) / f64::from(parts) - 0.5;
+            shape(array::from_fn(|i| center[i] + place(i))) < 0.0
+        });
+        0.22 - inside.count() as f64 / f64::from(parts * parts * parts)
+    })
+}
+
 #[test]
-fn cut_voxels_count_as_far_as_their_centers() {
-    // The top voxels are a third full, with their centers outside: the space below their centers counts as inside.
-    let filled = Filled::of(3, block([0.0; 3], [2.0, 2.0, 2.0], ALONG));
-    let skin = filled.skin(block([0.0, 0.0, -0.35], [2.0, 2.0, 1.65], ALONG));
-    sound(&skin);
-    for point in &skin.points {
-        // The skin is rounded at the edges of the top, beside centers that are outside too.
-        let inner = point[0].abs().max(point[1].abs()) < 1.4;
-        assert!(
-            point[2] < if inner { 1.51 + 1e-9 } else { 1.75 },
-            "{point:?}"
-        );
+fn cut_voxels_end_at_the_surface() {
+    for (center, half) in [
+        // A third full at the top, and a quarter in two edges and in corners.
+        ([0.0, 0.0, -0.35], [2.0, 2.0, 1.65]),
+        ([0.0; 3], [2.5, 2.49, 2.0]),
+        ([0.21, -0.13, 0.37], [2.1, 1.3, 2.8]),
+        ([0.0, 0.0, 0.1], [1.66, 1.66, 1.6]),
+    ] {
+        let shape = block(center, half, ALONG);
+        let skin = cut(5, &shape).skin(&shape);
+        sound(&skin);
+        let off = farthest(&skin, &shape);
+        assert!(off < 1e-6, "{off} {half:?}");
+        let ratio = volume(&skin) / (8.0 * half[0] * half[1] * half[2]);
+        assert!((ratio - 1.0).abs() < 1e-6, "{ratio} {half:?}");
     }
-    assert!(has_point(&skin, [0.5, 0.5, 1.51]) && has_point(&skin, [1.0, 1.0, 1.5]));
-    assert!(has_point(&skin, [-2.0, 2.0, -2.0]));
+    for radius in [2.3, 4.0, 5.3] {
+        let shape = ball(radius, [0.13, -0.27, 0.41]);
+        let skin = cut(7, &shape).skin(&shape);
+        sound(&skin);
+        let off = farthest(&skin, &shape);
+        assert!(off < 1.0 / (8.0 * radius), "{off} of {radius}");
+    }
 }
 
 #[test]
@@ -290,6 +316,13 @@ proptest! {
         prop_assert_eq!(open_edges(&skin), 0);
         prop_assert_eq!(crossings(&skin), 0);
         let stairs = Surface::of_voxels(&filled.voxels, 2);
-        prop_assert_eq!(skin.surface.triangles, stairs.triangles);
+        prop_assert_eq!(&skin.surface.triangles, &stairs.triangles);
+        // Voxels that the surface cuts carry it too, except where a wall has no center.
+        let of_cut = cut(6, &shape).skin(&shape);
+        prop_assert_eq!(open_edges(&of_cut), 0);
+        prop_assert_eq!(crossings(&of_cut), 0);
+        for point in &of_cut.shares {
+            prop_assert!(point.weights.iter().all(|weight| *weight > 0.0));
+        }
     }
 }
