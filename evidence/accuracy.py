@@ -1,8 +1,9 @@
 """Errors against converged references, for the hyperelastic voxel and the lattice.
 
-``python evidence/accuracy.py [--json] [--fine] [--answers]``. First what runs answer, with their
-error bars and times (`answers.py`): twisted bars, thick spheres and tubes, cylinders, a PneuNet,
-and six clamped beams of three Poisson's ratios; `--answers` stops there. Then the same beams,
+``python evidence/accuracy.py [--json] [--fine] [--answers] [--round]``. First what runs answer,
+with error bars and times (`answers.py`): twisted bars, thick spheres and tubes, cylinders, a
+PneuNet, and six clamped beams of three Poisson's ratios; `--answers` stops there. `--round` adds
+round and thin bodies off the grid (`round_bodies.py`). Then the same beams,
 round and stair-step cylinders at 4 kPa, the PneuNet at 3 kPa, and a block with a smooth exact
 solution, of both materials and sizes extrapolated by hand. E = 60 kPa everywhere and nothing is
 fitted, but for the lattice: its two moduli are those that fit beam (a) at 5 mm best, and then
@@ -308,9 +309,14 @@ def main() -> None:
         "Errors against converged references",
         fine="also 1.25 mm voxels, which take minutes",
         answers="only what runs answer, with their error bars",
+        round="also round and thin bodies off the grid, which take minutes",
     )
     fine = bool(report.options["fine"])
     answers(report, (1, 2, 4))
+    if report.options["round"]:
+        from round_bodies import round_answers
+
+        round_answers(report, voxel_references(), 60.0, None)
     if report.options["answers"]:
         report.show()
         return
