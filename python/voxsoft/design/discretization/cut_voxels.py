@@ -33,10 +33,6 @@ from voxsoft.voxels import Voxels
 #: measures give and which should not stand at an edge.
 LEAST_FILLED = 0.22
 
-#: A voxel keeps as much of its material when it gives some to the voxels behind it. Those of 5 %
-#: give way where the pressure is a fifth of the modulus.
-_LEAST_KEPT = 0.11
-
 #: Measurement error of a part with a sharp edge in it.
 _ALIKE = 0.02
 
@@ -373,7 +369,7 @@ def _levers(t: _Topology, measures: Floats, around: Floats) -> tuple[Ints, Ints,
     the material, δ along n from that of the cell, 2 Σ tₐ² nₐ² of κ δ are missing in the strain
     along t, in a plane of two axes sin² 2θ. A share |δₐ|/h of the material that is counted in the
     next voxel inward along the axis a, at the place where it is, makes up for it; that share is
-    moved times the part that is missing. A cell keeps :data:`_LEAST_KEPT`. Cells between two
+    moved times the part that is missing. A cell keeps :data:`LEAST_FILLED`. Cells between two
     empty regions keep all.
     """
     cells = np.flatnonzero((t.voxel >= 0) & (measures[:, 0] < 1.0) & (t.region != -2))
@@ -382,7 +378,7 @@ def _levers(t: _Topology, measures: Floats, around: Floats) -> tuple[Ints, Ints,
     side = (shift > 0.0).astype(np.intp)
     behind = np.take_along_axis(t.beside[cells], side[:, :, None], axis=2)[:, :, 0]
     shares = np.abs(shift) * obliquity(around[cells]) * (behind >= 0)
-    most = np.maximum(0.0, 1.0 - _LEAST_KEPT / filled)
+    most = np.maximum(0.0, 1.0 - LEAST_FILLED / filled)
     shares *= np.minimum(1.0, most / np.maximum(shares.sum(axis=1), 1e-300))[:, None]
     row, axis = np.nonzero(shares)
     return cells[row], behind[row, axis], shares[row, axis]
