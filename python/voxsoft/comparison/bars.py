@@ -232,7 +232,7 @@ class _Run:
         volumes = [(a.metric("volume"), b.metric("volume"))]
         for mine, theirs in zip(a.mesh.cavities, b.mesh.cavities, strict=True):
             volumes.append((float(mine.volume), float(theirs.volume)))
-        if a.design.fill == "binary":
+        if a.mesh.fractions is None and b.mesh.fractions is None:
             mine, theirs = np.ptp(a.mesh.vertices, axis=0), np.ptp(b.mesh.vertices, axis=0)
             if not np.allclose(mine, theirs, rtol=0.0, atol=1e-6 * self.size):
                 return False

@@ -8,6 +8,8 @@ from typing import Final
 
 from voxsoft.design import Contact, Design, Dielectric, Object
 from voxsoft.design.attachment import attachments_of
+from voxsoft.design.discretization.cut_cells import cuts_cells
+from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Hyperelastic, Lattice, Material, Rigid
 from voxsoft.simulation.setup.contact import has_contact
 from voxsoft.simulation.setup.fluids import has_supplies
@@ -122,8 +124,20 @@ def _dielectrics_over_time(design: Design) -> Iterator[str]:
             yield f"activations[{index}].history"
 
 
+def _is_cut(design: Design) -> bool:
+    """Return True if the surface cuts voxels of a design, of any of its bodies."""
+    if not design.has_cut_voxels:
+        return False
+    if design.bodies:
+        return any(_is_cut(design.alone(body.name)) for body in design.bodies)
+    try:
+        return cuts_cells(design, design.voxel_size)
+    except VoxSoftError:
+        return True  # a body without voxels is reported where it is meshed
+
+
 def _fraction(design: Design) -> Iterator[str]:
-    if design.fill == "fraction":
+    if _is_cut(design):
         yield "fill"
 
 

@@ -64,7 +64,7 @@ def below_voxels(design: Design, space: Mapping[str, Domain]) -> Iterator[Diagno
     >>> print(*below_voxels(families.cylinder(), walls))  # doctest: +ELLIPSIS
     parameters.wall: is varied by 1 mm on voxels of 5 mm, so that several values are one body...
     """
-    if design.fill != "binary" or design.bodies:
+    if design.has_cut_voxels or design.bodies:
         return
     for name, domain in space.items():
         parameter = design.parameters.get(name)

@@ -140,11 +140,14 @@ def require_slopes(family: object, parameters: Sequence[str]) -> Design:
     for name in parameters:
         value = family.parameters[name].value
         other = with_number(family, name, value * (1.0 + 1e-6) or 1e-6)
-        jumps = family.fill != "fraction" and other.shapes != family.shapes
-        if jumps or other.voxel_size != family.voxel_size:
+        jumps = not family.has_cut_voxels and other.shapes != family.shapes
+        if jumps:
             raise StudyError(
                 f"space.{name}",
                 "changes the shape, and voxels are either full or empty",
-                'use fill = "fraction" and vary no voxel_size, or another sampler',
+                'use fill = "fraction", or another sampler',
             )
+        if other.voxel_size != family.voxel_size:
+            what = "changes the voxel size, and the grid with it"
+            raise StudyError(f"space.{name}", what, "vary no voxel_size, or use another sampler")
     return family

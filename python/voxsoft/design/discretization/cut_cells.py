@@ -29,6 +29,9 @@ _CHUNK = 4096
 #: Result of :func:`measures_of` for a full cell.
 WHOLE: Final[Floats] = np.array([1.0, 0.0, 0.0, 0.0, 1 / 3, 1 / 3, 1 / 3, 0.0, 0.0, 0.0])
 
+# Distance from the faces of a cell, in edges, within which a surface is on them.
+_RIM = 1e-7
+
 # A cell that is full or empty up to rounding is full or empty.
 _ROUNDING = 1e-9
 
@@ -119,6 +122,45 @@ def cut_cells(design: Design, size: float) -> CutCells:
         filled[tuple(chunk.T)] = _whole(found.mean(axis=1))
         part[tuple(chunk.T)] = np.argmax(shares > shares.max(axis=1, keepdims=True) - 1e-9, axis=1)
     return CutCells(low, phase, size, filled, part, cells)
+
+
+def cuts_cells(design: Design, size: float) -> bool:
+    """Return True if the surface of a design, or that between its parts, cuts a cell of the grid.
+
+    A cell near the surface is whole where points all over it, up to its faces, are of one part, or
+    of none. Parameters and errors are those of :func:`cut_cells`.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> cuts_cells(families.beam(), 0.005), cuts_cells(families.beam(length=0.0999), 0.005)
+    (False, True)
+    """
+    phase = np.asarray(phase_of(design))
+    shapes = [_shape(design, part.shape) for part in design.parts]
+    body = Body(shapes, size, design.shapes, _triple(phase))
+    bounds = [body.cells_of(index, _triple(phase)) for index in range(len(shapes))]
+    low = np.min([corner for corner, _ in bounds], axis=0) - 1
+    counts = np.max([corner for _, corner in bounds], axis=0) + 1 - low
+    if float(np.prod(counts.astype(np.float64))) * (len(shapes) + 16) > memory_limit():
+        return True  # too large a grid is reported where it is measured
+    near = np.zeros(counts, dtype=bool)
+    for shape in shapes:
+        state = _state(shape, design, size, phase + low * size, counts)
+        if (state == 1).any() or not state.any():
+            return True
+        near |= _mixed(state)
+    built = built_parts(design)
+    cells = np.argwhere(near)
+    for start in range(0, len(cells), _CHUNK):
+        corners = phase + (cells[start : start + _CHUNK] + low) * size
+        points = (corners[:, None] + size * _ALL_OVER).reshape(-1, 3)
+        owner = np.zeros(len(points), dtype=np.uint8)
+        for index in range(len(built), 0, -1):  # the first part wins
+            owner[built[index - 1].evaluate(points) < 0.0] = index
+        if np.ptp(owner.reshape(-1, len(_ALL_OVER)), axis=1).any():
+            return True
+    return False
 
 
 def filled_parts(
@@ -235,6 +277,14 @@ def _middles() -> Floats:
 
 
 _MIDDLES = _middles()
+_INSET = np.array([_RIM, 0.25, 0.5, 0.75, 1.0 - _RIM])
+#: Points in a cell, as parts of its edge.
+_ALL_OVER = np.stack(np.meshgrid(_INSET, _INSET, _INSET, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def _triple(values: Floats) -> Triple:
+    x, y, z = values.tolist()
+    return x, y, z
 
 
 def _shape(design: Design, shape: str | Shape) -> Shape:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.design.discretization.cut_cells import cuts_cells
 from voxsoft.design.discretization.cut_voxels import CutVoxels
 from voxsoft.design.discretization.grid import grid_of
 from voxsoft.design.discretization.joined import joined
@@ -94,6 +95,8 @@ class Filled:
 def filled(design: Design, refine: int = 1) -> Filled:
     """Fill a grid with a design, as its `fill` says; parameters as for :func:`mesh_of`.
 
+    A body whose surface lies on faces of voxels has full ones.
+
     Examples
     --------
     >>> from voxsoft.design import families
@@ -108,7 +111,7 @@ def filled(design: Design, refine: int = 1) -> Filled:
         refine *= TIMES_AS_SMALL
     if design.bodies:
         return _filled_bodies(design.assembled, refine)
-    if design.fill == "fraction":
+    if design.has_cut_voxels and cuts_cells(design, design.voxel_size):
         cut = CutVoxels.of(design, refine)
         return Filled(cut.voxels, cut.voxels.count, cut.lost, cut.mesh)
     voxels = grid_of(design).voxels()

@@ -216,5 +216,7 @@ def _length(value: float, digits: int = 3) -> str:
 
 
 def _may_cut(design: Design) -> bool:
-    """Return True if cut voxels are a remedy: all materials are hyperelastic."""
-    return all(isinstance(design.material_of(part), Hyperelastic) for part in design.parts)
+    """Return True if cut voxels are a remedy: all is rubber, and its voxels are full or empty."""
+    return not design.has_cut_voxels and all(
+        isinstance(design.material_of(part), Hyperelastic) for part in design.parts
+    )

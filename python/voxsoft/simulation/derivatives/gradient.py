@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.design import Design, Objective
+from voxsoft.design.discretization.cut_cells import cuts_cells
 from voxsoft.design.discretization.cut_voxels import CutVoxels
 from voxsoft.design.shape_memory import ShapeMemory
 from voxsoft.design.variation import number_of, with_number
@@ -171,7 +172,12 @@ class EquilibriumState(LoadedState):
     def _cut(self) -> CutVoxels:
         design, mesh = self.setup.design, self.setup.mesh
         cut = CutVoxels.of(design, max(1, round(design.voxel_size / voxel_size(mesh))))
-        if mesh.fractions is None or not np.array_equal(cut.fractions, mesh.fractions):
+        if mesh.fractions is None:
+            same = cut.voxels.count == len(mesh.tets) // 5
+            same = same and not cuts_cells(design, design.voxel_size)
+        else:
+            same = np.array_equal(cut.fractions, mesh.fractions)
+        if not same:
             raise SimulationError(
                 "gradient", "the result has other cut voxels than its design", "solve it again"
             )
@@ -180,13 +186,15 @@ class EquilibriumState(LoadedState):
     def reshaped(self, design: Design, name: str) -> Mesh:
         """Return the mesh of the same voxels, filled as a design with another shape fills them."""
         own = self.setup.design
-        if own.fill != "fraction" or design.voxel_size != own.voxel_size:
+        if design.voxel_size != own.voxel_size:
+            what = "cannot be varied: it changes the voxel size, and the grid with it"
+            raise DesignError(name, what, "keep voxel_size, and vary shapes")
+        if not own.has_cut_voxels:
             raise DesignError(
                 name,
                 "cannot be varied: it changes the shape, and voxels are either full or empty, so "
                 "that the derivative is zero or does not exist",
-                'use fill = "fraction", where cut voxels hold their share of material, and vary '
-                "no voxel_size",
+                'use fill = "fraction", where cut voxels hold their share of material',
             )
         return self._cut.resampled(design).mesh()
 

@@ -281,7 +281,7 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
             )
         touches = setup.touching is not None
         ended = (report.status, report.steps, answer.residual, answer.path)
-        is_cut = setup.design.fill == "fraction"
+        is_cut = setup.mesh.fractions is not None
         return sentence(way, *ended, touches=touches, is_cut=is_cut)
     residual = f"residual {format_percent(answer.residual)} of the load"
     steps = f"{report.steps} steps"

@@ -28,6 +28,9 @@ Triangles = NDArray[np.int32]
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
+#: Difference from a full voxel that is rounding.
+_ROUNDING = 1e-9
+
 _FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
 
 
@@ -98,7 +101,7 @@ def layer_triangles(layer: Layer, design: Design, mesh: Mesh, where: str) -> Lay
     ------
     DesignError
         The region catches no vertex or no whole face, or a layer that seals meets a mesh that is
-        not made of full voxels.
+        not made of voxels.
 
     Examples
     --------
@@ -151,7 +154,48 @@ def sealed(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> Mesh:
         return mesh
     if mesh.bodies:
         return replace(mesh, cavities=_cavities_of_bodies(mesh, layers))
-    return replace(mesh, cavities=tuple(c.surface for c in chambers(mesh, layers)))
+    return replace(mesh, cavities=tuple(_with_voids(mesh, layers)))
+
+
+def _with_voids(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> list[MeshCavity]:
+    """Return all chambers, largest first, those that no layer bounds with the room in cut voxels.
+
+    Raises
+    ------
+    DesignError
+        A layer bounds a chamber with cut voxels in its walls, whose rooms are not known there.
+    """
+    found = [chamber.surface for chamber in chambers(mesh, layers)]
+    if mesh.fractions is None:
+        return found
+    own = {_key(cavity): cavity for cavity in mesh.cavities}
+    voxel_at = np.zeros(len(mesh.vertices), dtype=bool)
+    is_cut = np.abs(mesh.fractions - 1.0) > _ROUNDING
+    voxel_at[mesh.tets.reshape(-1, 20)[is_cut]] = True
+    for index, cavity in enumerate(found):
+        if _key(cavity) in own:
+            found[index] = own[_key(cavity)]
+        elif _in_cut_voxels(mesh, cavity, is_cut, voxel_at):
+            raise DesignError(
+                next(f"layers[{i}].seal" for i, each in enumerate(layers) if len(each.openings)),
+                "cannot close a chamber with cut voxels in its walls: their room is not known",
+                'use fill = "binary", or make the sizes of the chamber multiples of the voxel size',
+            )
+    return sorted(found, key=lambda cavity: -cavity.volume)
+
+
+def _key(cavity: MeshCavity) -> frozenset[tuple[int, ...]]:
+    return frozenset(map(tuple, np.sort(cavity.triangles, axis=1).tolist()))
+
+
+def _in_cut_voxels(mesh: Mesh, cavity: MeshCavity, is_cut: Mask, near: Mask) -> bool:
+    """Return True if a face of a cut voxel bounds a cavity; `near` marks their corners."""
+    doubtful = cavity.triangles[near[cavity.triangles].all(axis=1)]
+    if len(doubtful) == 0:
+        return False
+    faces = mesh.tets.reshape(-1, 5, 4)[is_cut].reshape(-1, 4)[:, _FACES].reshape(-1, 3)
+    known = set(map(tuple, np.sort(faces, axis=1).tolist()))
+    return any(tuple(each) in known for each in np.sort(doubtful, axis=1).tolist())
 
 
 def _cavities_of_bodies(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> tuple[MeshCavity, ...]:
@@ -234,9 +278,6 @@ def _spanning(layer: Layer, mesh: Mesh, bonded: Triangles, where: str) -> tuple[
 
     if mesh.voxel_size is None:
         raise DesignError(f"{where}.seal", "needs a body of voxels, and this mesh is another one")
-    if mesh.fractions is not None:
-        what = "cannot close a chamber whose voxels are partly filled"
-        raise DesignError(f"{where}.seal", what, 'use fill = "binary"')
     axis = layer.axis
     if axis is None:
         raise DesignError(f"{where}.seal", "needs a region that is a plane")

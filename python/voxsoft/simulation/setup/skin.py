@@ -55,7 +55,7 @@ def has_skin(design: Design, mesh: Mesh) -> bool:
     size = mesh.voxel_size
     if size is None or mesh.tet_voxel is None:
         return False
-    return design.fill == "fraction" or size == design.voxel_size
+    return design.has_cut_voxels or size == design.voxel_size
 
 
 def touches_with_skin(design: Design, own: Design, mesh: Mesh) -> bool:

@@ -205,7 +205,7 @@ def doubts(volumes: Volumes, remedy: str) -> Iterator[Diagnostic]:
 def _remedy(design: Design) -> str:
     whole = "multiples" if not design.symmetry else "even multiples across a plane of symmetry"
     ways = f"make the voxels smaller, or its sizes {whole} of the voxel size"
-    may_cut = design.fill == "binary" and not design.bodies and _is_rubber(design)
+    may_cut = not design.has_cut_voxels and not design.bodies and _is_rubber(design)
     return f'set fill = "fraction", {ways}' if may_cut else ways
 
 
