@@ -37,6 +37,8 @@ def box(size, corner):
 
 OUTER = box(["= length", "20 mm", "20 mm"], [0, "-10 mm", 0])
 VOID = box(["10 mm", "10 mm", "10 mm"], ["5 mm", "-5 mm", "5 mm"])
+# A surface that cuts voxels.
+ROUND = {"kind": "sphere", "radius": "6 mm", "center": ["10 mm", 0, "10 mm"]}
 SHAPES = {
     "outer": OUTER,
     "void": VOID,
@@ -170,7 +172,7 @@ SAMPLES = {
     "viscosity": {"parts": [soft(material=RELAXING)]},
     "local refinement": {"refine": [{"region": {"x": [0, "5 mm"]}}]},
     "planes of symmetry": {"symmetry": PLANES},
-    "cut voxels": {"fill": "fraction"},
+    "cut voxels": {"fill": "fraction", "shapes": {**SHAPES, "void": ROUND}},
     "rigid parts": {
         "parts": [
             soft(),

@@ -9,7 +9,7 @@
 //! pass through each other (Ju and Udeshi 2006, "Intersection-free contouring on an octree grid"). The surface stays
 //! as closed as the faces of the voxels are, and walls keep both sides.
 //!
-//! Where a surface cuts voxels, the faces are those of the cells with their center inside ([`cells`]).
+//! Faces are those of the cells with their center inside where a surface cuts voxels ([`cells`]).
 //!
 //! A point moves with the corners of one voxel as if the displacement between them, which is trilinear, went on up to
 //! half a voxel beyond its faces.
