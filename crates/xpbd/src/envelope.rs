@@ -91,6 +91,28 @@ impl Envelope {
         }
     }
 
+    /// Solves for one right-hand side; needs a factored matrix.
+    pub fn solve_one(&self, side: &mut [f64]) {
+        for row in 0..side.len() {
+            let (diagonal, left) = self.row(row);
+            let known = product(left, &side[self.first[row]..row]);
+            side[row] = (side[row] - known) / diagonal;
+        }
+        for row in (0..side.len()).rev() {
+            let (diagonal, left) = self.row(row);
+            let known = side[row] / diagonal;
+            side[row] = known;
+            for (entry, side) in left.iter().zip(&mut side[self.first[row]..row]) {
+                *side -= entry * known;
+            }
+        }
+    }
+
+    /// Number of entries.
+    pub fn entries(&self) -> usize {
+        self.entries.len()
+    }
+
     /// Diagonal entry of a row and the entries left of it.
     fn row(&self, row: usize) -> (f64, &[f64]) {
         let end = self.ends[row];

@@ -7,6 +7,7 @@ use voxsoft_solid::{
     Ask, Grab, LiveStatus, Look, Memory, Method, Problem, ProblemError, State, Stepper, elastic,
 };
 
+use super::stiff_inertia::StiffInertia;
 use super::{Arrays, Dynamics, Subject, Window, arrays_of, at_rest, strips_of, substeps_of};
 use crate::outcome::{BLOW_UP_EXCESS, MAX_BACK_OFFS};
 
@@ -78,8 +79,10 @@ impl Live {
             grabs: &[],
         };
         let strips = strips_of(subject);
-        let substep = settings.time_step / f64::from(substeps_of(subject, strips.as_ref()));
-        let mut arrays = arrays_of(subject, strips);
+        let stiff = StiffInertia::of(&problem, &settings);
+        let substeps = substeps_of(subject, strips.as_ref(), stiff.as_ref());
+        let substep = settings.time_step / f64::from(substeps);
+        let mut arrays = arrays_of(subject, strips, stiff);
         let state = State::at_rest(problem.body());
         arrays.load(&state);
         Self {
@@ -292,7 +295,8 @@ impl Stepper for Live {
             settings: &self.settings,
             grabs: &[],
         };
-        self.arrays = arrays_of(subject, strips_of(subject));
+        let stiff = StiffInertia::of(&self.problem, &self.settings);
+        self.arrays = arrays_of(subject, strips_of(subject), stiff);
         self.substep = self.first_substep;
         (self.back_offs, self.stuck) = (0, 0);
         self.start_from(state);

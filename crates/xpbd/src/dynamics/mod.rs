@@ -5,6 +5,7 @@ mod live;
 mod membrane_inertia;
 mod on_strips;
 mod on_vertices;
+mod stiff_inertia;
 
 use std::ops::ControlFlow;
 
@@ -15,6 +16,7 @@ use voxsoft_solid::loads::grabs::loads_end;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Damping, Grab, Observer, Problem, Progress, Solution, Solver, State, Status};
 
+use self::stiff_inertia::StiffInertia;
 use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, start_at};
 use crate::stiffness::{Membranes, largest_eigenvalue};
 
@@ -87,8 +89,9 @@ pub fn simulate(
 ) -> Answer {
     let subject = Subject::alone(problem, settings);
     let strips = strips_of(subject);
-    let substeps = substeps_of(subject, strips.as_ref());
-    let arrays = arrays_of(subject, strips);
+    let stiff = StiffInertia::of(problem, settings);
+    let substeps = substeps_of(subject, strips.as_ref(), stiff.as_ref());
+    let arrays = arrays_of(subject, strips, stiff);
     run(problem.clone(), settings, start, observer, arrays, substeps)
 }
 
@@ -142,10 +145,14 @@ fn strips_of(
     })
 }
 
-fn arrays_of(subject: Subject<'_>, strips: Option<Strips>) -> Box<dyn Arrays + Send> {
+fn arrays_of(
+    subject: Subject<'_>,
+    strips: Option<Strips>,
+    stiff: Option<StiffInertia>,
+) -> Box<dyn Arrays + Send> {
     match strips {
         Some(strips) => Box::new(on_strips::OnStrips::new(subject, strips)),
-        None => Box::new(on_vertices::OnVertices::new(subject)),
+        None => Box::new(on_vertices::OnVertices::new(subject, stiff)),
     }
 }
 
@@ -274,8 +281,12 @@ fn at_rest(problem: &Problem, state: &State, residual: f64, tolerance: f64) -> b
 }
 
 /// Substeps per step: those of the settings, or as many as the highest frequency needs; membranes count only as far as
-/// [`MEMBRANE_FREQUENCY`] limits their mass scaling.
-fn substeps_of(subject: Subject<'_>, strips: Option<&Strips>) -> u32 {
+/// [`MEMBRANE_FREQUENCY`] limits their mass scaling, and stiff voxels with scaled masses do not.
+fn substeps_of(
+    subject: Subject<'_>,
+    strips: Option<&Strips>,
+    stiff: Option<&StiffInertia>,
+) -> u32 {
     let Subject {
         problem, settings, ..
     } = subject;
@@ -283,8 +294,8 @@ fn substeps_of(subject: Subject<'_>, strips: Option<&Strips>) -> u32 {
         return substeps;
     }
     let masses = problem.body().masses();
-    let of = |membranes| largest_eigenvalue(problem, masses, strips, membranes).sqrt();
-    let mut highest = of(Membranes::Apart);
+    let of = |membranes| largest_eigenvalue(problem, masses, strips, membranes, &[]).sqrt();
+    let mut highest = stiff.map_or_else(|| of(Membranes::Apart), StiffInertia::of_the_rest);
     if !problem.body().membranes().is_empty() {
         highest = highest.max(of(Membranes::Taut) / MEMBRANE_FREQUENCY);
     }
@@ -332,8 +343,8 @@ mod tests {
         let go_on = &mut |_: &Progress<'_>| ControlFlow::Continue(());
         let subject = Subject::alone(problem, settings);
         [strips, None].map(|strips| {
-            let substeps = substeps_of(subject, strips.as_ref());
-            let arrays = arrays_of(subject, strips);
+            let substeps = substeps_of(subject, strips.as_ref(), None);
+            let arrays = arrays_of(subject, strips, None);
             run(
                 problem.clone(),
                 settings,

@@ -6,6 +6,7 @@ use voxsoft_solid::{Body, Problem, State, Viscosity, elastic};
 
 use super::grab::{Held, add_pulls};
 use super::membrane_inertia::MembraneInertia;
+use super::stiff_inertia::StiffInertia;
 use super::{Arrays, Damping, Subject};
 use crate::damping;
 
@@ -21,6 +22,7 @@ pub(super) struct OnVertices {
     forces_before: Vec<Vec3>,
     viscosity: Viscosity,
     membranes: Option<MembraneInertia>,
+    stiff: Option<StiffInertia>,
     edge_multipliers: Vec<f64>,
     edge_compliances: Vec<f64>,
     tet_multipliers: Vec<f64>,
@@ -36,6 +38,7 @@ impl OnVertices {
         Subject {
             problem, settings, ..
         }: Subject<'_>,
+        stiff: Option<StiffInertia>,
     ) -> Self {
         let body = problem.body();
         let count = body.rest().len();
@@ -55,6 +58,7 @@ impl OnVertices {
             forces_before: vec![[0.0; 3]; count],
             viscosity: Viscosity::new(body, settings.retardation),
             membranes: MembraneInertia::of(problem),
+            stiff,
             edge_multipliers: vec![0.0; body.edges().len()],
             edge_compliances: body.edges().iter().map(|e| 1.0 / e.stiffness).collect(),
             tet_multipliers: vec![0.0; body.tets().len()],
@@ -69,7 +73,8 @@ impl OnVertices {
 
     /// Prediction: sets the multipliers from the elastic forces at the first positions, then moves freely under all
     /// forces. Other terms have forces only and are not projected: a substep of one over the highest frequency
-    /// integrates voxels and attached terms as they are (symplectic Euler), and [`MembraneInertia`] handles membranes.
+    /// integrates voxels and attached terms as they are (symplectic Euler), and [`MembraneInertia`] handles membranes,
+    /// [`StiffInertia`] stiff voxels.
     fn predict(&mut self, subject: Subject<'_>, h: f64) {
         let body = subject.problem.body();
         self.start.copy_from_slice(&self.state.positions);
@@ -102,6 +107,9 @@ impl OnVertices {
         let kept = libm::exp(-self.damping_rate * h);
         if let Some(membranes) = &mut self.membranes {
             membranes.note(kept, &self.state.velocities);
+        }
+        if let Some(stiff) = &mut self.stiff {
+            stiff.note(kept, &self.state.velocities);
         }
         self.held.weigh(
             subject.grabs,
@@ -136,6 +144,14 @@ impl OnVertices {
                 self.state.positions[vertex] = add(self.start[vertex], moved);
             }
         }
+        if let Some(stiff) = &mut self.stiff {
+            let velocities = &mut self.state.velocities;
+            stiff.spread(h, &self.start, &self.inverse_masses, velocities);
+            for &vertex in stiff.vertices() {
+                let moved = scale(h, self.state.velocities[vertex]);
+                self.state.positions[vertex] = add(self.start[vertex], moved);
+            }
+        }
         subject
             .problem
             .place_clamps(time, 1.0, &mut self.state.positions);
@@ -151,7 +167,9 @@ impl OnVertices {
                 masses,
                 self.substep_before,
             );
-            self.damping_rate = 2.0 * frequency;
+            let stiff = self.stiff.as_ref();
+            let slowed = stiff.map_or(frequency, |s| s.slowed(frequency, self.substep_before));
+            self.damping_rate = 2.0 * slowed;
         }
     }
 
@@ -240,6 +258,9 @@ impl Arrays for OnVertices {
     fn load(&mut self, state: &State) {
         self.state.clone_from(state);
         self.viscosity.jump();
+        if let Some(stiff) = &mut self.stiff {
+            stiff.jump();
+        }
         self.substep_before = 0.0;
     }
 

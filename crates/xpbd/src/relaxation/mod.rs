@@ -122,7 +122,7 @@ fn run(
     let body = problem.body();
     let mut row_sums = vec![0.0; body.rest().len()];
     elastic::row_sums(body, body.rest(), &mut row_sums);
-    let eigenvalue = largest_eigenvalue(problem, &row_sums, strips, Membranes::Taut);
+    let eigenvalue = largest_eigenvalue(problem, &row_sums, strips, Membranes::Taut, &[]);
     let mut mass_factor = eigenvalue * SAFETY / STABLE_EIGENVALUE;
     let moves = problem.clamps().iter().any(|clamp| clamp.motion.is_some());
     let limit = travel_limit(problem);
