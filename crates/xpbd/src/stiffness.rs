@@ -191,7 +191,8 @@ mod tests {
                 }
             }
             for strips in [None, Strips::of(body)] {
-                let found = largest_eigenvalue(problem, &masses, strips.as_ref(), Membranes::Taut, &[]);
+                let found =
+                    largest_eigenvalue(problem, &masses, strips.as_ref(), Membranes::Taut, &[]);
                 // Twelve steps leave 1.1 % here at most, seven 2.9 %.
                 assert!(
                     found <= exact * (1.0 + 1e-5) && found > 0.985 * exact,

@@ -6,14 +6,18 @@ use std::ops::ControlFlow;
 
 use common::{GRAVITY, block, simulate, tip, where_};
 use voxsoft_solid::vector::{Vec3, add, axpy, cross, norm, scale, sub};
-use voxsoft_solid::{Body, Clamp, HyperelasticMaterial, Load, Material, Mesh, Problem, State, elastic};
+use voxsoft_solid::{
+    Body, Clamp, HyperelasticMaterial, Load, Material, Mesh, Problem, State, elastic,
+};
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Status};
 
 const SIDE: f64 = 5e-3;
 const SOFT: f64 = 200e3;
 
 fn rubber(young: f64) -> Material {
-    HyperelasticMaterial::neo_hookean(young, 0.45, 1000.0).unwrap().into()
+    HyperelasticMaterial::neo_hookean(young, 0.45, 1000.0)
+        .unwrap()
+        .into()
 }
 
 /// Voxels of which those in `stiff` (m) are `ratio` times as stiff as the others.
@@ -24,7 +28,10 @@ fn bonded(cells: [usize; 3], ratio: f64, stiff: impl Fn(&Vec3) -> bool) -> (Mesh
         let sum = corners.fold([0.0; 3], add);
         scale(1.0 / (4 * tets.len()) as f64, sum)
     };
-    let parts = mesh.tets.chunks(5).flat_map(|tets| [u32::from(stiff(&middle(tets))); 5]);
+    let parts = mesh
+        .tets
+        .chunks(5)
+        .flat_map(|tets| [u32::from(stiff(&middle(tets))); 5]);
     mesh.tet_part = parts.collect();
     let body = Body::new(&mesh, &[rubber(SOFT), rubber(ratio * SOFT)]).unwrap();
     (mesh, body)
@@ -58,7 +65,8 @@ fn shapes() -> [fn(&Vec3) -> bool; 3] {
 #[test]
 fn stiff_part_takes_the_substeps_of_its_rubber() {
     for stiff in shapes() {
-        let substep = |ratio| simulate(&cantilever([8, 2, 2], ratio, stiff), &undamped(2e-3)).substep;
+        let substep =
+            |ratio| simulate(&cantilever([8, 2, 2], ratio, stiff), &undamped(2e-3)).substep;
         let (alone, bonded) = (substep(1.0), substep(1e4));
         assert!(bonded > 0.6 * alone, "{bonded:.2e} {alone:.2e}");
     }
@@ -97,7 +105,12 @@ fn part_that_is_practically_rigid_moves_alike_whatever_its_stiffness() {
 /// Momentum, angular momentum and energy of a state.
 fn kept(body: &Body, state: &State) -> (Vec3, Vec3, f64) {
     let (mut momentum, mut turning) = ([0.0; 3], [0.0; 3]);
-    for ((x, v), &mass) in state.positions.iter().zip(&state.velocities).zip(body.masses()) {
+    for ((x, v), &mass) in state
+        .positions
+        .iter()
+        .zip(&state.velocities)
+        .zip(body.masses())
+    {
         axpy(&mut momentum, mass, *v);
         axpy(&mut turning, mass, cross(*x, *v));
     }
@@ -143,9 +156,19 @@ fn rest_is_that_of_the_energies() {
         let settings = Dynamics::default();
         let own = simulate(&problem, &settings);
         assert_eq!(own.status, Status::AtRest, "{}", own.residual);
-        let finer = simulate(&problem, &Dynamics { time_step: 2e-3, substeps: Some(400), ..settings });
+        let finer = simulate(
+            &problem,
+            &Dynamics {
+                time_step: 2e-3,
+                substeps: Some(400),
+                ..settings
+            },
+        );
         assert!(finer.substep < 0.5 * own.substep);
         let (own, finer) = (tip(&problem, &own), tip(&problem, &finer));
-        assert!(norm(sub(own, finer)) < 3e-3 * norm(finer), "{own:?} {finer:?}");
+        assert!(
+            norm(sub(own, finer)) < 3e-3 * norm(finer),
+            "{own:?} {finer:?}"
+        );
     }
 }

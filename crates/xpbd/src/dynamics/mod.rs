@@ -282,11 +282,7 @@ fn at_rest(problem: &Problem, state: &State, residual: f64, tolerance: f64) -> b
 
 /// Substeps per step: those of the settings, or as many as the highest frequency needs; membranes count only as far as
 /// [`MEMBRANE_FREQUENCY`] limits their mass scaling, and stiff voxels with scaled masses do not.
-fn substeps_of(
-    subject: Subject<'_>,
-    strips: Option<&Strips>,
-    stiff: Option<&StiffInertia>,
-) -> u32 {
+fn substeps_of(subject: Subject<'_>, strips: Option<&Strips>, stiff: Option<&StiffInertia>) -> u32 {
     let Subject {
         problem, settings, ..
     } = subject;

@@ -25,9 +25,7 @@
 use std::ops::Range;
 
 use voxsoft_solid::element::hex8::{Tangent, Within};
-use voxsoft_solid::matrix::{
-    IDENTITY, Mat3, apply, apply_transposed, multiply, polar, transpose,
-};
+use voxsoft_solid::matrix::{IDENTITY, Mat3, apply, apply_transposed, multiply, polar, transpose};
 use voxsoft_solid::vector::{Vec3, add, axpy, scale, sub};
 use voxsoft_solid::{Body, Hex8, HyperelasticMaterial, Problem};
 
@@ -167,14 +165,23 @@ impl StiffInertia {
         let vertices: Vec<usize> = order.into_iter().map(|place| vertices[place]).collect();
         let beside = neighbors(rest.len(), &vertices, &voxels);
         let first = |row: &Vec<usize>| row.iter().copied().min().unwrap_or(0);
-        let lengths = beside.iter().enumerate().map(|(row, others)| row + 1 - first(others));
+        let lengths = beside
+            .iter()
+            .enumerate()
+            .map(|(row, others)| row + 1 - first(others));
         if 9 * lengths.sum::<usize>() > MOST_ENTRIES {
             return None;
         }
         let axes = |places: &Vec<usize>| -> Vec<usize> {
-            places.iter().flat_map(|place| 3 * place..3 * place + 3).collect()
+            places
+                .iter()
+                .flat_map(|place| 3 * place..3 * place + 3)
+                .collect()
         };
-        let rows: Vec<Vec<usize>> = beside.iter().flat_map(|row| [axes(row), axes(row), axes(row)]).collect();
+        let rows: Vec<Vec<usize>> = beside
+            .iter()
+            .flat_map(|row| [axes(row), axes(row), axes(row)])
+            .collect();
         let components = components(problem, &vertices, &beside);
         let mut place_of = vec![usize::MAX; rest.len()];
         for (place, &vertex) in vertices.iter().enumerate() {
@@ -240,7 +247,11 @@ impl StiffInertia {
                 let change = sub(velocities[vertex], self.before[place]);
                 let inverse = self.inverse_masses[place];
                 let impulse = std::array::from_fn(|axis| {
-                    if inverse[axis] > 0.0 { change[axis] / inverse[axis] } else { 0.0 }
+                    if inverse[axis] > 0.0 {
+                        change[axis] / inverse[axis]
+                    } else {
+                        0.0
+                    }
                 });
                 self.changes[place] = apply_transposed(&part.frame, impulse);
             }
@@ -277,8 +288,8 @@ impl StiffInertia {
             part.frame = polar(&sums).0;
         }
         let mut places = self.inverse_masses.iter().zip(&self.vertices);
-        let same = h == self.substep
-            && places.all(|(known, &vertex)| *known == inverse_masses[vertex]);
+        let same =
+            h == self.substep && places.all(|(known, &vertex)| *known == inverse_masses[vertex]);
         if same && self.until_look > 0 {
             self.until_look -= 1;
             return;
@@ -314,7 +325,9 @@ impl StiffInertia {
             let mass = if inverse > 0.0 { 1.0 / inverse } else { 1.0 };
             self.masses.add(row, row, mass);
         }
-        for ((voxel, (_, places)), turn) in self.voxels.iter().zip(&self.corners).zip(&self.rotations) {
+        for ((voxel, (_, places)), turn) in
+            self.voxels.iter().zip(&self.corners).zip(&self.rotations)
+        {
             let viscous = voxel.instant + 2.0 * self.retardation / h;
             let factor = SHARE * h * h * viscous;
             for (a, &row) in places.iter().enumerate() {
@@ -365,7 +378,10 @@ fn thresholds(speeds: &[f64]) -> Vec<f64> {
 
 /// Stiffness at once over that at rest.
 fn instant(material: &HyperelasticMaterial) -> f64 {
-    1.0 + material.branches().map(|(stiffness, _)| stiffness).sum::<f64>()
+    1.0 + material
+        .branches()
+        .map(|(stiffness, _)| stiffness)
+        .sum::<f64>()
 }
 
 /// Stiffness of a voxel at rest, N/m.
