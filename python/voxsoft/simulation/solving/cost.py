@@ -127,9 +127,6 @@ def cost_of(
     step = _RUBBER_STEP * cells * len(mesh.tets) if rubber else _LATTICE_STEP * constraints
     sizes = np.sort(np.ptp(mesh.vertices, axis=0))
     speeds = [_speed(each, size) for each in soft]
-    if all(isinstance(each, Hyperelastic) for each in soft) and not design.layers:
-        # Far stiffer parts do not limit the substep: their masses are scaled.
-        speeds = [speed for speed in speeds if speed <= _MUCH_FASTER * min(speeds)]
     speed = max(speeds)
     slow = min(np.sqrt(_young(each, size) / each.density) for each in soft)
     if isinstance(method, Dynamics):
@@ -140,6 +137,9 @@ def cost_of(
             steps = (end or swing) / (method.time_step or DEFAULT_TIME_STEP)
             seconds = _OF_A_STEP_IN_CONTACT * steps * iteration
             return Cost(seconds, seconds / _SPREAD, seconds * _SPREAD if end else None)
+        if all(isinstance(each, Hyperelastic) for each in soft) and not design.layers:
+            # Far stiffer parts do not limit the substep: their masses are scaled.
+            speed = max(each for each in speeds if each <= _MUCH_FASTER * min(speeds))
         seconds = step * (end or swing) / _substep(method, size, speed)
         return Cost(seconds, seconds / _SPREAD, seconds * _SPREAD if end else None)
     seconds = step * _steps_to_rest(sizes / size, speed / slow)
