@@ -12,8 +12,8 @@
 //! 2005, doi 10.1002/nme.1293, with the stiffness itself for the scaling).
 //!
 //! **Stability.** An explicit substep needs `h² K ≤ 4 M̃`. The default substep is one over the highest frequency of the
-//! rest of the body, `h² K ≤ M` there, which leaves `3 M + 2 h² A` for the stiff voxels: twice what their stiffness
-//! takes.
+//! rest of the body, `h² K ≤ M` there, which leaves `3 M + 2 h² A` for the stiff voxels, whose stiffness takes
+//! half of it.
 //!
 //! **Accuracy.** `A` vanishes for every motion that strains no stiff voxel, so that a stiff part moves as a rigid body
 //! with its own mass and moments of inertia. A mode of the frequency `ω` within the stiff part alone is slowed as if its
