@@ -31,7 +31,7 @@ fn bonded(cells: [usize; 3], ratio: f64, stiff: impl Fn(&Vec3) -> bool) -> (Mesh
     let parts = mesh
         .tets
         .chunks(5)
-        .flat_map(|tets| [u32::from(stiff(&middle(tets))); 5]);
+        .flat_map(|tets| [u8::from(stiff(&middle(tets))); 5]);
     mesh.tet_part = parts.collect();
     let body = Body::new(&mesh, &[rubber(SOFT), rubber(ratio * SOFT)]).unwrap();
     (mesh, body)
