@@ -2,8 +2,13 @@
 
 mod common;
 
+use std::ops::ControlFlow;
+
 use common::{DENSITY, block, problem, simulate, where_};
-use voxsoft_solid::{Clamp, History, Load, PointForces};
+use voxsoft_solid::vector::cross;
+use voxsoft_solid::{
+    Body, Clamp, History, HyperelasticMaterial, Load, PointForces, Problem, State,
+};
 use voxsoft_xpbd::{Damping, Dynamics, Status};
 
 #[test]
@@ -28,6 +33,36 @@ fn free_body_falls_rigidly() {
         assert!((rest[2] - position[2] - fall).abs() < 1e-9 * fall);
         assert!((position[0] - rest[0]).abs() < 1e-12);
     }
+}
+
+/// A turning body has unbalanced forces without any load: no reason for shorter substeps, which those that are too long
+/// still are.
+#[test]
+fn free_body_turns_without_back_offs() {
+    let mesh = block([8, 2, 2], 5e-3);
+    let rubber = HyperelasticMaterial::neo_hookean(200e3, 0.45, 1000.0).unwrap();
+    let body = Body::new(&mesh, &[rubber]).unwrap();
+    let problem = Problem::new(body, vec![], vec![], None).unwrap();
+    let turn = |substeps| {
+        let mut start = State::at_rest(problem.body());
+        for (v, x) in start.velocities.iter_mut().zip(problem.body().rest()) {
+            *v = cross([5.0, 20.0, 10.0], *x);
+        }
+        let settings = Dynamics {
+            time_step: 2e-3,
+            substeps,
+            damping: Damping::Rate(0.0),
+            end_time: Some(0.1),
+            ..Dynamics::default()
+        };
+        voxsoft_xpbd::simulate(&problem, start, &settings, &mut |_| {
+            ControlFlow::Continue(())
+        })
+    };
+    let own = turn(None);
+    assert_eq!((own.status, own.back_offs), (Status::EndTime, 0));
+    let coarse = turn(Some(10));
+    assert!(coarse.back_offs > 0);
 }
 
 #[test]

@@ -94,11 +94,23 @@ fn part_that_is_practically_rigid_moves_alike_whatever_its_stiffness() {
     for stiff in shapes() {
         let at = |ratio| {
             let problem = cantilever([8, 2, 2], ratio, stiff);
-            tip(&problem, &simulate(&problem, &undamped(0.06)))
+            let start = State::at_rest(problem.body());
+            let mut farthest = 0.0;
+            let answer: Answer =
+                voxsoft_xpbd::simulate(&problem, start, &undamped(0.06), &mut |now| {
+                    let pairs = now.positions.iter().zip(problem.body().rest());
+                    farthest = pairs
+                        .map(|(x, rest)| norm(sub(*x, *rest)))
+                        .fold(farthest, f64::max);
+                    ControlFlow::Continue(())
+                });
+            (tip(&problem, &answer), farthest)
         };
-        let (hundred, more) = (at(1e3), at(1e4));
-        let off = norm(sub(hundred, more)) / norm(more);
-        assert!(off < 0.02, "{hundred:?} {more:?} {off}");
+        let ((less, _), (more, farthest)) = (at(1e3), at(1e4));
+        // Swings end near rest for two of the shapes, and the tip is compared with the largest motion. Substeps of 3 µs
+        // have the two stiffnesses differ by 5e-4 likewise.
+        let off = norm(sub(less, more)) / farthest;
+        assert!(off < 1e-3, "{less:?} {more:?} {off}");
     }
 }
 
@@ -118,34 +130,49 @@ fn kept(body: &Body, state: &State) -> (Vec3, Vec3, f64) {
     (momentum, turning, energy)
 }
 
+/// Checks a free body that turns at `rate` (rad/s) for some turns: the largest changes of its angular momentum and of its
+/// energy are `bounds` parts.
+fn check_free(stiff: fn(&Vec3) -> bool, rate: f64, bounds: [f64; 2]) {
+    let (_, body) = bonded([8, 2, 2], 1e4, stiff);
+    let problem = Problem::new(body.clone(), vec![], vec![], None).unwrap();
+    let mut start = State::at_rest(&body);
+    let turn = [0.22 * rate, 0.87 * rate, 0.44 * rate];
+    for (v, x) in start.velocities.iter_mut().zip(body.rest()) {
+        let from_middle = sub(*x, [4.0 * SIDE, SIDE, SIDE]);
+        *v = add([0.3, -0.1, 0.2], cross(turn, from_middle));
+    }
+    let (momentum, turning, energy) = kept(&body, &start);
+    let mut largest = [0.0_f64; 3];
+    let answer: Answer = voxsoft_xpbd::simulate(&problem, start, &undamped(0.3), &mut |now| {
+        let state = State {
+            positions: now.positions.to_vec(),
+            velocities: now.velocities.to_vec(),
+            time: now.time,
+        };
+        let after = kept(&body, &state);
+        let off = [
+            norm(sub(after.0, momentum)) / norm(momentum),
+            norm(sub(after.1, turning)) / norm(turning),
+            (after.2 / energy - 1.0).abs(),
+        ];
+        largest = std::array::from_fn(|i| largest[i].max(off[i]));
+        ControlFlow::Continue(())
+    });
+    assert_eq!((answer.status, answer.back_offs), (Status::EndTime, 0));
+    let [momentum, turning, energy] = largest;
+    assert!(momentum < 1e-9, "momentum {momentum:.1e}");
+    assert!(turning < bounds[0], "angular momentum {turning:.1e}");
+    assert!(energy < bounds[1], "energy {energy:.1e}");
+}
+
 #[test]
 fn free_body_keeps_momentum_and_energy() {
-    for stiff in shapes() {
-        let (_, body) = bonded([8, 2, 2], 1e4, stiff);
-        let problem = Problem::new(body.clone(), vec![], vec![], None).unwrap();
-        let mut start = State::at_rest(&body);
-        for (v, x) in start.velocities.iter_mut().zip(body.rest()) {
-            *v = add([0.3, -0.1, 0.2], cross([5.0, 20.0, 10.0], *x));
-        }
-        let (momentum, turning, energy) = kept(&body, &start);
-        let mut most = energy;
-        let answer: Answer = voxsoft_xpbd::simulate(&problem, start, &undamped(0.3), &mut |now| {
-            let state = State {
-                positions: now.positions.to_vec(),
-                velocities: now.velocities.to_vec(),
-                time: now.time,
-            };
-            most = f64::max(most, kept(&body, &state).2);
-            ControlFlow::Continue(())
-        });
-        assert_eq!((answer.status, answer.back_offs), (Status::EndTime, 0));
-        let after = kept(&body, &answer.state);
-        let off = norm(sub(after.0, momentum)) / norm(momentum);
-        assert!(off < 1e-9, "momentum {off:.1e}");
-        let off = norm(sub(after.1, turning)) / norm(turning);
-        assert!(off < 3e-3, "angular momentum {off:.1e}");
-        assert!(most < 1.01 * energy, "{most} {energy}");
-        assert!(after.2 > 0.95 * energy, "{} {energy}", after.2);
+    // Without a clamp the third is the first from the other end.
+    for stiff in &shapes()[..2] {
+        // Turning parts have inertia against their centripetal strain, which falls with the square of the rate: measured are
+        // 2.5e-4 and 5e-4 here, 8e-3 and 3e-2 below.
+        check_free(*stiff, 23.0, [5e-4, 1e-3]);
+        check_free(*stiff, 115.0, [0.02, 0.05]);
     }
 }
 

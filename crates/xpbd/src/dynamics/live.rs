@@ -9,7 +9,7 @@ use voxsoft_solid::{
 
 use super::stiff_inertia::StiffInertia;
 use super::{Arrays, Dynamics, Subject, Window, arrays_of, at_rest, strips_of, substeps_of};
-use crate::outcome::{BLOW_UP_EXCESS, MAX_BACK_OFFS};
+use crate::outcome::{BLOW_UP_EXCESS, MAX_BACK_OFFS, excess_in_motion};
 
 /// Substeps between two checks for rest and breakdown.
 const LOOK: u32 = 64;
@@ -130,7 +130,7 @@ impl Live {
         };
         let balance = self.arrays.balance(subject, &now);
         let broken = Breakdown::find(&self.problem, &now.positions, self.travel_limit, now.time);
-        let excess = balance.excess();
+        let excess = excess_in_motion(&self.problem, &balance);
         if broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS {
             self.arrays.load(&self.state);
             if self.back_offs < MAX_BACK_OFFS {

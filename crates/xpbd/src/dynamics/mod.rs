@@ -17,7 +17,7 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Damping, Grab, Observer, Problem, Progress, Solution, Solver, State, Status};
 
 use self::stiff_inertia::StiffInertia;
-use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, start_at};
+use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, excess_in_motion, start_at};
 use crate::stiffness::{Membranes, largest_eigenvalue};
 
 pub use live::Live;
@@ -196,7 +196,7 @@ fn run(
         let now = arrays.balance(Subject::alone(&problem, settings), &state);
         let residual = now.relative_residual();
         let broken = Breakdown::find(&problem, &state.positions, limit, state.time);
-        let excess = now.excess();
+        let excess = excess_in_motion(&problem, &now);
         let blown_up = broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS;
         let stuck = !blown_up
             && settings.end_time.is_none()
