@@ -53,7 +53,7 @@ fn undamped(end: f64) -> Dynamics {
     }
 }
 
-/// Where the stiff part is: at the tip, in a strip within, at the clamp.
+/// Places of the stiff part: at the tip, in a strip within, at the clamp.
 fn shapes() -> [fn(&Vec3) -> bool; 3] {
     [
         |p| p[0] > 5.0 * SIDE,
