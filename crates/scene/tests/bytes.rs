@@ -5,7 +5,7 @@ use voxsoft_contact::surface::Surface;
 use voxsoft_contact::surface_contact::Description;
 use voxsoft_contact::surface_contact::rigid::Frame;
 use voxsoft_player::{Cast, Control, Placed, Probe};
-use voxsoft_scene::{Scene, SceneError, Touching};
+use voxsoft_scene::{Scene, SceneError, Touching, VERSION};
 use voxsoft_solid::matrix::IDENTITY;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
@@ -244,11 +244,13 @@ fn truncated_or_extended_bytes_are_reported() {
     let longer = [&bytes[..], &[0, 0]].concat();
     assert_eq!(Scene::read(&longer), Err(SceneError::TooLong(2)));
     let mut newer = bytes.clone();
-    newer[4] = 7;
-    assert_eq!(Scene::read(&newer), Err(SceneError::Version(7)));
+    newer[4] = VERSION as u8 + 1;
+    assert_eq!(Scene::read(&newer), Err(SceneError::Version(VERSION + 1)));
     // A list with a length beyond the available bytes is refused once they are used up.
-    let endless = b"VXSC\x06\0\0\0\xff\xff\xff\xff\x0fab";
-    assert_eq!(Scene::read(endless), Err(SceneError::CutOff));
+    let endless = b"VXSC\0\0\0\0\xff\xff\xff\xff\x0fab";
+    let mut endless = endless.to_vec();
+    endless[4] = VERSION as u8;
+    assert_eq!(Scene::read(&endless), Err(SceneError::CutOff));
     assert_eq!(Scene::read(b"PK\x03\x04"), Err(SceneError::NotAScene));
 }
 
