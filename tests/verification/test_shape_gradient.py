@@ -55,5 +55,5 @@ def test_radius_wall_and_cap_of_a_cylinder():
 
 def test_a_voxel_size_has_no_derivative():
     result = simulate(cylinder().with_values("parameters.size=5 mm", "voxel_size== size"))
-    with pytest.raises(DesignError, match="vary no voxel_size"):
+    with pytest.raises(DesignError, match="it changes the voxel size"):
         gradient(result, "mass", "size")
