@@ -283,10 +283,10 @@ def round_answers(
                 report.add(label, values[key], "", values[key] / truth)
                 report.add(f"{label}: error", 100 * (values[key] / truth - 1), "%")
                 if key in found:
-                    estimate, half = found[key]
-                    within = abs(estimate - truth) <= half
+                    estimate, error = found[key]
+                    within = abs(estimate - truth) <= error
                     held.append(within)
-                    width, off = abs(half / truth), abs(values[key] / truth - 1)
+                    width, off = abs(error / truth), abs(values[key] / truth - 1)
                     words = "holds" if within else "MISSED"
                     ratio = width / max(off, 1e-9)
                     report.add(f"{label}: half the bar, {words}", 100 * width, "%", ratio)

@@ -61,6 +61,10 @@ class Grid:
     def wall_thickness(self) -> tuple[NDArray[np.uint16], list[int], _Wall | None]: ...
     def cavity_walls(self) -> list[_Wall]: ...
 
+def closed_voids(
+    states: NDArray[np.int32], masks: NDArray[np.uint64]
+) -> list[tuple[NDArray[np.uint32], NDArray[np.uint32]]]: ...
+
 MeshArrays = tuple[
     NDArray[np.float64],
     NDArray[np.int32],

@@ -1,4 +1,4 @@
-"""Bodies on the grid, which cut voxels leave as they are."""
+"""Bodies on the grid, which cut voxels, the default of rubber, leave as they are."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def boxes(size, corner, chamber, two_parts):
     if two_parts:
         shapes["end"] = vs.Box(size=(7 * size, 7 * size, 2 * size), corner=corner) - room
         parts.insert(0, {"shape": "end", "material": "dragon-skin-30"})
-    return vs.Design(name="boxes", voxel_size=size, fill="fraction", shapes=shapes, parts=parts)
+    return vs.Design(name="boxes", voxel_size=size, shapes=shapes, parts=parts)
 
 
 def assert_same(cut, binary):
@@ -55,3 +55,12 @@ def test_boxes_off_the_grid_are_cut(off):
     room = vs.Box(size=(0.01, 0.01, (2 + off) * 0.005), corner=(0.005, 0.005, 0.005))
     outer = vs.Box(size=(0.035, 0.035, 0.035), corner=(0, 0, 0))
     assert mesh_of(design.replace(shapes={"body": outer - room})).fractions is not None
+
+
+def test_default_follows_the_materials_and_decides_the_hash():
+    rubber = boxes(0.005, (0.0, 0.0, 0.0), (3, 3, 3), two_parts=False)
+    springs = rubber.with_values("parts.0.material=ecoflex-00-30-lattice")
+    assert rubber.has_cut_voxels
+    assert not springs.has_cut_voxels
+    assert rubber.hash == rubber.replace(fill="fraction").hash != rubber.replace(fill="binary").hash
+    assert springs.hash == springs.replace(fill="binary").hash

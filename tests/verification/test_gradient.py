@@ -300,7 +300,7 @@ def test_slopes_of_metrics_are_their_derivatives(name):
     ],
 )
 def test_numbers_without_a_derivative(name, words):
-    cylinder = families.cylinder(radius="15 mm", height="20 mm")
+    cylinder = families.cylinder(radius="15 mm", height="20 mm").replace(fill="binary")
     result = solved(cylinder.with_values(f"parts.0.material={SOFT}"))
     with pytest.raises(DesignError, match=words):
         gradient(result, "rise", name)

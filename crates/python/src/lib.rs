@@ -77,6 +77,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(transient::transient, module)?)?;
     module.add_class::<shapes::PyShape>()?;
     module.add_class::<voxels::PyGrid>()?;
+    module.add_function(wrap_pyfunction!(voxels::closed_voids, module)?)?;
     module.add_function(wrap_pyfunction!(mesh::mesh_voxels, module)?)?;
     module.add_function(wrap_pyfunction!(mesh::mesh_tets, module)?)?;
     module.add_function(wrap_pyfunction!(mesh::mesh_pieces, module)?)?;

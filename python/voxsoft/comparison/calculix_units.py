@@ -31,8 +31,8 @@ class DeckUnits:
     --------
     >>> from voxsoft.design import families
     >>> from voxsoft.simulation import Setup
-    >>> units = DeckUnits.of(BrickModel.of(Setup.of(families.cylinder()), split=2))
-    >>> units.length * 2 == families.cylinder().voxel_size
+    >>> units = DeckUnits.of(BrickModel.of(Setup.of(families.beam()), split=2))
+    >>> units.length * 2 == families.beam().voxel_size
     True
     """
 

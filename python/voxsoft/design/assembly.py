@@ -201,6 +201,11 @@ def voxel_size_of(design: Design, part: Part) -> float:
     return design.voxel_size if own is None else own
 
 
+def _fill_of(design: Design) -> str:
+    """The `fill` of a design of one body, given or by default."""
+    return "fraction" if design.has_cut_voxels else "binary"
+
+
 @dataclass
 class _Included:
     """A design that is a body of another, or several."""
@@ -270,7 +275,7 @@ class _Included:
             yield Body(
                 name=self.body.name,
                 voxel_size=self.inner.voxel_size if size is None else size,
-                fill=self.inner.fill if fill is None else fill,
+                fill=_fill_of(self.inner) if fill is None else fill,
                 position=self.body.position,
                 rotation=self.body.rotation,
             )
@@ -286,7 +291,7 @@ class _Included:
             yield Body(
                 name=self._name(inner.name),
                 voxel_size=inner.voxel_size or self.inner.voxel_size,
-                fill=inner.fill or self.inner.fill,
+                fill=_fill_of(self.inner.alone(inner.name)),
                 position=tuple((rotation @ mirror @ way + position).tolist()),
                 rotation=rotation_of(rotation @ mirror @ turn @ mirror),
             )

@@ -36,7 +36,7 @@ from voxsoft.design.contact import BODY, Contact, contact_problems
 from voxsoft.design.document.assignment import set_values
 from voxsoft.design.document.documents import plain_document, with_absolute_paths, written_path
 from voxsoft.design.document.emptiness import with_stand_ins, without_empty_shapes
-from voxsoft.design.document.identity import NOT_PHYSICS, hash_of
+from voxsoft.design.document.identity import NOT_PHYSICS, hash_of, with_fill
 from voxsoft.design.document.kept_formulas import with_kept_formulas
 from voxsoft.design.document.resolution import Document, Resolution, formulas, with_parameter_values
 from voxsoft.design.document.schema import with_formulas
@@ -58,7 +58,7 @@ from voxsoft.design.symmetry import Symmetry, symmetry_problems
 from voxsoft.design.target import Constraint, Objective
 from voxsoft.design.tendon import Tendon
 from voxsoft.errors import DesignError, ErrorDetail, FormulaError, VoxSoftError
-from voxsoft.materials import AnyMaterial, Material, is_card_path, load_card
+from voxsoft.materials import AnyMaterial, Lattice, Material, is_card_path, load_card
 from voxsoft.records import FrozenDict, Record, Table, plain_error, plain_values, problems_of
 from voxsoft.shapes import AnyShape
 from voxsoft.units import EXACT, FILE_CONTEXT, PositiveLength, format_quantity
@@ -86,9 +86,9 @@ class Design(Record):
     mesh
         The file whose tetrahedra are the body, in place of shapes on a grid.
     fill
-        Treatment of cells that the surface cuts. ``"binary"`` (default): full if the center is
-        inside, else empty. ``"fraction"``: it carries the part of it that is inside, in mass,
-        stiffness and pressure.
+        Treatment of cells that the surface cuts. ``"binary"``: full if the center is inside, else
+        empty. ``"fraction"``: it carries the part of it that is inside, in mass, stiffness and
+        pressure. Default: ``"binary"`` where a part is the spring lattice, else ``"fraction"``.
     shapes
         Named shapes, to be used by parts and by other shapes.
     parts
@@ -162,7 +162,7 @@ class Design(Record):
     # Without a default in the schema; whether it is due, the mesh decides.
     voxel_size: PositiveLength = Field(default_factory=float)
     mesh: FileMesh | None = None
-    fill: Literal["binary", "fraction"] = "binary"
+    fill: Literal["binary", "fraction"] | None = None
     parameters: Table[ParameterName, Parameter] = Field(default_factory=FrozenDict, max_length=200)
     shapes: Table[Name, AnyShape] = Field(default_factory=FrozenDict)
     materials: Table[MaterialName, AnyMaterial] = Field(default_factory=FrozenDict)
@@ -400,7 +400,7 @@ class Design(Record):
 
     @property
     def has_cut_voxels(self) -> bool:
-        """True if cells that the surface cuts carry the part of them that is inside.
+        """True if cells that the surface cuts carry a part: `fill`, given or by default, says so.
 
         A design of several bodies has them if one of its bodies has. A surface along the grid cuts
         no cell.
@@ -409,13 +409,17 @@ class Design(Record):
         --------
         >>> from voxsoft.design import families
         >>> beam = families.beam()
-        >>> beam.has_cut_voxels, beam.replace(fill="fraction").has_cut_voxels
-        (False, True)
+        >>> beam.has_cut_voxels, beam.replace(fill="binary").has_cut_voxels
+        (True, False)
         """
         whole = self.assembled
         if whole.bodies:
             return any(whole.alone(body.name).has_cut_voxels for body in whole.bodies)
-        return self.mesh is None and self.fill == "fraction"
+        if self.mesh is not None:
+            return False
+        if self.fill is not None:
+            return self.fill == "fraction"
+        return not any(isinstance(self.material_of(part), Lattice) for part in self.parts)
 
     def __eq__(self, other: object) -> bool:
         """Compare all values and all formulas, wherever the two came from."""
@@ -460,7 +464,8 @@ class Design(Record):
         DesignError
             A shape is made of a Python function: such a design has no document and no hash.
         """
-        return self.assembled._dumped(cards=True)
+        whole = self.assembled
+        return with_fill(whole._dumped(cards=True), whole)
 
     def _dumped(
         self,
@@ -496,7 +501,8 @@ class Design(Record):
         Name, description, parameters, objectives and constraints do not count; values that
         formulas gave do. Numbers are rounded to 12 significant digits.
         """
-        return hash_of(self.assembled._dumped(NOT_PHYSICS, cards=True))
+        whole = self.assembled
+        return hash_of(with_fill(whole._dumped(NOT_PHYSICS, cards=True), whole))
 
     def with_parameters(self, **values: float | str) -> Self:
         """Return the design with other values of its parameters.

@@ -50,7 +50,10 @@ def repeated(trials: Iterable[Trial]) -> Iterator[Diagnostic]:
         f"{', '.join(str(trial.number) for trial in largest[:6])}"
         f"{' and more' if len(largest) > 6 else ''} have equal numbers to the last digit"
     )
-    hint = 'set fill = "fraction", make the voxels smaller, or the steps at least a voxel'
+    hint = (
+        'make the voxels smaller, or the steps at least a voxel; cut voxels (fill = "fraction", the '
+        "default of rubber) follow smaller steps"
+    )
     yield Diagnostic("warning", "study", what, hint)
 
 
@@ -61,7 +64,8 @@ def below_voxels(design: Design, space: Mapping[str, Domain]) -> Iterator[Diagno
     --------
     >>> from voxsoft.design import families
     >>> walls = {"wall": Range(low=0.01, high=0.02, step=0.001)}
-    >>> print(*below_voxels(families.cylinder(), walls))  # doctest: +ELLIPSIS
+    >>> whole = families.cylinder().replace(fill="binary")
+    >>> print(*below_voxels(whole, walls))  # doctest: +ELLIPSIS
     parameters.wall: is varied by 1 mm on voxels of 5 mm, so that several values are one body...
     """
     if design.has_cut_voxels or design.bodies:

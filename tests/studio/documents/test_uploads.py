@@ -9,7 +9,7 @@ import trimesh
 
 from voxsoft import check
 from voxsoft.design import Design
-from voxsoft.design.discretization.discretize import voxels_of
+from voxsoft.design.discretization.discretize import mesh_of, voxels_of
 from voxsoft.errors import FileError, VoxelError
 from voxsoft.studio.documents.uploads import (
     design_of_array,
@@ -105,7 +105,7 @@ def test_a_mesh_that_says_its_unit_is_read_in_it(tmp_path):
     text = design_of_mesh(file)
     assert "Its numbers are, as it says, in m: change" in text
     design = Design.from_document(tomllib.loads(text))
-    assert voxels_of(design).volume == pytest.approx(16e-6, rel=0.1)
+    assert mesh_of(design).volume == pytest.approx(16e-6, rel=1e-3)
 
 
 def test_a_mesh_of_a_doubtful_size_is_asked_about(tmp_path):

@@ -107,6 +107,23 @@ def test_runs_that_fail_are_listed_and_the_others_go_on():
     assert found.yardstick is None
 
 
+@pytest.mark.parametrize(("fill", "is_full"), [(None, True), ("binary", True), ("fraction", False)])
+def test_outside_codes_are_given_full_voxels_unless_the_design_cuts_them(fill, is_full):
+    thin = RUBBER.replace(shapes={"body": vs.Box(size=(20 * mm, 9 * mm, 10 * mm))}, fill=fill)
+    found = compare(thin, solvers=["statics"], outside="scikit-fem", voxel_sizes=[], splits=[1])
+    own, outside = found.runs
+    assert own.status == "ok"
+    assert (outside.status == "ok") == is_full
+    assert ("fill" in [each.where for each in found.warnings]) == (fill is None)
+    if is_full:
+        assert own.result.mesh.volume == pytest.approx(20 * 10 * 10 * mm**3, rel=1e-9)
+        # Linear bricks on two voxels of height: the two agree to some percent.
+        tips = [run.quantities["tip z"].value for run in (own, outside)]
+        assert tips[0] == pytest.approx(tips[1], rel=0.1)
+    alone = compare(thin, solvers=["statics"], outside="none", voxel_sizes=[], splits=[1])
+    assert (alone.base.result.mesh.fractions is None) == (fill == "binary")
+
+
 def test_a_run_past_its_time_is_listed(monkeypatch):
     def telling(*_, progress, **__):
         """Tell at once how far it is, as a solver does ten times a second."""

@@ -186,6 +186,7 @@ def test_several_bodies_have_bars_as_each_of_them(levels):
 def test_another_body_on_coarser_voxels_has_bars_all_the_same(monkeypatch, most, sizes, words):
     monkeypatch.setattr("voxsoft.comparison.bars.FINER_UP_TO", most)
     odd = beam().replace(
+        fill="binary",
         parts=[vs.Part(shape=vs.Box(size=(35 * mm, 10 * mm, 10 * mm)), material=RUBBER)],
         probes={"tip": vs.Probe(z=(10 * mm, 10 * mm))},
     )
@@ -348,7 +349,11 @@ def test_a_chamber_extrapolated_below_zero_is_not_known():
     room = vs.Box(size=(1.2 * mm,) * 3, corner=(4.9 * mm,) * 3)
     part = vs.Part(shape=block - room, material=RUBBER)
     design = beam(error="finer").replace(
-        voxel_size=2 * mm, parts=[part], loads=[vs.Pressure(value=1 * kPa)], probes={}
+        voxel_size=2 * mm,
+        fill="binary",
+        parts=[part],
+        loads=[vs.Pressure(value=1 * kPa)],
+        probes={},
     )
     bars = vs.error_bars(vs.simulate(design))
     (volume,) = bars.volumes

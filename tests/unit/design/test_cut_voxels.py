@@ -284,12 +284,13 @@ def test_six_moments_have_the_products_of_their_centers():
         families.beam().with_values("fill=half")
 
 
-def test_the_default_fill_is_not_part_of_the_identity():
-    beam = families.beam()
-    assert "fill" in beam.resolved
-    explicit = beam.with_values("fill=binary")
-    assert explicit.hash == beam.hash
-    assert beam.with_values("fill=fraction").hash != beam.hash
+def test_the_resolved_design_says_its_default_fill():
+    springs = families.beam()
+    assert springs.resolved["fill"] == "binary"
+    beam = springs.with_values("parts.0.material=ecoflex-00-30")
+    assert beam.resolved["fill"] == "fraction"
+    assert beam.with_values("fill=fraction").hash == beam.hash
+    assert beam.with_values("fill=binary").hash != beam.hash
 
 
 def test_outside_codes_and_seals_say_no():

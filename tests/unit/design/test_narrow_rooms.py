@@ -58,6 +58,16 @@ def test_the_narrow_room_of_a_half_round_bender_keeps_its_volume():
     assert volume == pytest.approx(segment * 0.072, abs=(arc + 2 * (H / 4) ** 2 / 2) * 0.072)
 
 
+@pytest.mark.parametrize("shift", [0.0, 0.1, 0.25, 0.5, 0.75, 0.9])
+def test_a_room_of_a_cell_in_walls_of_a_cell_is_a_chamber_at_any_place(shift):
+    corner = (shift * H,) * 3
+    block = Box(size=(3 * H,) * 3, corner=corner)
+    room = Box(size=(H,) * 3, corner=tuple(H + c for c in corner))
+    (volume,) = cavities(block - room)
+    edges = (H / 4) ** 2 / 2 * 12 * H
+    assert volume == pytest.approx(H**3, abs=edges)
+
+
 def test_a_groove_that_is_open_stays_full_cells():
     groove = Box(size=(6 * H, 4 * H, 1.1 * H), corner=(2 * H, 2 * H, 3.5 * H))
     slot = Box(size=(4 * H, H / 2, H / 2), corner=(7 * H, 3.7 * H, 3.8 * H))

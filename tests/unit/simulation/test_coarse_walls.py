@@ -21,7 +21,8 @@ def hollow(side, wall, size, **changes):
     room = Box(size=((side - 2 * wall) * MM,) * 3, corner=(wall * MM,) * 3)
     block = Box(size=(side * MM,) * 3, corner=(0, 0, 0))
     shapes = {"body": block - room}
-    return families.beam().replace(shapes=shapes, voxel_size=size * MM, **changes)
+    whole = {"shapes": shapes, "voxel_size": size * MM, "fill": "binary"}
+    return families.beam().replace(**(whole | changes))
 
 
 def found(design):
@@ -60,7 +61,10 @@ def test_cut_voxels_and_oblique_or_round_walls_are_left_to_volumes():
     tube = Cylinder(radius=20 * MM, height=60 * MM) - Cylinder(
         radius=10.6 * MM, height=40 * MM, base=(0, 0, 10 * MM)
     )
-    assert found(families.beam().replace(shapes={"body": tube}, voxel_size=2.5 * MM)) == []
+    assert (
+        found(families.beam().replace(shapes={"body": tube}, voxel_size=2.5 * MM, fill="binary"))
+        == []
+    )
     box = hollow(22.5, 3.75, 2.5).shapes["body"]
     turned = Rotate(of=box, axis=(0, 0, 1), angle=0.5)
     texts = [each.what for each in found(hollow(22.5, 3.75, 2.5).replace(shapes={"body": turned}))]
@@ -68,7 +72,9 @@ def test_cut_voxels_and_oblique_or_round_walls_are_left_to_volumes():
 
 
 def test_check_command_and_results_say_it_for_the_bending_finger(tmp_path):
-    design = families.pneunet().with_values("parameters.wall.value=3.75 mm")
+    walls = families.pneunet().with_values("parameters.wall.value=3.75 mm")
+    assert not [each for each in check(walls).findings if "solved as" in each.what]
+    design = walls.replace(fill="binary")
     words = "walls 3.75 mm thick are solved as"
     assert any(words in each.what for each in check(design).findings)
     mesh = vs.mesh_of(design)

@@ -91,7 +91,8 @@ def test_a_piece_on_a_hinge_is_loose():
 
 def test_a_body_thinner_than_a_voxel():
     thin = vs.Box(size=(20 * mm, 10 * mm, 1 * mm))
-    text = message(ShapeError, parts=[vs.Part(shape=thin, material="ecoflex-00-30")])
+    parts = [vs.Part(shape=thin, material="ecoflex-00-30")]
+    text = message(ShapeError, parts=parts, fill="binary")
     assert "no cell of 5 mm has its center inside" in text
 
 

@@ -69,7 +69,7 @@ def test_a_quick_look_is_within_a_fifth_of_the_doubt():
 
 
 def test_doubts_name_the_part_or_the_chamber_and_the_way_out():
-    ball, beam = families.sphere(), families.beam()
+    ball, beam = families.sphere().replace(fill="binary"), families.beam()
     warned = {found.where: found for found in doubtful_volumes(ball, mesh_of(ball))}
     assert set(warned) == {"cavity 0"}
     # 4/3 π 15³ mm³ = 14.14 mL, which a quick look knows to 1 %.
@@ -83,7 +83,8 @@ def test_doubts_name_the_part_or_the_chamber_and_the_way_out():
 
 
 def test_a_run_says_both_volumes(tmp_path: Path):
-    result = vs.simulate(families.sphere().replace(loads=[{"kind": "pressure", "value": "10 Pa"}]))
+    loads = [{"kind": "pressure", "value": "10 Pa"}]
+    result = vs.simulate(families.sphere().replace(loads=loads, fill="binary"))
     summary = json.loads(json.dumps(result.summary()))
     volumes = summary["volumes"]["cavities"]["cavity 0"]
     assert volumes["simulated"] == pytest.approx(summary["cavities"][0]["rest_volume"])

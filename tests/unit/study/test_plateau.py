@@ -39,7 +39,7 @@ mass = { metric = "mass", max = "1 g" }
 def file(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # where studies are kept
     path = tmp_path / "stairs.toml"
-    path.write_text(TEXT.replace("FILL", ""))
+    path.write_text(TEXT.replace("FILL", 'fill = "binary"'))
     return path
 
 
@@ -65,7 +65,7 @@ def test_a_best_that_is_a_plateau_is_a_range(file):
 
 
 def test_fractions_tell_all_of_them_apart(file):
-    file.write_text(TEXT.replace("FILL", 'fill = "fraction"'))
+    file.write_text(TEXT.replace("FILL", ""))
     result = Study(load(file)).grid()
     assert result.distinct == 9
     assert result.ranks == tuple(range(1, 10))

@@ -125,7 +125,7 @@ class CutVoxels:
         True
         """
         cells = cut_cells(design, design.voxel_size / refine)
-        active = with_narrow_rooms(design, cells, _without_braces(cells.filled))
+        active = with_narrow_rooms(cells, _without_braces(cells.filled))
         if not active.any():
             raise ShapeError(
                 "parts",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design.discretization.cut_cells import CutCells, Ints, filled_parts
-from voxsoft.design.model import Design
+from voxsoft import _core
+from voxsoft.design.discretization.cut_cells import CutCells, Ints
 from voxsoft.shapes.fractions import SUBCELLS
 
 Marks = NDArray[np.bool_]
@@ -19,22 +20,24 @@ Marks = NDArray[np.bool_]
 #: up to 1 - π/16 of each of four cells.
 FILLED_UP_TO: Final = (0.5, 0.65, 0.81)
 
-#: Material this far around a chamber, in cells, must enclose it.
-_AROUND: Final = 2
+# States of cells without a mask.
+_FULL: Final = -1
+_OPEN: Final = -2
+
+_SIDES: Final = np.concatenate([np.eye(3, dtype=np.intp), -np.eye(3, dtype=np.intp)])
 
 
-def with_narrow_rooms(design: Design, cells: CutCells, active: Marks) -> Marks:
+def with_narrow_rooms(cells: CutCells, active: Marks) -> Marks:
     """Leave cells of narrow chambers empty that are full enough to count as voxels.
 
     Their material goes to the voxels beside them, and the chamber keeps its volume by its voids,
-    as with all cut voxels.
+    as with all cut voxels. A chamber is a void of small cubes that share faces and touch no empty
+    cell. One that would open to another, or to the outside, stays closed.
 
     Parameters
     ----------
-    design
-        The design.
     cells
-        Filled parts of its cells.
+        Filled parts of the cells of a design.
     active
         Cells full enough to be voxels.
 
@@ -43,46 +46,29 @@ def with_narrow_rooms(design: Design, cells: CutCells, active: Marks) -> Marks:
     ndarray of bool
         The mask `active` without those cells.
     """
-    from scipy.ndimage import find_objects, label
-
-    for filled in FILLED_UP_TO:
-        rooms, count = label(cells.filled < filled)
-        if not count:
-            continue
-        # Rooms with an empty cell, and the outside, are there already.
-        known = np.bincount(rooms.ravel(), ~active.ravel(), count + 1) > 0
-        known[0] = True
-        for number, box in enumerate(find_objects(rooms), start=1):
-            if known[number]:
-                continue
-            box = tuple(slice(max(s.start - _AROUND, 0), s.stop + _AROUND) for s in box)
-            room = rooms[box] == number
-            if _is_closed(design, cells, room, np.array([s.start for s in box])):
-                active = active.copy()
-                active[box] &= ~room
-    return active
+    room = np.where(active, 0, -1)
+    opened = list(_opened_of_each_void(cells, active))
+    for number, own in enumerate(opened, start=1):
+        room[tuple(own.T)] = number
+    found = active.copy()
+    for number, own in enumerate(opened, start=1):
+        # The surface passes through them, so that each has cells all around.
+        beside = room[tuple(np.moveaxis(own[:, None] + _SIDES, -1, 0))]
+        if np.isin(beside, (0, number)).all():
+            found[tuple(own.T)] = False
+    return found
 
 
-def _is_closed(design: Design, cells: CutCells, room: Marks, start: Ints) -> bool:
-    """Check if the void of some cells is one, and ends near them."""
-    from scipy.ndimage import binary_dilation, label
-
-    near = binary_dilation(room, np.ones((3, 3, 3), dtype=bool), _AROUND)
-    places = np.argwhere(near)
-    found, _, _ = filled_parts(design, places + start + cells.low, cells.size, cells.phase)
-    void = np.zeros((*room.shape, *[SUBCELLS] * 3), dtype=bool)
-    void[tuple(places.T)] = (found < 0.5).reshape(-1, *[SUBCELLS] * 3)
-    # Cells farther away count as void, so that a void that goes on there is joined with it.
-    void[~near] = True
-    fine = np.pad(_fine(void), 1, constant_values=True)
-    voids, _ = label(fine)
-    own = np.zeros_like(fine)
-    own[1:-1, 1:-1, 1:-1] = _fine(np.broadcast_to(room[..., None, None, None], void.shape))
-    inside = np.unique(voids[own & fine])
-    return len(inside) == 1 and inside[0] != voids[0, 0, 0]
-
-
-def _fine(blocks: Marks) -> Marks:
-    """The small cubes of a box of cells, (n·nx, n·ny, n·nz)."""
-    x, y, z, n, _, _ = blocks.shape
-    return blocks.transpose(0, 3, 1, 4, 2, 5).reshape(x * n, y * n, z * n)
+def _opened_of_each_void(cells: CutCells, active: Marks) -> Iterator[Ints]:
+    """Yield the cells that each closed void without an empty cell leaves empty, (k, 3)."""
+    is_cut = active[tuple(cells.near.T)] & (cells.voids > 0)
+    at, masks = cells.near[is_cut], cells.voids[is_cut]
+    states = np.where(active, _FULL, _OPEN).astype(np.int32)
+    states[tuple(at.T)] = np.arange(len(at))
+    all_of_cell = np.unpackbits(masks.view(np.uint8)).reshape(-1, SUBCELLS**3).sum(axis=1)
+    for numbers, cubes in _core.closed_voids(states, masks):
+        own = at[numbers]
+        # Voids of others, beyond a wall in the cell, count as full.
+        filled = cells.filled[tuple(own.T)] + (all_of_cell[numbers] - cubes) / SUBCELLS**3
+        limit = next((limit for limit in FILLED_UP_TO if filled.min() < limit), 0.0)
+        yield own[filled < limit]

@@ -6,10 +6,13 @@ import hashlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from voxsoft.design.document.documents import is_mesh
 from voxsoft.units import round_significant
+
+if TYPE_CHECKING:
+    from voxsoft.design.model import Design
 
 # Words about the design, ways to vary it, and goals of a study: the answer of a
 # simulation depends on none of them. Probes stay in, because results are recorded at them.
@@ -33,11 +36,34 @@ def hash_of(document: Mapping[str, Any]) -> str:
     True
     """
     physics = {key: value for key, value in document.items() if key not in NOT_PHYSICS}
-    # A key that is younger than the records of studies: its default is not written down.
+    # A key that is younger than the records of studies: full voxels are not written down.
     if physics.get("fill") == "binary":
         del physics["fill"]
     text = json.dumps(_canonical(physics), sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def with_fill(document: Mapping[str, Any], design: Design) -> dict[str, Any]:
+    """Write down in the document of an assembled design which bodies have cut voxels by default.
+
+    So a design that says it has the same hash, and one with full voxels has another.
+    """
+    found = dict(document)
+    if design.fill is not None or design.mesh is not None:
+        return found
+    if not design.bodies:
+        found["fill"] = "fraction" if design.has_cut_voxels else "binary"
+        return found
+    open_ones = [body.name for body in design.bodies if body.fill is None]
+    cut = [name for name in open_ones if design.alone(name).has_cut_voxels]
+    if cut and cut == open_ones:
+        found["fill"] = "fraction"
+    else:
+        tables = found.get("bodies", [])
+        found["bodies"] = [
+            {**table, "fill": "fraction"} if table["name"] in cut else table for table in tables
+        ]
+    return found
 
 
 def _canonical(value: object, key: str = "") -> object:

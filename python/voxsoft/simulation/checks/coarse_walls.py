@@ -82,6 +82,7 @@ def coarse_walls(design: Design, mesh: Mesh) -> Iterator[Diagnostic]:
     >>> box = vs.Box(size=(0.02, 0.02, 0.02), corner=(0, 0, 0))
     >>> room = vs.Box(size=(0.013, 0.013, 0.013), corner=(0.0035, 0.0035, 0.0035))
     >>> hollow = families.beam().replace(shapes={"body": box - room}, voxel_size=0.0025)
+    >>> hollow = hollow.replace(fill="binary")
     >>> found = list(coarse_walls(hollow, vs.mesh_of(hollow)))
     >>> print(found[0])  # doctest: +ELLIPSIS
     voxel_size: walls 3.5 mm thick are solved as 2.5 mm (1 voxel), near ...

@@ -29,7 +29,7 @@ def skin_of(design: Design, mesh: Mesh) -> _core.Skin | None:
     --------
     >>> from voxsoft.design import families
     >>> from voxsoft.design.discretization.discretize import mesh_of
-    >>> ball = families.sphere()
+    >>> ball = families.sphere().replace(fill="binary")
     >>> skin = skin_of(ball, mesh_of(ball))
     >>> skin is not None and skin.triangles.shape[1]
     3
@@ -48,7 +48,7 @@ def has_skin(design: Design, mesh: Mesh) -> bool:
     --------
     >>> from voxsoft.design import families
     >>> from voxsoft.design.discretization.discretize import mesh_of
-    >>> ball = families.sphere()
+    >>> ball = families.sphere().replace(fill="binary")
     >>> has_skin(ball, mesh_of(ball)), has_skin(ball, mesh_of(ball, refine=2))
     (True, False)
     """

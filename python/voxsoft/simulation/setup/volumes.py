@@ -180,7 +180,7 @@ def doubtful_volumes(
     --------
     >>> from voxsoft.design import families
     >>> from voxsoft.design.discretization.discretize import mesh_of
-    >>> ball = families.sphere()
+    >>> ball = families.sphere().replace(fill="binary")
     >>> print(*doubtful_volumes(ball, mesh_of(ball)))  # doctest: +ELLIPSIS
     cavity 0: the chamber has 17 mL in voxels; its shapes have 14 mL (+2...%). Try: ...
     """

@@ -181,7 +181,7 @@ function General(props: { form: Form }) {
   const help: Readonly<Record<string, string>> = {
     ...helpOfKeys(root),
     voxel_size: "Edge of a voxel. Halving it makes eight times as many.",
-    fill: "binary: a voxel is full or empty; fraction: cut voxels count by their share.",
+    fill: "binary: a voxel is full or empty; fraction: cut voxels count by their share. Unset: fraction for rubber, binary with a spring lattice.",
   };
   return (
     <Section title="Design">

@@ -57,7 +57,7 @@ def reference():
 
 @pytest.fixture(scope="module")
 def result():
-    return simulate(pressed_ball("smooth"))
+    return simulate(pressed_ball("smooth", fill="binary"))
 
 
 @pytest.mark.long
@@ -65,7 +65,7 @@ def test_a_ball_presses_as_a_ball(result, reference):
     (contact,) = result.contacts
     # Eight voxels along the radius are 3 % off; the disc that voxels make of its pole is 58 %.
     assert 4 * contact.pressed == pytest.approx(reference["force_N"], rel=0.05)
-    (stairs,) = simulate(pressed_ball("voxels")).contacts
+    (stairs,) = simulate(pressed_ball("voxels", fill="binary")).contacts
     assert stairs.pressed > 1.4 * contact.pressed
 
 
@@ -90,9 +90,12 @@ def test_pressures_are_on_the_vertices_of_the_faces(result):
 
 
 def test_cut_voxels_meet_the_same_surface(reference):
-    (contact,) = simulate(pressed_ball("smooth", fill="fraction")).contacts
+    cut = simulate(pressed_ball("smooth", fill="fraction"))
+    (contact,) = cut.contacts
     # Tolerance of full ones, where contact with whole faces is 69 % off.
     assert 4 * contact.pressed == pytest.approx(reference["force_N"], rel=0.06)
+    field = cut.contact_field
+    assert (field.pressure * field.area).sum() == pytest.approx(contact.pressed, rel=1e-9)
 
 
 def test_overlap_at_rest_is_judged_by_the_contact_surface():
@@ -126,7 +129,7 @@ def test_walls_of_chambers_are_smooth_and_bonds_are_not_surfaces():
 
 
 def test_bodies_that_no_shape_filled_have_the_faces_of_their_voxels():
-    design = pressed_ball("smooth")
+    design = pressed_ball("smooth", fill="binary")
     assert skin_of(design, mesh_of(design)) is not None
     assert skin_of(design, mesh_of(design, refine=2)) is None
     assert Setup.of(pressed_ball("voxels")).touching.skins == (None,)
