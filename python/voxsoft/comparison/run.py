@@ -54,8 +54,8 @@ def compare(
 ) -> Comparison:
     """Solve a design in several ways, and estimate the error of each.
 
-    All solvers and the outside code answer on the voxels of the design. Beside an outside code these
-    are full ones, unless the design itself says ``fill = "fraction"``. The last of the solvers
+    All solvers and the outside code answer on the voxels of the design: full ones beside an outside
+    code, unless the design itself says ``fill = "fraction"``. The last of the solvers
     also answers on the same voxels split finer, and on other sizes of voxels, which may change the
     shape; so does the outside code on split voxels. From each of these series the discretization
     error is estimated (:func:`voxsoft.comparison.discretization_error`). A run that fails, takes

@@ -51,8 +51,8 @@ def repeated(trials: Iterable[Trial]) -> Iterator[Diagnostic]:
         f"{' and more' if len(largest) > 6 else ''} have equal numbers to the last digit"
     )
     hint = (
-        'make the voxels smaller, or the steps at least a voxel; cut voxels (fill = "fraction", the '
-        "default of rubber) follow smaller steps"
+        "make the voxels smaller, or the steps at least a voxel; smaller steps are followed by cut "
+        'voxels (fill = "fraction", the default of rubber)'
     )
     yield Diagnostic("warning", "study", what, hint)
 

@@ -221,6 +221,31 @@ def test_a_clamp_and_a_probe_at_a_surface_inside_a_voxel():
     assert len(held) == 9
 
 
+@pytest.mark.parametrize("end", [97.0, 95.9, 95.1, 94.0])
+def test_probes_in_front_of_the_last_voxel_move_with_the_material(end):
+    # 95.1 and 95.9 mm end in cells too empty to be voxels, 0.1 and 0.9 mm in front of the last.
+    body = vs.Box(size=(end * mm, 10.4 * mm, 10 * mm), corner=(0, -0.2 * mm, 0))
+    clamps = (vs.Clamp(region=vs.Region(x=(0, 0))),)
+    short = families.beam().replace(
+        fill="fraction",
+        clamps=clamps,
+        shapes={"body": body},
+        probes={
+            "point": vs.Probe(point=(end * mm, 10.2 * mm, 3 * mm)),
+            "plane": vs.Probe(x=(end * mm, end * mm)),
+            "edge": vs.Probe(x=(end * mm, end * mm), y=(10.2 * mm, 10.2 * mm)),
+        },
+        objectives={},
+    )
+    setup = Setup.of(short)
+    slopes = np.random.default_rng(3).normal(size=(3, 3))
+    expected = {"point": (end, 10.2, 3), "plane": (end, 5, 5), "edge": (end, 10.2, 5)}
+    for name, place in setup.places.items():
+        moved = place.weights @ (setup.mesh.vertices @ slopes)[place.vertices]
+        exact = np.array(expected[name]) * mm @ slopes
+        np.testing.assert_allclose(moved, exact, atol=1e-12)
+
+
 def test_a_region_on_a_side_does_not_catch_the_vertices_of_cut_sides():
     column = design(vs.Cylinder(radius=2.3, height=6), clamps=[{"region": {"z": (0, 0)}}])
     setup = Setup.of(column)

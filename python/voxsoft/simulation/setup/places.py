@@ -62,6 +62,9 @@ def vertices_in(
     return found
 
 
+# Distance in voxels from a layer of vertices up to which a place is in it.
+_ON_LAYER = 1e-9
+
 _TRY = "move or widen the region so that it touches the body"
 
 
@@ -155,7 +158,8 @@ def place_of(
     )
     for (body, at), (_, exactly) in meant:
         size = voxel_size(body.mesh)
-        weights[body.vertices] = _weights(probe, at, exactly, shapes, size)
+        is_cut = body.mesh.fractions is not None
+        weights[body.vertices] = _weights(probe, at, exactly, shapes, size, is_cut=is_cut)
         weights[body.vertices] *= is_named(probe, body.mesh)
     caught = np.flatnonzero(weights)
     if caught.size == 0:
@@ -169,21 +173,56 @@ def _weights(
     vertices: NDArray[np.float64],
     shapes: Mapping[str, Shape],
     size: float,
+    *,
+    is_cut: bool,
 ) -> NDArray[np.float64]:
     """Compute the weight of each vertex of a body for a probe, (n,)."""
-    weights = np.ones(len(vertices))
     reach = np.full(3, _HALF * size)
+    planes: list[tuple[int, float]] = []
     for axis, name in enumerate("xyz"):
         bounds = getattr(probe, name)
         if bounds is not None and bounds[0] == bounds[1]:
             reach[axis] = size
             # Motion is interpolated between layers: vertices are at their true positions here.
             points = vertices
-            weights *= 1.0 - np.abs(vertices[:, axis] - bounds[0]) / size
-    weights = np.where(inside_region(probe, points, shapes, reach), weights, 0.0)
-    # Layers a whole voxel away have the weight 0 up to rounding.
-    weights[weights < 1e-9] = 0.0
+            planes.append((axis, bounds[0]))
+    weights = inside_region(probe, points, shapes, reach).astype(np.float64)
+    for axis, level in planes:
+        # Layers a whole voxel away have the weight 0 up to rounding.
+        beyond = (vertices[:, axis] - level) / size
+        weights[np.abs(beyond) > 1.0 - _ON_LAYER] = 0.0
+        caught = beyond[weights > 0.0]
+        if is_cut and caught.size and (np.all(caught < 0.0) or np.all(caught > 0.0)):
+            weights = _extrapolated(weights, vertices, axis, beyond, size)
+        else:
+            weights *= 1.0 - np.abs(beyond)
     return weights
+
+
+def _extrapolated(
+    weights: NDArray[np.float64],
+    vertices: NDArray[np.float64],
+    axis: int,
+    beyond: NDArray[np.float64],
+    size: float,
+) -> NDArray[np.float64]:
+    """Follow a layer of vertices and that behind it to a plane in front of the voxels.
+
+    Material in front of the last voxels, in cells too empty to be voxels, moves with them.
+    """
+    inward = int(np.sign(beyond[weights != 0.0][0]))
+    lattice = np.rint((vertices - vertices.min(axis=0)) / size).astype(np.int64) + 1
+    strides = np.cumprod([1, *(lattice.max(axis=0) + 2)[:-1]])
+    places = lattice @ strides
+    order = np.argsort(places)
+    layer = np.flatnonzero(weights)
+    behind = places[layer] + inward * strides[axis]
+    partner = order[np.searchsorted(places, behind, sorter=order) % len(order)]
+    share = np.where(places[partner] == behind, (weights * np.abs(beyond))[layer], 0.0)
+    found = weights.copy()
+    np.add.at(found, layer, share)
+    np.subtract.at(found, partner, share)
+    return found
 
 
 def voxel_size(mesh: Mesh) -> float:
@@ -237,13 +276,24 @@ def _point(point: NDArray[np.float64], name: str | None, mesh: Mesh, where: str)
     frames = np.swapaxes(corners[:, 1:] - base[:, None], 1, 2)
     inner = np.linalg.solve(frames, (point - base)[..., None])[..., 0]
     coordinates = np.column_stack([1.0 - inner.sum(axis=1), inner])
-    # A point on the true surface may lie a little outside the voxels: it is measured at the
+    # A point on the true surface may lie a little outside full voxels: it is measured at the
     # nearest point of the tetrahedron that it is least outside of.
     best = int(np.argmax(coordinates.min(axis=1)))
     weights = np.clip(coordinates[best], 0.0, None)
     weights /= weights.sum()
-    # Cut voxels less full than the least are left out, and their corner with them.
-    reach = 0.5 if mesh.fractions is None else 1.0
+    reach = 0.5
+    if mesh.fractions is not None and coordinates[best].min() < -_ON_LAYER:
+        # Cells less full than the least are no voxels: their material moves with those beside.
+        reach = 1.0
+        size, voxels = voxel_size(mesh), mesh.tets.reshape(-1, 20)
+        low = mesh.vertices[voxels].min(axis=1)
+        outside = np.maximum(np.maximum(low - point, point - low - size), 0.0)
+        best = int(np.argmin(np.linalg.norm(outside, axis=1)))
+        if np.linalg.norm(outside[best]) <= size:
+            (around,) = mesh.voxel_corners(np.array([best]))
+            at = (point - low[best]) / size
+            factors = np.where(np.indices((2, 2, 2)).reshape(3, 8).T, at, 1.0 - at)
+            return Place(around.astype(np.uint32), factors.prod(axis=1))
     if np.linalg.norm(weights @ corners[best] - point) > reach * voxel_size(mesh):
         shown = ", ".join(format_quantity(float(value), "length") for value in point)
         raise DesignError(
