@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
 
@@ -14,18 +15,16 @@ from voxsoft.design.discretization.cut_cells import (
     Floats,
     Ints,
     cut_cells,
-    filled_parts,
-    integrals,
     measures_of,
 )
 from voxsoft.design.discretization.cut_surfaces import obliquity, surfaces
 from voxsoft.design.discretization.narrow_rooms import with_narrow_rooms
-from voxsoft.design.discretization.rooms import ROOM_TETS, room_parts
+from voxsoft.design.discretization.rooms import ROOM_TETS
+from voxsoft.design.discretization.voids import Film, Spread, Void, Zones, voids
 from voxsoft.design.model import Design
 from voxsoft.errors import DesignError, ShapeError
 from voxsoft.mesh import Mesh
 from voxsoft.shapes.base import Triple
-from voxsoft.shapes.fractions import SUBCELLS
 from voxsoft.voxels import Voxels
 
 #: A cell less full than this gives its material to its neighbors: a sliver would bound the load
@@ -36,11 +35,6 @@ LEAST_FILLED = 0.22
 #: Measurement error of a part with a sharp edge in it.
 _ALIKE = 0.02
 
-#: A void belongs to the nearest empty region no more cells away than this.
-_REACH = 2
-
-Void = tuple[Ints, Floats]
-
 
 @dataclass(frozen=True, eq=False)
 class _Topology:
@@ -50,9 +44,7 @@ class _Topology:
     of each as a voxel, -1 for the others; `whole` is the number of voxels. `donors`, `receivers`
     are pairs of such a cell and a neighboring one that takes its material. `beside` are the cells
     of voxels of the own part below and above each along the axes, (k, 3, 2), -1 for none.
-    `region` tells for each
-    cell the cavity (from 0) around it or that its void belongs to, -1 for none, and -2 where
-    `zones`, by small cube, (z, n³), tell: those of the cells `torn`, (z,).
+    `zones` are the cavities that their empty parts belong to.
     """
 
     size: float
@@ -63,10 +55,7 @@ class _Topology:
     donors: Ints = field(repr=False)
     receivers: Ints = field(repr=False)
     beside: Ints = field(repr=False)
-    region: Ints = field(repr=False)
-    torn: Ints = field(repr=False)
-    zones: NDArray[np.int16] = field(repr=False)
-    cavities: int
+    zones: Zones = field(repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,6 +159,27 @@ class CutVoxels:
             raise DesignError("voxel_size", what, "keep it, and vary other parameters")
         return type(self)(self.voxels, *_spread(design, self._topology), self._topology)
 
+    def voids_of(
+        self, design: Design, cavities: Sequence[Ints], films: Sequence[Film]
+    ) -> tuple[Void, ...]:
+        """Return the voids of other cavities than those of the voxels alone.
+
+        Parameters
+        ----------
+        design
+            The design of the voxels, or one with slightly other parameters, as for
+            :meth:`resampled`.
+        cavities
+            The empty cells of each cavity, (c, 3), in the array of the voxels.
+        films
+            Planes of layers that close them.
+        """
+        t = self._topology
+        low = np.rint((np.asarray(self.voxels.origin) - np.asarray(t.phase)) / t.size)
+        near = t.places - low.astype(np.intp)
+        zones = Zones.of(self.voxels.array > 0, cavities, near, t.voxel, films)
+        return voids(design, _material(design, t)[0], zones)
+
     def mesh(self) -> Mesh:
         """Return the mesh: five tetrahedra for each voxel, with fractions and voids."""
         mesh = self.voxels.mesh().with_fractions(self.fractions, self.moments, self.surfaces)
@@ -216,11 +226,8 @@ def _topology(cells: CutCells, active: NDArray[np.bool_], voxels: Voxels) -> _To
     near = cells.near
     at = tuple(near.T)
     voxel = np.where(active[at], count[at], -1)
-    labels = np.where(active, -2, -1).astype(np.int16)  # -2 is a voxel, -1 outside
-    for index, cavity in enumerate(voxels.cavities):
-        labels[tuple(cavity.cells.T)] = index
     donors, receivers = _gifts(cells, active, voxel)
-    region, torn, zones = _zones(labels, near, voxel)
+    cavities = [cavity.cells for cavity in voxels.cavities]
     return _Topology(
         size=cells.size,
         phase=cells.phase,
@@ -230,10 +237,7 @@ def _topology(cells: CutCells, active: NDArray[np.bool_], voxels: Voxels) -> _To
         donors=donors,
         receivers=receivers,
         beside=_own_neighbors(cells, active, voxel),
-        region=region,
-        torn=torn,
-        zones=zones,
-        cavities=len(voxels.cavities),
+        zones=Zones.of(active, cavities, near, voxel),
     )
 
 
@@ -272,93 +276,57 @@ def _own_neighbors(cells: CutCells, active: NDArray[np.bool_], voxel: Ints) -> I
     return np.where(parts[places] == own[:, None, None], numbers[places], -1)
 
 
-def _zones(
-    labels: NDArray[np.int16], near: Ints, voxel: Ints
-) -> tuple[Ints, Ints, NDArray[np.int16]]:
-    """The region of every cell near the surface; by small cube where two regions are in reach."""
-    padded = np.pad(labels, _REACH, constant_values=-1)
-    region = labels[tuple(near.T)].astype(np.intp)
-    torn, zones = [np.zeros(0, dtype=np.intp)], [np.zeros((0, SUBCELLS**3), dtype=np.int16)]
-    inner = np.flatnonzero(voxel >= 0)
-    for start in range(0, len(inner), 512):
-        chunk = inner[start : start + 512]
-        window = near[chunk][:, None, :] + _REACH + _WINDOW
-        seen = padded[tuple(np.moveaxis(window, -1, 0))]
-        first = seen.max(axis=1)
-        last = np.where(seen == -2, np.iinfo(np.int16).max, seen).min(axis=1)
-        region[chunk] = np.where(first == -2, -1, np.where(first == last, first, -2))
-        mixed = (first != -2) & (first != last)
-        torn.append(chunk[mixed])
-        zones.append(_nearest(seen[mixed]))
-    return region, np.concatenate(torn), np.concatenate(zones)
-
-
-def _nearest(seen: NDArray[np.int16]) -> NDArray[np.int16]:
-    """The region whose empty cell is nearest to each small cube, for windows of labels."""
-    zones = np.full((len(seen), SUBCELLS**3), -1, dtype=np.int16)
-    least = np.full(zones.shape, np.inf)
-    for label in np.unique(seen[seen > -2]):
-        distances = np.where((seen == label)[:, :, None], _DISTANCES, np.inf).min(axis=1)
-        # Equally far from the outside and a cavity: the outside, which comes first.
-        closer = distances < least - 1e-9
-        zones[closer] = label
-        least = np.where(closer, distances, least)
-    return zones
-
-
 def _spread(design: Design, t: _Topology) -> tuple[Floats, Floats, Floats, tuple[Void, ...], float]:
     """Fractions, moments, surfaces of the voxels, voids of the cavities, lost volume [m³]."""
+    spread, around, lost = _material(design, t)
+    own = t.voxel >= 0
+    held = np.tile(WHOLE, (t.whole, 1))
+    held[t.voxel[own]] = spread.measures[own]
+    np.add.at(held, spread.takers, spread.given)
+    np.subtract.at(held, t.voxel[spread.givers], spread.moved)
+    np.add.at(held, spread.levered, spread.moved_to)
+    fractions = held[:, 0]
+    center = held[:, 1:4] / fractions[:, None]
+    variance = held[:, 4:7] / fractions[:, None] - center**2
+    products = held[:, 7:] / fractions[:, None]
+    moments = np.hstack([center, np.sqrt(3.0 * variance), products])
+    return fractions, moments, surfaces(around), voids(design, spread, t.zones), lost
+
+
+def _material(design: Design, t: _Topology) -> tuple[Spread, Floats, float]:
+    """Material near the surface, sums over the surface in each voxel, lost volume [m³]."""
     own = t.voxel >= 0
     measures, around = measures_of(design, t.places, t.size, t.phase, t.beside, own)
     filled = measures[:, 0]
-    held = np.tile(WHOLE, (t.whole, 1))
-    held[t.voxel[own]] = measures[own]
     sums = np.zeros((t.whole, around.shape[1]))
     sums[t.voxel[own]] = around[own]
     # Each donor's material goes to its receivers in proportion to how full they are.
     weights = filled[t.receivers]
     totals = np.bincount(t.donors, weights, len(filled))
     shares = weights / np.maximum(totals[t.donors], 1e-300)
-    gifts = filled[t.donors] * shares
     takers = t.voxel[t.receivers]
     away = (2 * (t.places[t.donors] - t.places[t.receivers])).astype(np.float64)
-    given_to = _shifted(measures[t.donors], away) * shares[:, None]
-    np.add.at(held, takers, given_to)
     np.add.at(sums, takers, around[t.donors] * shares[:, None])
-    given = np.bincount(t.donors, gifts, len(filled))
+    given = np.bincount(t.donors, filled[t.donors] * shares, len(filled))
     lost = float((filled - given)[~own].sum()) * t.size**3
     givers, behind, levers = _levers(t, measures, around)
-    moved = measures[givers] * levers[:, None]
     inward = (2 * (t.places[givers] - t.places[behind])).astype(np.float64)
-    moved_to = _shifted(measures[givers], inward) * levers[:, None]
-    np.subtract.at(held, t.voxel[givers], moved)
-    np.add.at(held, t.voxel[behind], moved_to)
-    fractions = held[:, 0]
-    center = held[:, 1:4] / fractions[:, None]
-    variance = held[:, 4:7] / fractions[:, None] - center**2
-    products = held[:, 7:] / fractions[:, None]
-    moments = np.hstack([center, np.sqrt(3.0 * variance), products])
-
-    if len(t.torn):
-        torn, normals, _ = filled_parts(design, t.places[t.torn], t.size, t.phase)
-    voids = []
-    for cavity in range(t.cavities):
-        room, over = np.zeros((t.whole, len(WHOLE))), np.zeros((t.whole, len(WHOLE)))
-        beside = own & (t.region == cavity)
-        room[t.voxel[beside]] = WHOLE - measures[beside]
-        if len(t.torn):
-            empty = np.where(t.zones == cavity, 1.0 - torn, 0.0)
-            room[t.voxel[t.torn]] += integrals(empty, -normals)
-        into = t.region[t.donors] == cavity
-        np.add.at(over, takers[into], given_to[into])
-        into = t.region[givers] == cavity
-        np.add.at(room, t.voxel[givers[into]], moved[into])
-        np.add.at(over, t.voxel[behind[into]], moved_to[into])
-        numbers = np.flatnonzero((room[:, 0] > 0.0) | (over[:, 0] > 0.0))
-        # Material that a voxel holds of its neighbors lies outside it, and has a gradient there.
-        parts = _parts(room[numbers]) - _parts(over[numbers])
-        voids.append((numbers, parts))
-    return fractions, moments, surfaces(sums), tuple(voids), lost
+    spread = Spread(
+        places=t.places,
+        size=t.size,
+        phase=t.phase,
+        voxel=t.voxel,
+        whole=t.whole,
+        measures=measures,
+        donors=t.donors,
+        takers=takers,
+        given=_shifted(measures[t.donors], away) * shares[:, None],
+        givers=givers,
+        levered=t.voxel[behind],
+        moved=measures[givers] * levers[:, None],
+        moved_to=_shifted(measures[givers], inward) * levers[:, None],
+    )
+    return spread, sums, lost
 
 
 def _levers(t: _Topology, measures: Floats, around: Floats) -> tuple[Ints, Ints, Floats]:
@@ -372,7 +340,7 @@ def _levers(t: _Topology, measures: Floats, around: Floats) -> tuple[Ints, Ints,
     moved times the part that is missing. A cell keeps :data:`LEAST_FILLED`. Cells between two
     empty regions keep all.
     """
-    cells = np.flatnonzero((t.voxel >= 0) & (measures[:, 0] < 1.0) & (t.region != -2))
+    cells = np.flatnonzero((t.voxel >= 0) & (measures[:, 0] < 1.0) & (t.zones.region != -2))
     filled = measures[cells, 0]
     shift = measures[cells, 1:4] / filled[:, None] / 2.0
     side = (shift > 0.0).astype(np.intp)
@@ -382,12 +350,6 @@ def _levers(t: _Topology, measures: Floats, around: Floats) -> tuple[Ints, Ints,
     shares *= np.minimum(1.0, most / np.maximum(shares.sum(axis=1), 1e-300))[:, None]
     row, axis = np.nonzero(shares)
     return cells[row], behind[row, axis], shares[row, axis]
-
-
-def _parts(measures: Floats) -> Floats:
-    volume = measures[:, 0]
-    filled = np.where(volume > 0.0, volume, 1.0)[:, None]
-    return room_parts(volume, measures[:, [1, 2, 3, 7, 8, 9]] / filled)
 
 
 def _shifted(measures: Floats, by: Floats) -> Floats:
@@ -406,16 +368,5 @@ def _offsets(reach: int) -> Ints:
     return np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
-def _distances() -> Floats:
-    """Distance in cells from each small cube's center to each cell of the window."""
-    middle = (np.arange(SUBCELLS) + 0.5) / SUBCELLS
-    points = np.stack(np.meshgrid(middle, middle, middle, indexing="ij"), axis=-1).reshape(-1, 3)
-    gap = np.maximum(_WINDOW[:, None] - points, points - _WINDOW[:, None] - 1.0)
-    found: Floats = np.linalg.norm(np.maximum(gap, 0.0), axis=-1)
-    return found
-
-
 _AROUND = _offsets(1)
 _SIDES = np.eye(3, dtype=np.intp)[:, None, :] * np.array([-1, 1])[:, None]
-_WINDOW = _offsets(_REACH)
-_DISTANCES = _distances()

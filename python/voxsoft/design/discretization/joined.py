@@ -89,6 +89,12 @@ def of_body(cavity: MeshCavity, body: BodyMesh) -> MeshCavity:
     return replace(cavity, body=body.name, **moved)
 
 
+def own_cavities(mesh: Mesh, body: BodyMesh) -> tuple[MeshCavity, ...]:
+    """The cavities of a body among those of the joined mesh, as cavities of its own mesh."""
+    back = replace(body, first_vertex=-body.first_vertex)
+    return tuple(of_body(each, back) for each in mesh.cavities if each.body == body.name)
+
+
 def _fractions(mesh: Mesh) -> Floats:
     return np.ones(len(mesh.tets) // 5) if mesh.fractions is None else mesh.fractions
 

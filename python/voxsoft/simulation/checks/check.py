@@ -16,6 +16,7 @@ import numpy as np
 from voxsoft._shown import Shown, counted, rounded, shortened
 from voxsoft.design import Design, require_design
 from voxsoft.design.discretization.discretize import filled
+from voxsoft.design.discretization.joined import own_cavities
 from voxsoft.design.region import Region
 from voxsoft.errors import VoxSoftError
 from voxsoft.formats.report import ReadReport
@@ -33,7 +34,7 @@ from voxsoft.simulation.checks.unheld import unheld
 from voxsoft.simulation.checks.vanished import vanished_shapes
 from voxsoft.simulation.diagnostic import Diagnostic, near
 from voxsoft.simulation.setup.chambers import ambiguous_indices
-from voxsoft.simulation.setup.layers import LayerTriangles, chambers, layers_on, sealed
+from voxsoft.simulation.setup.layers import LayerTriangles, chambers, layers_on
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.simulation.setup.volumes import PRECISE, Volumes, doubtful_volumes, volumes_of
 from voxsoft.simulation.solving.choice import kind_of, unused_settings
@@ -239,7 +240,7 @@ def examine(
     if isinstance(body, Design):
         try:
             setup = setup or Setup(body, mesh)
-            each = [one.closed(setup.layers) for one in each]
+            each = [one.closed(setup) for one in each]
             setup.check()
             elements = setup.elements
             is_held = setup.loose_piece is None
@@ -332,10 +333,11 @@ class _ExaminedBody:
     mesh: Mesh
     layers: tuple[LayerTriangles, ...]
 
-    def closed(self, layers: tuple[LayerTriangles, ...]) -> _ExaminedBody:
+    def closed(self, setup: Setup) -> _ExaminedBody:
         """Close the body by those layers of the whole that are on it."""
-        own = layers_on(self.of, layers)
-        return replace(self, mesh=sealed(self.of.mesh, own), layers=own)
+        own = own_cavities(setup.mesh, self.of)
+        layers = layers_on(self.of, setup.layers)
+        return replace(self, mesh=replace(self.of.mesh, cavities=own), layers=layers)
 
     @property
     def cavities(self) -> tuple[Cavity, ...]:

@@ -25,6 +25,7 @@ from voxsoft.simulation.derivatives.loaded_state import LoadedState
 from voxsoft.simulation.derivatives.path_gradient import check_residual, path_gradient
 from voxsoft.simulation.results.result import Result
 from voxsoft.simulation.setup.contact import has_contact
+from voxsoft.simulation.setup.layers import sealed
 from voxsoft.simulation.setup.motion import held_axes, held_positions
 from voxsoft.simulation.setup.places import voxel_size
 from voxsoft.simulation.setup.setup import Setup
@@ -196,7 +197,8 @@ class EquilibriumState(LoadedState):
                 "that the derivative is zero or does not exist",
                 'use fill = "fraction", where cut voxels hold their share of material',
             )
-        return self._cut.resampled(design).mesh()
+        mesh = self._cut.resampled(design).mesh()
+        return sealed(mesh, self.setup.layers, design, self._cut)
 
 
 @dataclass(frozen=True)
@@ -273,6 +275,7 @@ def _state_with(base: EquilibriumState, design: Design, name: str) -> Equilibriu
     if design.floor != before.design.floor:
         raise DesignError(name, "cannot be varied: it moves the floor", "name another number")
     setup = Setup(design, mesh)
+    _check_films(before, setup, name)
     held = held_axes(before)
     if (held_axes(setup) != held).any():
         raise DesignError(
@@ -282,6 +285,20 @@ def _state_with(base: EquilibriumState, design: Design, name: str) -> Equilibriu
         )
     shift = held_positions(setup) - held_positions(before)
     return EquilibriumState(setup, base.positions + np.where(held, shift, 0.0), taut=base.taut)
+
+
+def _check_films(before: Setup, varied: Setup, name: str) -> None:
+    """Refuse a number that moves a film against the faces of voxels that stand for it."""
+    if varied.mesh.fractions is None:
+        return
+    for index, (old, new) in enumerate(zip(before.layers, varied.layers, strict=True)):
+        if len(old.openings) and old.gap != new.gap:
+            raise DesignError(
+                name,
+                f"cannot be varied: it moves layers[{index}], which closes a chamber, and what "
+                "that does to the chamber is not known",
+                "vary what leaves the plane of the layer where it is",
+            )
 
 
 def _shapes(design: Design) -> tuple[object, ...]:

@@ -13,13 +13,17 @@ triangles of that triangulation whose centers lie in the opening fill it exactly
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design, Layer
-from voxsoft.design.discretization.joined import of_body
+from voxsoft.design.discretization.cut_voxels import CutVoxels
+from voxsoft.design.discretization.joined import of_body, own_cavities
+from voxsoft.design.discretization.rooms import ROOM_TETS
+from voxsoft.design.discretization.voids import Film, Void
 from voxsoft.errors import DesignError
 from voxsoft.mesh import BodyMesh, Mesh
 from voxsoft.simulation.setup.places import on_the_body, vertices_in
@@ -28,8 +32,11 @@ Triangles = NDArray[np.int32]
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-#: Difference from a full voxel that is rounding.
+#: Distance in voxels that is rounding.
 _ROUNDING = 1e-9
+
+_NO_TRIANGLE: Final[Triangles] = np.zeros((0, 3), dtype=np.int32)
+_NO_FACE: Final[Ints] = np.zeros((0, 3), dtype=np.int64)
 
 _FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
 
@@ -49,17 +56,45 @@ class LayerTriangles:
         corner of the mesh.
     axis
         The axis across the layer's plane, if it lies in one.
+    covered
+        The faces of the grid that a layer that seals is bonded to, as the openings.
+    gap
+        Distance of the layer that the design describes from these faces, along the axis [m].
     """
 
     bonded: Triangles
     spanning: Triangles
     openings: Ints
     axis: int | None
+    covered: Ints
+    gap: float = 0.0
 
     def moved(self, first: int) -> LayerTriangles:
         """Renumber the vertices for a joined mesh, in which its body begins with `first`."""
         shift = np.int32(first)
         return replace(self, bonded=self.bonded + shift, spanning=self.spanning + shift)
+
+    def film(self, shape: tuple[int, int, int], shift: Ints, size: float) -> Film:
+        """Return the plane that it covers in an array of cells.
+
+        Parameters
+        ----------
+        shape
+            Numbers of cells of the array.
+        shift
+            The cell at the lower corner of the mesh, (3,).
+        size
+            Edge of a cell [m].
+        """
+        assert self.axis is not None  # only a layer in a plane spans openings
+        axis, flat = self.axis, tuple(np.delete(shape, self.axis))
+        openings, covered = np.zeros(flat, dtype=bool), np.zeros(flat, dtype=bool)
+        openings[tuple(np.delete(self.openings + shift, axis, axis=1).T)] = True
+        covered[tuple(np.delete(self.covered + shift, axis, axis=1).T)] = True
+        level = int(self.openings[0, axis] + shift[axis])
+        gap = self.gap / size
+        gap = 0.0 if abs(gap) < _ROUNDING else gap
+        return Film(axis, level, covered | openings, openings, gap)
 
     @property
     def all(self) -> Triangles:
@@ -127,9 +162,9 @@ def layer_triangles(layer: Layer, design: Design, mesh: Mesh, where: str) -> Lay
             "holds no face of a voxel",
             "widen it until it holds all corners of some faces, on the surface or in a plane",
         )
-    nothing = np.zeros((0, 3), dtype=np.int32), np.zeros((0, 3), dtype=np.int64)
-    spanning, openings = _spanning(layer, mesh, bonded, where) if layer.seal else nothing
-    return LayerTriangles(bonded, spanning, openings, layer.axis)
+    if layer.seal:
+        return _spanning(layer, mesh, bonded, where)
+    return LayerTriangles(bonded, _NO_TRIANGLE, _NO_FACE, layer.axis, _NO_FACE)
 
 
 def all_layer_triangles(design: Design, mesh: Mesh) -> tuple[LayerTriangles, ...]:
@@ -140,7 +175,12 @@ def all_layer_triangles(design: Design, mesh: Mesh) -> tuple[LayerTriangles, ...
     )
 
 
-def sealed(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> Mesh:
+def sealed(
+    mesh: Mesh,
+    layers: tuple[LayerTriangles, ...],
+    design: Design,
+    cut: CutVoxels | None = None,
+) -> Mesh:
     """Return the mesh with the cavities that there are once the layers close their openings.
 
     Parameters
@@ -149,62 +189,68 @@ def sealed(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> Mesh:
         A mesh of voxels, or any mesh if no layer spans an opening.
     layers
         The triangles of the layers.
-    """
-    if not any(len(layer.openings) for layer in layers):
-        return mesh
-    if mesh.bodies:
-        return replace(mesh, cavities=_cavities_of_bodies(mesh, layers))
-    return replace(mesh, cavities=tuple(_with_voids(mesh, layers)))
-
-
-def _with_voids(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> list[MeshCavity]:
-    """Return all chambers, largest first, those that no layer bounds with the room in cut voxels.
+    design
+        The design that fills the voxels.
+    cut
+        Cut voxels of the mesh whose shape the design varies; default: those of the design.
 
     Raises
     ------
     DesignError
-        A layer bounds a chamber with cut voxels in its walls, whose rooms are not known there.
+        The mesh has other cut voxels than the design.
     """
-    found = [chamber.surface for chamber in chambers(mesh, layers)]
-    if mesh.fractions is None:
-        return found
-    own = {_key(cavity): cavity for cavity in mesh.cavities}
-    voxel_at = np.zeros(len(mesh.vertices), dtype=bool)
-    is_cut = np.abs(mesh.fractions - 1.0) > _ROUNDING
-    voxel_at[mesh.tets.reshape(-1, 20)[is_cut]] = True
-    for index, cavity in enumerate(found):
-        if _key(cavity) in own:
-            found[index] = own[_key(cavity)]
-        elif _in_cut_voxels(mesh, cavity, is_cut, voxel_at):
+    if not any(len(layer.openings) for layer in layers):
+        return mesh
+    if not mesh.bodies:
+        return replace(mesh, cavities=_closed(mesh, layers, design, cut))
+    found: list[MeshCavity] = []
+    for body in mesh.bodies:
+        own = replace(body.mesh, cavities=own_cavities(mesh, body))
+        closed = sealed(own, layers_on(body, layers), design.alone(body.name))
+        found += [of_body(cavity, body) for cavity in closed.cavities]
+    return replace(mesh, cavities=tuple(sorted(found, key=lambda cavity: -cavity.volume)))
+
+
+def _closed(
+    mesh: Mesh, layers: tuple[LayerTriangles, ...], design: Design, cut: CutVoxels | None
+) -> tuple[MeshCavity, ...]:
+    """Return all chambers of a body, largest first; the room in cut voxels counts."""
+    found = chambers(mesh, layers)
+    cavities = [chamber.surface for chamber in found]
+    new = [i for i, each in enumerate(cavities) if all(each is not own for own in mesh.cavities)]
+    if mesh.fractions is not None and new:
+        voids = _voids(mesh, layers, design, cut, [chamber.cells for chamber in found])
+        closed = replace(mesh, cavities=tuple(cavities[i] for i in new))
+        closed = closed.with_voids(ROOM_TETS, [voids[i] for i in new])
+        for index, cavity in zip(new, closed.cavities, strict=True):
+            cavities[index] = cavity
+    return tuple(sorted(cavities, key=lambda cavity: -cavity.volume))
+
+
+def _voids(
+    mesh: Mesh,
+    layers: tuple[LayerTriangles, ...],
+    design: Design,
+    cut: CutVoxels | None,
+    cells: list[Ints],
+) -> tuple[Void, ...]:
+    """Return the voids of chambers whose cells count from the lower corner of the mesh."""
+    low, size = _frame(mesh)
+    if cut is None:
+        cut = CutVoxels.of(design, max(1, round(design.voxel_size / size)))
+        if not np.array_equal(cut.fractions, mesh.fractions):
             raise DesignError(
                 next(f"layers[{i}].seal" for i, each in enumerate(layers) if len(each.openings)),
-                "cannot close a chamber with cut voxels in its walls: their room is not known",
-                'use fill = "binary", or make the sizes of the chamber multiples of the voxel size',
+                "cannot close a chamber here: the mesh has other cut voxels than its design",
+                "mesh the design anew",
             )
-    return sorted(found, key=lambda cavity: -cavity.volume)
+    shift = np.rint((low - np.asarray(cut.voxels.origin)) / size).astype(np.int64)
+    films = [layer.film(cut.voxels.shape, shift, size) for layer in layers if len(layer.openings)]
+    return cut.voids_of(design, [each + shift for each in cells], films)
 
 
 def _key(cavity: MeshCavity) -> frozenset[tuple[int, ...]]:
     return frozenset(map(tuple, np.sort(cavity.triangles, axis=1).tolist()))
-
-
-def _in_cut_voxels(mesh: Mesh, cavity: MeshCavity, is_cut: Mask, near: Mask) -> bool:
-    """Return True if a face of a cut voxel bounds a cavity; `near` marks their corners."""
-    doubtful = cavity.triangles[near[cavity.triangles].all(axis=1)]
-    if len(doubtful) == 0:
-        return False
-    faces = mesh.tets.reshape(-1, 5, 4)[is_cut].reshape(-1, 4)[:, _FACES].reshape(-1, 3)
-    known = set(map(tuple, np.sort(faces, axis=1).tolist()))
-    return any(tuple(each) in known for each in np.sort(doubtful, axis=1).tolist())
-
-
-def _cavities_of_bodies(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> tuple[MeshCavity, ...]:
-    """The cavities of every body once its layers close their openings, largest first."""
-    found: list[MeshCavity] = []
-    for body in mesh.bodies:
-        closed = sealed(body.mesh, layers_on(body, layers))
-        found += [of_body(cavity, body) for cavity in closed.cavities]
-    return tuple(sorted(found, key=lambda cavity: -cavity.volume))
 
 
 def layers_on(body: BodyMesh, layers: tuple[LayerTriangles, ...]) -> tuple[LayerTriangles, ...]:
@@ -222,7 +268,7 @@ def chambers(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> list[Chamber]:
     Parameters
     ----------
     mesh
-        A mesh of voxels.
+        A mesh of voxels; chambers that are cavities of it have their volumes and voids.
     layers
         The triangles of the layers.
     """
@@ -246,6 +292,7 @@ def chambers(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> list[Chamber]:
     area = np.linalg.norm(
         np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
     )
+    own = {_key(cavity): cavity for cavity in mesh.cavities}
     found = []
     for label in np.unique(labels[labels >= 0]):
         if label == outside:
@@ -253,7 +300,7 @@ def chambers(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> list[Chamber]:
         cells = np.argwhere(labels == label) - 1
         mine = owner == label
         cavity = MeshCavity(surface[mine], len(cells) * size**3, float(area[mine].sum() / 2.0))
-        found.append(Chamber(cells, cavity))
+        found.append(Chamber(cells, own.get(_key(cavity), cavity)))
     return sorted(found, key=lambda chamber: (-len(chamber.cells), chamber.cells[0].tolist()))
 
 
@@ -271,8 +318,8 @@ def _bonded(layer: Layer, mesh: Mesh, inside: Mask) -> Triangles:
     return found
 
 
-def _spanning(layer: Layer, mesh: Mesh, bonded: Triangles, where: str) -> tuple[Triangles, Ints]:
-    """Find triangles over openings that bonded faces enclose, and the faces that they span."""
+def _spanning(layer: Layer, mesh: Mesh, bonded: Triangles, where: str) -> LayerTriangles:
+    """Add to the bonded triangles of a layer those over openings that they enclose."""
     from scipy.ndimage import binary_fill_holes
     from scipy.spatial import Delaunay
 
@@ -292,7 +339,7 @@ def _spanning(layer: Layer, mesh: Mesh, bonded: Triangles, where: str) -> tuple[
     footprint = covered == 2  # both triangles of a face
     holes = binary_fill_holes(footprint) & ~footprint & ~below & ~above
     if not holes.any():
-        return np.zeros((0, 3), dtype=np.int32), np.zeros((0, 3), dtype=np.int64)
+        return LayerTriangles(bonded, _NO_TRIANGLE, _NO_FACE, axis, _NO_FACE)
 
     lattice = np.rint((mesh.vertices - low) / size).astype(np.int64)
     in_plane = np.flatnonzero(lattice[:, axis] == level)
@@ -315,8 +362,12 @@ def _spanning(layer: Layer, mesh: Mesh, bonded: Triangles, where: str) -> tuple[
         )
     turned = double < 0.0
     triangles[turned] = triangles[turned][:, ::-1]
-    faces = np.insert(np.argwhere(holes), axis, level, axis=1)
-    return triangles.astype(np.int32), faces
+    openings, under = (
+        np.insert(np.argwhere(faces), axis, level, axis=1) for faces in (holes, footprint)
+    )
+    height = getattr(layer.region, "xyz"[axis])[0]
+    gap = float(height - (low[axis] + level * size))
+    return LayerTriangles(bonded, triangles.astype(np.int32), openings, axis, under, gap)
 
 
 def _cells_of_spanning(layer: LayerTriangles, mesh: Mesh, step: int) -> Ints:

@@ -96,7 +96,7 @@ class Setup:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "design", self.design.assembled)
-        closed = sealed(self.mesh, self.layers)
+        closed = sealed(self.mesh, self.layers, self.design)
         named = with_chamber_names(self.design, closed)
         object.__setattr__(self, "mesh", with_other_split(self.design, named))
 
