@@ -61,6 +61,25 @@ class Grid:
     def wall_thickness(self) -> tuple[NDArray[np.uint16], list[int], _Wall | None]: ...
     def cavity_walls(self) -> list[_Wall]: ...
 
+SUBCELLS: int
+REACH: int
+FACET_POWERS: list[list[int]]
+
+def fill_cells(
+    shapes: Sequence[Shape], corners: NDArray[np.float64], size: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+def cut_measures(
+    shapes: Sequence[Shape],
+    corners: NDArray[np.float64],
+    size: float,
+    beyond: NDArray[np.int32],
+    behind: NDArray[np.int32],
+    gives: NDArray[np.bool_],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+def material_integrals(
+    filled: NDArray[np.float64], normals: NDArray[np.float64]
+) -> NDArray[np.float64]: ...
+def nearest_regions(windows: NDArray[np.int16]) -> NDArray[np.int16]: ...
 def closed_voids(
     states: NDArray[np.int32], masks: NDArray[np.uint64]
 ) -> list[tuple[NDArray[np.uint32], NDArray[np.uint32]]]: ...

@@ -1,12 +1,10 @@
 //! `_core.Grid`: an immutable grid of cells; every change returns a new one.
 use std::sync::Arc;
 
-use numpy::{
-    IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray3,
-};
+use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
-use voxsoft_voxel::{self as voxel, CellState, CombineError, Component, Contact, GridError};
+use voxsoft_voxel::{self as voxel, CombineError, Component, Contact, GridError};
 
 use crate::errors::exception;
 use crate::gate;
@@ -318,33 +316,4 @@ fn combine_error(py: Python<'_>, error: &CombineError) -> PyErr {
         CombineError::Empty => ("crop", "fill some cells first"),
     };
     exception(py, "VoxelError", place, &error.to_string(), hint)
-}
-
-/// Closed voids of cells that the surface cuts: for each the numbers of the masks that it touches and how many small
-/// cubes of them. A state is the number of a mask, −1 for a full cell, −2 for an open one.
-#[pyfunction]
-pub fn closed_voids<'py>(
-    py: Python<'py>,
-    states: PyReadonlyArray3<'py, i32>,
-    masks: PyReadonlyArray1<'py, u64>,
-) -> PyResult<Vec<(Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>)>> {
-    let states = states.as_array();
-    let shape = [states.shape()[0], states.shape()[1], states.shape()[2]];
-    let cells: Vec<CellState> = states
-        .iter()
-        .map(|&state| match state {
-            -1 => CellState::Full,
-            -2 => CellState::Open,
-            mask => CellState::Cut(mask as u32),
-        })
-        .collect();
-    let masks = masks.as_array().to_vec();
-    let found = gate::run_owned(py, move |_| voxel::closed_voids(shape, &cells, &masks))?;
-    Ok(found
-        .into_iter()
-        .map(|void| {
-            let (cells, counts): (Vec<u32>, Vec<u32>) = void.into_iter().unzip();
-            (cells.into_pyarray(py), counts.into_pyarray(py))
-        })
-        .collect())
 }

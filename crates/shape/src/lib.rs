@@ -32,6 +32,7 @@ mod block;
 mod bounds;
 mod check;
 mod compiled;
+pub mod cut;
 mod error;
 mod expr;
 mod field;

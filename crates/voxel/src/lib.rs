@@ -36,7 +36,6 @@
 
 mod bits;
 mod cavities;
-mod closed_voids;
 mod combine;
 mod components;
 mod edges;
@@ -61,7 +60,6 @@ mod vectors;
 mod voxel_lists;
 
 pub use cavities::{Cavity, cavities};
-pub use closed_voids::{CUBES, CellState, closed_voids};
 pub use combine::CombineError;
 pub use components::{CellRun, Component, Contact, components};
 pub use from_tets::{FromTetsError, mesh_from_tets};

@@ -6,10 +6,10 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 import voxsoft as vs
-from voxsoft.design.discretization.cut_surfaces import SurfaceSums, obliquity, surfaces
+from voxsoft import _core
+from voxsoft.design.discretization.cut_surfaces import obliquity, surfaces
 from voxsoft.design.discretization.cut_voxels import LEAST_FILLED, CutVoxels
 from voxsoft.shapes import HalfSpace
-from voxsoft.shapes.fractions import fill
 from voxsoft.units import mm
 
 NORMALS = [v / np.linalg.norm(v) for v in np.random.default_rng(3).normal(size=(20, 3))]
@@ -22,15 +22,9 @@ def sums_of(*walls):
     for point, normal in walls:
         wall = HalfSpace(point=tuple(point), normal=tuple(normal))
         shape = wall if shape is None else shape & wall
-    filled, normals, _ = fill([shape.build()], np.zeros((1, 3)), 1.0)
-    return sums_in(filled, normals)
-
-
-def sums_in(filled, normals):
-    none = np.full((len(filled), 3, 2), -1)
-    found = SurfaceSums(np.zeros((len(filled), 25)), none, np.full(len(filled), False))
-    found.add_cells(np.arange(len(filled)), filled, normals)
-    return found.sums
+    none = np.full((1, 3, 2), -1, dtype=np.int32)
+    corners, gives = np.zeros((1, 3)), np.array([False])
+    return _core.cut_measures([shape.build()], corners, 1.0, none, none, gives)[1]
 
 
 def frame_of(found):

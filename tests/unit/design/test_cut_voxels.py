@@ -9,7 +9,7 @@ from voxsoft.design.discretization.cut_voxels import LEAST_FILLED, CutVoxels, fr
 from voxsoft.errors import DesignError, MeshError, ShapeError, SimulationError
 from voxsoft.files import read_mesh, write_mesh
 from voxsoft.materials import NeoHookean
-from voxsoft.shapes.fractions import below_plane, fill
+from voxsoft.shapes.fractions import fill
 from voxsoft.simulation import Setup, check
 from voxsoft.units import mm
 
@@ -24,29 +24,6 @@ def design(shape, size=1.0, **others):
 def hollow_ball(inner, outer, size, center=(0, 0, 0)):
     shape = vs.Sphere(radius=outer, center=center) - vs.Sphere(radius=inner, center=center)
     return design(shape, size)
-
-
-def test_the_part_of_a_cube_below_a_plane_is_that_of_its_points():
-    rng = np.random.default_rng(0)
-    points = rng.uniform(-0.5, 0.5, (200_000, 3))
-    for _ in range(30):
-        normal = rng.normal(size=3) * rng.choice([1.0, 1e-3, 1e-10, 0.0], 3, p=[0.7, 0.1, 0.1, 0.1])
-        level = rng.uniform(-0.6, 0.6) * np.abs(normal).sum()
-        if not normal.any():
-            continue
-        counted = np.mean(level + points @ normal < 0.0)
-        # Five standard deviations of the count.
-        assert below_plane(np.array(level), normal) == pytest.approx(counted, abs=0.006)
-
-
-def test_planes_fill_exactly():
-    for normal in ([0, 0, 1], [1, 1, 0], [3, -2, 1]):
-        plane = vs.HalfSpace(point=(0.4, 0.5, 0.6), normal=normal).build()
-        filled, _, _ = fill([plane], np.zeros((1, 3)), 1.0)
-        length = np.linalg.norm(normal)
-        level = (np.full(3, 0.5) - [0.4, 0.5, 0.6]) @ normal / length
-        exact = below_plane(np.array(level), np.asarray(normal) / length)
-        assert filled.mean() == pytest.approx(float(exact), abs=1e-9)
 
 
 def test_overlapping_and_abutting_parts_are_not_counted_twice():

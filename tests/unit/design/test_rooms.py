@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.design.discretization.cut_cells import WHOLE, integrals, measures_of
+from voxsoft import _core
+from voxsoft.design.discretization.cut_cells import WHOLE, measures_of
 from voxsoft.design.discretization.cut_voxels import CutVoxels
 from voxsoft.design.discretization.rooms import ROOM_TETS, room_parts
 from voxsoft.geometry import tet_volumes
@@ -57,7 +58,8 @@ def test_products_of_coordinates_over_a_cut_cell():
 def test_room_and_material_make_a_whole_cell():
     filled = np.random.default_rng(5).uniform(size=(3, 64))
     normals = np.random.default_rng(6).standard_normal((3, 64, 3))
-    both = integrals(filled, normals) + integrals(1.0 - filled, -normals)
+    both = _core.material_integrals(filled, normals)
+    both += _core.material_integrals(1.0 - filled, -normals)
     # Volume and center are exact; the second moments of the two halves are an approximation.
     assert both[:, :4] == pytest.approx(np.tile(WHOLE[:4], (3, 1)), abs=1e-12)
     assert np.abs(both[:, 4:] - WHOLE[4:]).max() < 0.02

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft._memory import memory_limit
-from voxsoft.design.discretization.cut_surfaces import POWERS, SurfaceSums, unit_vectors
 from voxsoft.design.discretization.grid import phase_of
 from voxsoft.design.model import Design
 from voxsoft.errors import ShapeError
@@ -25,6 +24,9 @@ Ints = NDArray[np.intp]
 #: Sampled at once: small cubes of a slab, and cells that are cut into small cubes.
 _SLAB = 2**26
 _CHUNK = 4096
+
+#: Steps to the cells at the faces of a cell, below and above along the axes, (3, 2, 3).
+SIDES: Final[Ints] = np.eye(3, dtype=np.intp)[:, None, :] * np.array([-1, 1])[:, None]
 
 #: Result of :func:`measures_of` for a full cell.
 WHOLE: Final[Floats] = np.array([1.0, 0.0, 0.0, 0.0, 1 / 3, 1 / 3, 1 / 3, 0.0, 0.0, 0.0])
@@ -193,8 +195,8 @@ def measures_of(
     cells: Ints,
     size: float,
     phase: Triple,
-    beside: Ints,
-    alone: NDArray[np.bool_],
+    behind: Ints,
+    gives: NDArray[np.bool_],
 ) -> tuple[Floats, Floats]:
     """Return integrals over the material of some cells, (k, 10), and over its surface, (k, 25).
 
@@ -212,79 +214,26 @@ def measures_of(
         Edge of a cell [m].
     phase
         Place of the grid: a corner of a cell [m].
-    beside, alone
-        See :class:`~voxsoft.design.discretization.cut_surfaces.SurfaceSums`.
+    behind
+        Cells that take the facets in front of material of their own, below and above along the
+        axes, (k, 3, 2), -1 for none: a facet belongs to its cell by the depth of the material
+        behind it there, and with the rest to the cell behind.
+    gives
+        Marks of cells that give facets to those behind them, (k,); the others keep all.
     """
-    found = np.zeros((len(cells), len(WHOLE)))
-    surface = SurfaceSums(np.zeros((len(cells), len(POWERS))), beside, alone)
-    parts = np.zeros((len(cells), SUBCELLS**3), dtype=np.float32)
-    vectors = np.zeros((len(cells), SUBCELLS**3, 3), dtype=np.float32)
-    for start in range(0, len(cells), _CHUNK):
-        chunk = slice(start, start + _CHUNK)
-        filled, normals, _ = filled_parts(design, cells[chunk], size, phase)
-        found[chunk] = integrals(filled, normals)
-        surface.add_cells(np.arange(len(cells))[chunk], filled, normals)
-        parts[chunk], vectors[chunk] = filled, unit_vectors(normals)
+    corners: Floats = np.asarray(phase) + cells * np.float64(size)
+    low = cells.min(axis=0) - 1
+    number = np.full(cells.max(axis=0) - low + 2, -1, dtype=np.int32)
+    number[tuple((cells - low).T)] = np.arange(len(cells))
+    beyond = number[tuple(np.moveaxis((cells - low)[:, None, None] + SIDES, -1, 0))]
+    found, surface = _core.cut_measures(
+        built_parts(design), corners, size, beyond, behind.astype(np.int32), gives
+    )
     found[found[:, 0] > 1.0 - _ROUNDING] = WHOLE
     found[found[:, 0] < _ROUNDING] = 0.0
-    _add_common_faces(surface, cells, parts, vectors)
-    return found, surface.sums
+    return found, surface
 
 
-def _add_common_faces(
-    surface: SurfaceSums, cells: Ints, parts: NDArray[np.float32], vectors: NDArray[np.float32]
-) -> None:
-    """Add the surface at the common faces of cells, to the cell on the side of the material."""
-    low = cells.min(axis=0)
-    number = np.full(cells.max(axis=0) - low + 2, -1)
-    number[tuple((cells - low).T)] = np.arange(len(cells))
-    cubes = parts.reshape(-1, SUBCELLS, SUBCELLS, SUBCELLS)
-    for axis in range(3):
-        above = number[tuple((cells - low + np.eye(3, dtype=np.intp)[axis]).T)]
-        lower = np.flatnonzero(above >= 0)
-        upper = above[lower]
-        layers = np.moveaxis(cubes, axis + 1, 1)
-        normals = np.moveaxis(vectors.reshape(*cubes.shape, 3), axis + 1, 1)
-        for own, other, side in ((lower, upper, 1), (upper, lower, 0)):
-            at, beyond = (-1, 0) if side else (0, -1)
-            depth = layers[own].mean(axis=1)
-            surface.add_faces(
-                own, axis, side, layers[own, at], layers[other, beyond], normals[own, at], depth
-            )
-
-
-def integrals(filled: Floats, normals: Floats) -> Floats:
-    """Sum over the small cubes of cells, (k, 10), see :func:`measures_of`.
-
-    The filled part f of a cube of edge w cut by a plane with the unit normal n has its center
-    (1 - f)/2 w n away and the covariance (1 - (1 - f²) n ⊗ n) w²/12: right across the axes, and for
-    halves across a diagonal the center is 6 % off.
-
-    Parameters
-    ----------
-    filled, normals
-        Values of each small cube, from :func:`voxsoft.shapes.fractions.fill`.
-    """
-    unit = unit_vectors(normals)
-    part = filled[..., None]
-    edge = 2.0 / SUBCELLS
-    center = _MIDDLES - (0.5 * edge) * (1.0 - part) * unit
-    flat = edge**2 / 12.0 * (1.0 - part**2)
-    square = center**2 + edge**2 / 12.0 - flat * unit**2
-    one, other = [1, 2, 0], [2, 0, 1]
-    product = center[..., one] * center[..., other] - flat * unit[..., one] * unit[..., other]
-    rows = np.concatenate([part, part * center, part * square, part * product], axis=-1)
-    total: Floats = rows.mean(axis=1)
-    return total
-
-
-def _middles() -> Floats:
-    """Centers of the small cubes, from the center of the cell in halves of its edge."""
-    middle = (2.0 * np.arange(SUBCELLS) + 1.0) / SUBCELLS - 1.0
-    return np.stack(np.meshgrid(middle, middle, middle, indexing="ij"), axis=-1).reshape(-1, 3)
-
-
-_MIDDLES = _middles()
 _INSET = np.array([_RIM, 0.25, 0.5, 0.75, 1.0 - _RIM])
 #: Points in a cell, as parts of its edge.
 _ALL_OVER = np.stack(np.meshgrid(_INSET, _INSET, _INSET, indexing="ij"), axis=-1).reshape(-1, 3)

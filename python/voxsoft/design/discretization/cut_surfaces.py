@@ -9,31 +9,19 @@ of a plane and of a right-angled edge or corner, and in a curved surface their m
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import permutations, product
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.shapes.fractions import SUBCELLS
+from voxsoft import _core
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
 
 #: Powers of x, y, z in the sums of a cell: of degree 3, then of degree 4.
-POWERS: Final = np.array(
-    [
-        (a, b, degree - a - b)
-        for degree in (3, 4)
-        for a in range(degree, -1, -1)
-        for b in range(degree - a, -1, -1)
-    ]
-)
+POWERS: Final = np.array(_core.FACET_POWERS)
 _CUBIC = 10
-
-#: A small cube counts as cut in full from this part on, and up to the rest of it.
-_CUT = 0.125
 
 #: Frames turned by less [rad] are those of the cell, whose full voxels then warp by their faces.
 _STRAIGHT = 1e-4
@@ -41,114 +29,6 @@ _STRAIGHT = 1e-4
 _ITERATIONS = 10
 _SWEEPS = 3
 _CHUNK = 16384
-
-
-@dataclass(frozen=True)
-class SurfaceSums:
-    """Sums over facets of the surface, (k, 25), and the cells that they go to.
-
-    A facet belongs to its cell by the depth of the material behind it there, and with the rest to
-    the cell behind: a film at the face of a voxel ends the next voxel, as if it were not there.
-    """
-
-    sums: Floats
-    #: Cells behind each cell, below and above along the axes, (k, 3, 2), -1 for none.
-    beside: Ints
-    #: Marks of cells that are voxels, (k,). The others keep all, for the takers of their material.
-    alone: NDArray[np.bool_]
-
-    def add_cells(self, cells: Ints, filled: Floats, normals: Floats) -> None:
-        """Add the facets within cells.
-
-        Parameters
-        ----------
-        cells
-            Numbers of the cells, (m,).
-        filled, normals
-            Values of each small cube, from :func:`voxsoft.shapes.fractions.fill`.
-        """
-        areas = _cut(filled)
-        cubes = filled.reshape(-1, SUBCELLS, SUBCELLS, SUBCELLS)
-        unit = unit_vectors(normals)
-        across = unit.reshape(*cubes.shape, 3)
-        for axis in range(3):
-            layers = np.moveaxis(cubes, axis + 1, 1)
-            vectors = np.moveaxis(across, axis + 1, 1)
-            down, up = _depths(layers)
-            for side, depth in enumerate((down, up)):
-                looks = (unit[..., axis] > 0.0) == (side == 1)
-                part = np.where(looks, areas * unit[..., axis] ** 2, 0.0)
-                own = np.moveaxis(depth, 1, axis + 1).reshape(part.shape)
-                self._add(cells, axis, side, part, unit, own)
-            low, high = slice(None, -1), slice(1, None)
-            for side, behind, inner, outer in ((1, up, low, high), (0, down, high, low)):
-                self.add_faces(
-                    cells,
-                    axis,
-                    side,
-                    layers[:, inner],
-                    layers[:, outer],
-                    vectors[:, inner],
-                    behind[:, inner],
-                )
-
-    def add_faces(
-        self,
-        cells: Ints,
-        axis: int,
-        side: int,
-        own: Floats,
-        other: Floats,
-        normals: Floats,
-        depth: Floats,
-    ) -> None:
-        """Add facets between small cubes of cells, and those beyond that are less full.
-
-        Parameters
-        ----------
-        cells
-            Numbers of the cells, (m,).
-        axis, side
-            The way the facets look: 0 down, 1 up.
-        own, other
-            Filled parts on the inner and the outer side, (m, ...).
-        normals
-            Unit normals on the inner side, (m, ..., 3).
-        depth
-            Material behind in the cell, in edges, (m, ...).
-        """
-        areas = (1.0 - _cut(own)) * (1.0 - _cut(other)) * np.maximum(own - other, 0.0)
-        # A cube in a corner has the normal of one of its faces alone.
-        straight = np.eye(3)[axis] * (2 * side - 1)
-        alike = (normals @ straight)[..., None] > 0.5
-        self._add(cells, axis, side, areas, np.where(alike, normals, straight), depth)
-
-    def _add(
-        self, cells: Ints, axis: int, side: int, areas: Floats, normals: Floats, depth: Floats
-    ) -> None:
-        at = np.nonzero(areas)
-        powers = np.stack([normals[at] ** degree for degree in range(5)], axis=-1)
-        monomials = np.prod([powers[:, k, POWERS[:, k]] for k in range(3)], axis=0)
-        facets = monomials * (areas[at] / SUBCELLS**2)[:, None]
-        to, within = cells[at[0]], depth[at][:, None]
-        behind = self.beside[to, axis, 1 - side]
-        behind = np.where(self.alone[to] & (behind >= 0), behind, to)
-        np.add.at(self.sums, to, facets * within)
-        np.add.at(self.sums, behind, facets * (1.0 - within))
-
-
-def unit_vectors(vectors: Floats) -> Floats:
-    """Divide vectors by their lengths, (..., 3); zeros stay."""
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    unit: Floats = np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)
-    return unit
-
-
-def _depths(layers: Floats) -> tuple[Floats, Floats]:
-    """Return the material behind surfaces that look down and up the first axis of cells."""
-    up = np.cumsum(layers, axis=1) / SUBCELLS
-    down = np.flip(np.cumsum(np.flip(layers, 1), axis=1), 1) / SUBCELLS
-    return down, up
 
 
 def surfaces(sums: Floats) -> Floats:
@@ -190,11 +70,6 @@ def obliquity(sums: Floats) -> Floats:
     second = np.einsum("vaabb->va", quartic)
     area = np.maximum(second.sum(axis=1, keepdims=True), 1e-300)
     found: Floats = np.clip(4.0 * (second - fourth) / area, 0.0, 1.0)
-    return found
-
-
-def _cut(filled: Floats) -> Floats:
-    found: Floats = np.clip(np.minimum(filled, 1.0 - filled) / _CUT, 0.0, 1.0)
     return found
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.design.discretization.cut_cells import (
+    SIDES,
     WHOLE,
     CutCells,
     Floats,
@@ -270,7 +271,7 @@ def _own_neighbors(cells: CutCells, active: NDArray[np.bool_], voxel: Ints) -> I
     numbers = np.full(active.shape, -1)
     numbers[tuple(cells.near.T)] = np.where(voxel >= 0, np.arange(len(voxel)), -1)
     numbers, parts = np.pad(numbers, 1, constant_values=-1), np.pad(cells.part, 1)
-    at = cells.near[:, None, None, :] + 1 + _SIDES
+    at = cells.near[:, None, None, :] + 1 + SIDES
     places = tuple(np.moveaxis(at, -1, 0))
     own = parts[tuple((cells.near + 1).T)]
     return np.where(parts[places] == own[:, None, None], numbers[places], -1)
@@ -369,4 +370,3 @@ def _offsets(reach: int) -> Ints:
 
 
 _AROUND = _offsets(1)
-_SIDES = np.eye(3, dtype=np.intp)[:, None, :] * np.array([-1, 1])[:, None]

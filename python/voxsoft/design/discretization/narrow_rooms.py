@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
-from voxsoft.design.discretization.cut_cells import CutCells, Ints
+from voxsoft.design.discretization.cut_cells import SIDES, CutCells, Ints
 from voxsoft.shapes.fractions import SUBCELLS
 
 Marks = NDArray[np.bool_]
@@ -23,8 +23,6 @@ FILLED_UP_TO: Final = (0.5, 0.65, 0.81)
 # States of cells without a mask.
 _FULL: Final = -1
 _OPEN: Final = -2
-
-_SIDES: Final = np.concatenate([np.eye(3, dtype=np.intp), -np.eye(3, dtype=np.intp)])
 
 
 def with_narrow_rooms(cells: CutCells, active: Marks) -> Marks:
@@ -53,7 +51,7 @@ def with_narrow_rooms(cells: CutCells, active: Marks) -> Marks:
     found = active.copy()
     for number, own in enumerate(opened, start=1):
         # The surface passes through them, so that each has cells all around.
-        beside = room[tuple(np.moveaxis(own[:, None] + _SIDES, -1, 0))]
+        beside = room[tuple(np.moveaxis(own[:, None] + SIDES.reshape(6, 3), -1, 0))]
         if np.isin(beside, (0, number)).all():
             found[tuple(own.T)] = False
     return found

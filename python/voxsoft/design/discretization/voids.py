@@ -14,7 +14,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design.discretization.cut_cells import WHOLE, Floats, Ints, filled_parts, integrals
+from voxsoft import _core
+from voxsoft.design.discretization.cut_cells import WHOLE, Floats, Ints, filled_parts
 from voxsoft.design.discretization.rooms import room_parts
 from voxsoft.design.model import Design
 from voxsoft.shapes.base import Triple
@@ -24,9 +25,6 @@ Marks = NDArray[np.bool_]
 
 #: Voxels, and parts of the tetrahedra of a room in each.
 Void = tuple[Ints, Floats]
-
-#: A void belongs to the nearest empty region no more cells away than this.
-_REACH = 2
 
 #: Label of the voxels in a grid of regions; -1 is the outside, and cavities count from 0.
 VOXEL = -2
@@ -132,7 +130,7 @@ class Zones:
         labels = np.where(active, VOXEL, -1).astype(np.int16)
         for index, cells in enumerate(cavities):
             labels[tuple(cells.T)] = index
-        padded = np.pad(labels, _REACH, constant_values=-1)
+        padded = np.pad(labels, _core.REACH, constant_values=-1)
         region = labels[tuple(near.T)].astype(np.intp)
         torn, zones = [np.zeros(0, dtype=np.intp)], [np.zeros((0, SUBCELLS**3), dtype=np.int16)]
         beyond = [np.zeros((0, SUBCELLS**3), dtype=np.float32)]
@@ -140,7 +138,7 @@ class Zones:
         for start in range(0, len(inner), 512):
             chunk = inner[start : start + 512]
             window = near[chunk][:, None, :] + _WINDOW
-            seen = padded[tuple(np.moveaxis(window + _REACH, -1, 0))]
+            seen = padded[tuple(np.moveaxis(window + _core.REACH, -1, 0))]
             over = np.zeros((len(chunk), SUBCELLS**3), dtype=np.float32)
             for film in films:
                 seen[film.hides(near[chunk], window)] = VOXEL
@@ -150,7 +148,7 @@ class Zones:
             is_torn = (first != VOXEL) & ((first != last) | over.any(axis=1))
             region[chunk] = np.where(first == VOXEL, -1, np.where(is_torn, -2, first))
             torn.append(chunk[is_torn])
-            zones.append(_nearest(seen[is_torn]))
+            zones.append(_core.nearest_regions(seen[is_torn]))
             beyond.append(over[is_torn])
         slabs = tuple(_slabs(labels, len(cavities), films))
         return cls(
@@ -193,7 +191,8 @@ def _slabs(labels: NDArray[np.int16], count: int, films: Sequence[Film]) -> Iter
     for film in films:
         if film.gap == 0.0:
             continue
-        sides = [side for side in (film.level, film.level - 1) if 0 <= side < labels.shape[film.axis]]
+        count_along = labels.shape[film.axis]
+        sides = [each for each in (film.level, film.level - 1) if 0 <= each < count_along]
         for side in sides:
             cells = labels.take(side, axis=film.axis)
             voxels = numbers.take(side, axis=film.axis)
@@ -219,19 +218,6 @@ def _grown(marks: Marks) -> Marks:
     across = padded[:-2] | padded[1:-1] | padded[2:]
     grown: Marks = across[:, :-2] | across[:, 1:-1] | across[:, 2:]
     return grown
-
-
-def _nearest(seen: NDArray[np.int16]) -> NDArray[np.int16]:
-    """The region whose empty cell is nearest to each small cube, for windows of labels."""
-    zones = np.full((len(seen), SUBCELLS**3), -1, dtype=np.int16)
-    least = np.full(zones.shape, np.inf)
-    for label in np.unique(seen[seen > VOXEL]):
-        distances = np.where((seen == label)[:, :, None], _DISTANCES, np.inf).min(axis=1)
-        # Equally far from the outside and a cavity: the outside, which comes first.
-        closer = distances < least - 1e-9
-        zones[closer] = label
-        least = np.where(closer, distances, least)
-    return zones
 
 
 @dataclass(frozen=True, eq=False)
@@ -298,7 +284,7 @@ def voids(design: Design, spread: Spread, zones: Zones) -> tuple[Void, ...]:
         room[spread.voxel[beside]] = WHOLE - spread.measures[beside]
         if len(torn):
             empty = np.where(zones.zones == cavity, room_torn, 0.0)
-            room[spread.voxel[torn]] += integrals(empty, -normals)
+            room[spread.voxel[torn]] += _core.material_integrals(empty, -normals)
             part[torn] = empty.sum(axis=1) / every
         into = zones.region[spread.donors] == cavity
         np.add.at(over, spread.takers[into], spread.given[into])
@@ -340,18 +326,8 @@ def _parts(measures: Floats) -> Floats:
 
 
 def _window() -> Ints:
-    steps = np.arange(-_REACH, _REACH + 1)
+    steps = np.arange(-_core.REACH, _core.REACH + 1)
     return np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
-def _distances() -> Floats:
-    """Distance in cells from each small cube's center to each cell of the window."""
-    middle = (np.arange(SUBCELLS) + 0.5) / SUBCELLS
-    points = np.stack(np.meshgrid(middle, middle, middle, indexing="ij"), axis=-1).reshape(-1, 3)
-    gap = np.maximum(_WINDOW[:, None] - points, points - _WINDOW[:, None] - 1.0)
-    found: Floats = np.linalg.norm(np.maximum(gap, 0.0), axis=-1)
-    return found
-
-
 _WINDOW = _window()
-_DISTANCES = _distances()

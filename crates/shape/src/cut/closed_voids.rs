@@ -1,9 +1,6 @@
 //! Voids inside cells: parts of cells that the surface cuts, as small cubes show them, which material closes.
 
-/// Small cubes along each edge of a cell. A cell's mask has bit (i·n + j)·n + k for its small cube (i, j, k).
-pub const CUBES: usize = 4;
-
-const ALL: usize = CUBES * CUBES * CUBES;
+use super::{ALL, CUBES, STEPS, place};
 
 /// State of a cell for [`closed_voids`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,11 +15,11 @@ pub enum CellState {
 
 /// The closed voids of a grid of cells in C order: the masks that each touches, with how many small cubes of them.
 ///
-/// `masks` mark the small cubes that are void. Small cubes that share a face are of one void; beyond the grid all is
+/// `masks` mark the small cubes that are void, bit by bit in C order. Small cubes that share a face are of one void; beyond the grid all is
 /// open. Voids come in the order of their first mask, and masks rise.
 ///
 /// ```
-/// use voxsoft_voxel::{CellState, closed_voids};
+/// use voxsoft_shape::cut::{CellState, closed_voids};
 ///
 /// let row = [CellState::Full, CellState::Cut(0), CellState::Full];
 /// assert!(closed_voids([1, 1, 3], &row, &[1]).is_empty()); // at the edge of the grid
@@ -56,9 +53,9 @@ pub fn closed_voids(
             index % shape[2],
         ];
         for cube in (0..ALL).filter(|&cube| is_void(mask, cube)) {
-            let place = [cube / 16, cube / 4 % 4, cube % 4];
+            let place = place(cube);
             for axis in 0..3 {
-                let step = [16, 4, 1][axis];
+                let step = STEPS[axis];
                 let far = (CUBES - 1) * step;
                 if place[axis] + 1 < CUBES {
                     if is_void(mask, cube + step) {
@@ -162,7 +159,7 @@ mod tests {
                 at[axis] = side;
                 states[(at[0] * 3 + at[1]) * 3 + at[2]] = CellState::Open;
                 assert!(closed_voids([3, 3, 3], &states, &[u64::MAX]).is_empty());
-                let step = [16, 4, 1][axis];
+                let step = STEPS[axis];
                 // One small cube at the other side of the cell.
                 let far: u64 = if side == 0 { 1 << (3 * step) } else { 1 };
                 assert_eq!(closed_voids([3, 3, 3], &states, &[far]), vec![vec![(0, 1)]]);
