@@ -407,3 +407,32 @@ def test_a_creep_past_a_limit_is_lost_at_a_time_and_a_load():
     assert pressure == pytest.approx(2.0 * time, rel=1e-3)
     assert 0.0 < time < 20.0
     assert "motion with inertia" in path.message
+
+
+@pytest.mark.long
+def test_a_sudden_load_past_a_limit_snaps_at_time_zero():
+    force, g = 0.05, 0.2
+    static = vs.simulate(_arch(force, g=0.0, end=1.0, control="arc-length", steps=20))
+    # The instantaneous stiffness, 1/(1 - g) times the long-term one, is what it meets.
+    assert static.limit_factor / (1.0 - g) < 1.0
+    design = _arch(force, g=g, end=1.0)
+    sudden = design.replace(loads=[design.loads[0].replace(history=None)])
+    path = vs.follow(sudden, "time=0..20 s/3")
+    assert path.status == "ok"
+    assert [result.snaps for result in path.results] == [(0.0,), (), ()]
+    assert "the body snapped at 0 s" in path.results[0].message
+    assert any("snapped to another one at 0 s" in str(w) for w in path.results[0].warnings)
+    # The arch hangs down on either side of the snap at rest too, and creeps on from there.
+    tops = np.array(path.columns["top.z"][1])
+    rest = vs.simulate(_arch(force, g=0.0, end=1.0)).probes["top"][2]
+    assert np.all(np.diff(tops) < 0.0)
+    assert rest < tops[-1]
+
+
+@pytest.mark.long
+def test_a_sudden_load_below_the_limit_does_not_snap():
+    force, g = 0.012, 0.2
+    design = _arch(force, g=g, end=1.0)
+    sudden = design.replace(loads=[design.loads[0].replace(history=None)])
+    path = vs.follow(sudden, "time=0..1 s/2")
+    assert [result.snaps for result in path.results] == [(), ()]

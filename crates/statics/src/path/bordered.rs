@@ -60,7 +60,10 @@ pub(crate) enum Unknown {
 impl Unknown {
     pub fn with(self, point: LoadParameter, factor: f64) -> LoadParameter {
         match self {
-            Self::All => LoadParameter::all(factor),
+            Self::All => LoadParameter {
+                time: point.time,
+                ..LoadParameter::all(factor)
+            },
             Self::Pressure => LoadParameter {
                 pressure: factor,
                 ..point
@@ -68,12 +71,13 @@ impl Unknown {
         }
     }
 
-    /// Factors that the unknown changes.
-    fn direction(self) -> LoadParameter {
-        match self {
+    /// Factors that the unknown changes, at a time of all histories.
+    fn direction(self, time: f64) -> LoadParameter {
+        let factors = match self {
             Self::All => LoadParameter::all(1.0),
             Self::Pressure => LoadParameter::of(0.0, 1.0),
-        }
+        };
+        LoadParameter { time, ..factors }
     }
 }
 
@@ -167,7 +171,7 @@ pub(crate) fn load_direction(
     unknown: Unknown,
 ) -> Vec<f64> {
     let mut forces = vec![[0.0; 3]; positions.len()];
-    let one = unknown.direction();
+    let one = unknown.direction(point.time);
     let (factor_of, slope_of) = (point.factor_of(), one.factor_of());
     equilibrium
         .problem

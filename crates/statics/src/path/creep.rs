@@ -53,7 +53,8 @@ struct Done {
 }
 
 impl Path<'_, '_> {
-    /// Loads the body suddenly, with loads and motions at time zero; returns that time.
+    /// Loads the body suddenly, with loads and motions at time zero; returns that time. A body that has no equilibrium
+    /// near the path of these loads snaps to another one under all of them.
     pub fn load_suddenly(
         &mut self,
         settings: &Settings,
@@ -62,11 +63,24 @@ impl Path<'_, '_> {
         let time = 0.0;
         self.equilibrium.problem.begin(time);
         self.equilibrium.problem.begin_creep(&self.positions, 0.0);
-        let ending = self.follow_load(settings, Parametrization::All { time }, false, loose);
-        if ending.status() != Status::AtRest {
-            return Err(ending);
+        let ending = self.follow_load(settings, Parametrization::Sudden { time }, false, loose);
+        match ending.status() {
+            Status::AtRest => {}
+            Status::NotConverged | Status::LimitReached => {
+                self.snaps.clear();
+                if self.snap_within(time, 0.0, settings) {
+                    return Ok(time);
+                }
+                return Err(Ending::new(Status::NotConverged, None, ending.reached()));
+            }
+            _ => return Err(ending),
         }
         self.equilibrium.problem.end_viscosity(&self.positions, 0.0);
+        // Snaps on the way there are parts of the load, and all of it comes at this time.
+        if !self.snaps.is_empty() {
+            self.snaps.clear();
+            self.turn_after_snap(time);
+        }
         Ok(time)
     }
 

@@ -99,10 +99,8 @@ impl Path<'_, '_> {
                     if stable || cuts == UNSTABLE_CUTS {
                         // Under dead loads alone only the end is a point of the path.
                         self.looking = match along {
-                            Parametrization::All { .. } | Parametrization::Time { .. } => {
-                                loose.is_some() && next == 1.0
-                            }
                             Parametrization::Dead => next < 1.0,
+                            _ => loose.is_some() && next == 1.0,
                         };
                         if limit.is_none() && !warm && loose.is_none() && found.iterations > EASY {
                             limit = self.crossed_limit(&trial, point, along, settings);
@@ -192,7 +190,13 @@ impl Path<'_, '_> {
         settings: &Settings,
     ) -> Ending {
         match (along, loose) {
-            (Parametrization::All { .. } | Parametrization::Time { .. }, Some(loose)) => {
+            (Parametrization::Dead, _) => {
+                self.looking = false;
+                let before = self.points.len().saturating_sub(1);
+                self.points.drain(..before);
+                Ending::new(Status::AtRest, None, 1.0)
+            }
+            (_, Some(loose)) => {
                 let mut search = AtLoad {
                     point: self.point,
                     safe: true,
@@ -200,15 +204,9 @@ impl Path<'_, '_> {
                 };
                 self.release(loose, &mut search, settings)
             }
-            (Parametrization::All { .. } | Parametrization::Time { .. }, None) => {
+            (_, None) => {
                 self.snaps.extend(limit);
                 Ending::new(Status::AtRest, limit, 1.0)
-            }
-            (Parametrization::Dead, _) => {
-                self.looking = false;
-                let before = self.points.len().saturating_sub(1);
-                self.points.drain(..before);
-                Ending::new(Status::AtRest, None, 1.0)
             }
         }
     }

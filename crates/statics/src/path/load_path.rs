@@ -44,6 +44,11 @@ impl Ending {
         self.status
     }
 
+    /// See [`Answer::reached`].
+    pub fn reached(&self) -> f64 {
+        self.reached
+    }
+
     pub fn new(status: Status, limit: Option<f64>, reached: f64) -> Self {
         Self {
             status,

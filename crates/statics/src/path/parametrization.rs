@@ -11,6 +11,8 @@ pub(crate) enum Parametrization {
         /// Instant in s; infinite for the values after all histories.
         time: f64,
     },
+    /// All loads and motions at once, up to those at an instant in s, where a creep begins.
+    Sudden { time: f64 },
     /// All loads except pressures, which volume control adds afterward.
     Dead,
     /// The time of all histories.
@@ -32,7 +34,7 @@ impl Parametrization {
                 to,
                 ..
             } => Self::Time { from, to },
-            Control::Creep { from: None, .. } => Self::All { time: 0.0 },
+            Control::Creep { from: None, .. } => Self::Sudden { time: 0.0 },
             Control::Load | Control::ArcLength { .. } | Control::Volume { .. } => Self::All {
                 time: f64::INFINITY,
             },
@@ -42,7 +44,7 @@ impl Parametrization {
     /// Point at a fraction of the path.
     pub fn at(self, part: f64) -> LoadParameter {
         match self {
-            Self::All { time } => LoadParameter {
+            Self::All { time } | Self::Sudden { time } => LoadParameter {
                 time,
                 ..LoadParameter::all(part)
             },
@@ -53,6 +55,10 @@ impl Parametrization {
 
     /// Tests whether its points share a factor on all loads, so that a limit of the load can be searched.
     pub fn has_factor(self) -> bool {
-        matches!(self, Self::All { time } if time.is_infinite())
+        match self {
+            Self::All { time } => time.is_infinite(),
+            Self::Sudden { .. } => true,
+            Self::Dead | Self::Time { .. } => false,
+        }
     }
 }

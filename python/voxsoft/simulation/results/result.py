@@ -461,7 +461,8 @@ class Result(Shown):
         if self.snaps:
             where = f"{format_percent(self.snaps[0])} of the loads"
             if self.solver["way"] == "creep":
-                where = format_quantity(float(f"{self.snaps[0]:.6g}"), "time")
+                instant = float(f"{self.snaps[0]:.6g}")
+                where = format_quantity(instant, "time") if instant else "0 s"
             what = f"snapped to another one at {where}"
             hint = 'check by motion over time (method = "dynamics") where it ends'
             found = (Diagnostic("warning", "equilibrium", what, hint), *found)

@@ -238,7 +238,7 @@ def _at_instant(reading: LoadReading, instant: float) -> str:
 
 
 def _instant(seconds: float) -> str:
-    return format_quantity(float(f"{seconds:.6g}"), "time")
+    return format_quantity(float(f"{seconds:.6g}"), "time") if seconds else "0 s"
 
 
 def path_of(answer: _core.Answer) -> _core.LoadPath:
