@@ -295,7 +295,7 @@ def test_the_resolved_design_says_its_default_fill():
     assert beam.with_values("fill=binary").hash != beam.hash
 
 
-def test_outside_codes_and_seals_say_no():
+def test_outside_codes_say_no():
     from voxsoft.comparison.bricks import BrickModel
 
     ball = Setup.of(hollow_ball(1.1, 2.6, 1.0).replace(clamps=_held()))

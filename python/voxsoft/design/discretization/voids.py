@@ -53,7 +53,8 @@ class Film:
     def hides(self, cells: Ints, seen: Ints) -> Marks:
         """Mark the cells (k, w, 3) that it hides from other cells (k, 3), (k, w)."""
         across = (cells[:, None, self.axis] < self.level) != (seen[..., self.axis] < self.level)
-        return across & (self._covers(cells)[:, None] | self._covers(seen))
+        hidden: Marks = across & (self._covers(cells)[:, None] | self._covers(seen))
+        return hidden
 
     def beyond(self, cells: Ints) -> Floats:
         """Return the share of each small cube of some cells that is beyond the layer, (k, n³)."""
@@ -73,8 +74,8 @@ class Film:
 
     def _covers(self, cells: Ints) -> Marks:
         at = np.delete(cells, self.axis, axis=-1)
-        inside = ((at >= 0) & (at < self.covered.shape)).all(axis=-1)
-        at = np.where(inside[..., None], at, 0)
+        inside: Marks = np.all((at >= 0) & (at < self.covered.shape), axis=-1)
+        at = np.where(np.expand_dims(inside, -1), at, 0)
         found: Marks = self.covered[at[..., 0], at[..., 1]] & inside
         return found
 
@@ -109,7 +110,7 @@ class Zones:
     def of(
         cls,
         active: Marks,
-        cavities: Sequence[Ints],
+        cavities: Sequence[NDArray[np.integer]],
         near: Ints,
         voxel: Ints,
         films: Sequence[Film] = (),
@@ -191,8 +192,8 @@ def _slabs(labels: NDArray[np.int16], count: int, films: Sequence[Film]) -> Iter
     for film in films:
         if film.gap == 0.0:
             continue
-        count_along = labels.shape[film.axis]
-        sides = [each for each in (film.level, film.level - 1) if 0 <= each < count_along]
+        within = range(labels.shape[film.axis])
+        sides = [side for side in (film.level, film.level - 1) if side in within]
         for side in sides:
             cells = labels.take(side, axis=film.axis)
             voxels = numbers.take(side, axis=film.axis)

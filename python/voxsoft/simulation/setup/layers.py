@@ -238,7 +238,7 @@ def _voids(
     low, size = _frame(mesh)
     if cut is None:
         cut = CutVoxels.of(design, max(1, round(design.voxel_size / size)))
-        if not np.array_equal(cut.fractions, mesh.fractions):
+        if mesh.fractions is None or not np.array_equal(cut.fractions, mesh.fractions):
             raise DesignError(
                 next(f"layers[{i}].seal" for i, each in enumerate(layers) if len(each.openings)),
                 "cannot close a chamber here: the mesh has other cut voxels than its design",
@@ -305,7 +305,10 @@ def chambers(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> list[Chamber]:
 
 
 def _bonded(layer: Layer, mesh: Mesh, inside: Mask) -> Triangles:
-    """Find triangles with all corners inside: in the layer's plane, or else on the surface."""
+    """Find triangles with all corners inside: in the layer's plane, or else on the surface.
+
+    Both sides of a cut voxel may be within reach of a plane: the nearer one stands for it.
+    """
     axis = layer.axis
     if axis is None:
         return mesh.triangles[inside[mesh.triangles].all(axis=1)]
@@ -313,6 +316,8 @@ def _bonded(layer: Layer, mesh: Mesh, inside: Mask) -> Triangles:
     faces = faces[inside[faces].all(axis=1)]
     heights = mesh.vertices[faces, axis]
     flat = faces[np.ptp(heights, axis=1) < 1e-6 * np.ptp(mesh.vertices, axis=0).max()]
+    far = np.abs(mesh.vertices[flat[:, 0], axis] - _height(layer, axis))
+    flat = flat[far < far.min(initial=np.inf) + 1e-6 * np.ptp(mesh.vertices, axis=0).max()]
     _, first = np.unique(np.sort(flat, axis=1), axis=0, return_index=True)
     found: Triangles = flat[np.sort(first)]
     return found
@@ -365,9 +370,14 @@ def _spanning(layer: Layer, mesh: Mesh, bonded: Triangles, where: str) -> LayerT
     openings, under = (
         np.insert(np.argwhere(faces), axis, level, axis=1) for faces in (holes, footprint)
     )
-    height = getattr(layer.region, "xyz"[axis])[0]
-    gap = float(height - (low[axis] + level * size))
+    gap = _height(layer, axis) - float(low[axis] + level * size)
     return LayerTriangles(bonded, triangles.astype(np.int32), openings, axis, under, gap)
+
+
+def _height(layer: Layer, axis: int) -> float:
+    """The place of a layer's plane along the axis across it [m]."""
+    height: float = getattr(layer.region, "xyz"[axis])[0]
+    return height
 
 
 def _cells_of_spanning(layer: LayerTriangles, mesh: Mesh, step: int) -> Ints:
