@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -274,9 +274,16 @@ def _state(
 
 def _mixed(state: NDArray[np.uint8]) -> NDArray[np.bool_]:
     """Cells partly filled, or beside one in another state: the surface may touch them."""
-    from scipy.ndimage import maximum_filter, minimum_filter
-
-    lowest = minimum_filter(state, size=3, mode="constant", cval=0)
-    highest = maximum_filter(state, size=3, mode="constant", cval=0)
+    lowest, highest = state, state
+    for axis in range(3):
+        lowest, highest = around(lowest, axis, np.minimum), around(highest, axis, np.maximum)
     mixed: NDArray[np.bool_] = (lowest != highest) | (state == 1)
     return mixed
+
+
+def around(values: NDArray[Any], axis: int, extreme: np.ufunc) -> NDArray[Any]:
+    """Return the extreme of each cell and its two neighbors along an axis; beyond lie zeros."""
+    width = [(int(n == axis), int(n == axis)) for n in range(3)]
+    padded = np.moveaxis(np.pad(values, width), axis, 0)
+    found = extreme(extreme(padded[:-2], padded[1:-1]), padded[2:])
+    return np.moveaxis(found, 0, axis)
