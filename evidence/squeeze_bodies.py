@@ -62,11 +62,13 @@ def shape_of(seed: int, voxels: tuple[int, int] = VOXELS) -> tuple[Shape, float]
 
 
 def squeezed(seed: int, voxels: tuple[int, int] = VOXELS) -> vs.Design:
-    """The body of a seed between its plates."""
+    """The body of a seed between its plates, of full voxels."""
     shape, size = shape_of(seed, voxels)
     clamp = vs.Clamp(region=vs.Region(z=("-inf", 0)))
     part = vs.Part(shape=shape, material=RUBBER)
-    alone = vs.Design(name=f"squeeze-{seed}", voxel_size=size, parts=[part], clamps=[clamp])
+    alone = vs.Design(
+        name=f"squeeze-{seed}", voxel_size=size, fill="binary", parts=[part], clamps=[clamp]
+    )
     mesh = mesh_of(alone)
     skin = skin_of(alone, mesh)
     assert skin is not None  # of a mesh whose voxels are those of the shape

@@ -148,6 +148,7 @@ def test_the_two_sides_of_a_thin_wall_do_not_meet():
         vs.Design(
             name="sheet",
             voxel_size=0.001,
+            fill="binary",
             parts=[vs.Part(shape=sheet, material=vs.NeoHookean(young=1e5, poisson=0.45))],
             clamps=[vs.Clamp(region=vs.Region(x=(0, 0)))],
             loads=[vs.Gravity()],
