@@ -245,7 +245,7 @@ def fills(family: str) -> tuple[str, ...]:
 
 def filled(design: vs.Design, fill: str) -> vs.Design:
     """The design with cut cells filled one way."""
-    return design if fill == "binary" else design.replace(fill=fill)
+    return design.replace(fill=fill) if "fill" in vs.Design.model_fields else design
 
 
 def with_material(design: vs.Design, material: Material) -> vs.Design:

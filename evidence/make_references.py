@@ -36,10 +36,11 @@ ZERO = 1e-6
 
 
 def cylinder(wall: float, voxel: float) -> vs.Design:
-    """The cylinder of the smooth references, as voxels."""
+    """The cylinder of the smooth references, as full voxels."""
     edge = {"x": (0, 0), "y": (25 * mm, 25 * mm), "z": (35 * mm, 35 * mm)}
     return families.paper_cylinder(wall=wall).replace(
         voxel_size=voxel,
+        fill="binary",
         parts=(vs.Part(shape="body", material=SOFT),),
         probes={
             "center": vs.Probe(point=(0, 0, 35 * mm)),
