@@ -228,7 +228,7 @@ class Body:
         for index, (shape, built) in enumerate(zip(self.shapes, self._built, strict=True)):
             low, high = self.cells_of(index, phase)
             nx, ny, nz = (high - low).tolist()
-            _refuse_too_many((nx, ny, nz))
+            refuse_too_many((nx, ny, nz))
             origin = _triple((np.asarray(phase) + low * self.voxel_size).tolist())
             codes = _codes(shape, built, origin, self.voxel_size, (nx, ny, nz), self._tie)
             parts.append(SampledPart(built, low, codes))
@@ -271,8 +271,14 @@ def _empty(shape: Shape, voxel_size: float, names: Mapping[str, Shape] | None) -
     )
 
 
-def _refuse_too_many(cells: tuple[int, int, int]) -> None:
-    if short := shortage(math.prod(cells) * BYTES_PER_CELL):
+def refuse_too_many(cells: tuple[int, int, int], bytes_per_cell: float = BYTES_PER_CELL) -> None:
+    """Raise a ShapeError if a grid of so many cells does not fit in memory.
+
+    Examples
+    --------
+    >>> refuse_too_many((10, 10, 10))
+    """
+    if short := shortage(math.prod(cells) * bytes_per_cell):
         grid = f"a grid of {cells[0]:,} x {cells[1]:,} x {cells[2]:,} cells"
         raise ShapeError("voxel_size", f"{grid} {short}", "make the voxels larger")
 

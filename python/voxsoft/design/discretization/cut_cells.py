@@ -9,14 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
-from voxsoft._memory import memory_limit
 from voxsoft.design.discretization.grid import phase_of
 from voxsoft.design.model import Design
 from voxsoft.errors import ShapeError
 from voxsoft.shapes import Shape, inside
 from voxsoft.shapes.base import Triple
 from voxsoft.shapes.fractions import SUBCELLS, fill
-from voxsoft.shapes.sampling import Body
+from voxsoft.shapes.sampling import Body, refuse_too_many
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -108,10 +107,7 @@ def cut_cells(design: Design, size: float) -> CutCells:
     low = np.min([corner for corner, _ in bounds], axis=0) - 1
     high = np.max([corner for _, corner in bounds], axis=0) + 1
     counts = high - low
-    needed = float(np.prod(counts.astype(np.float64))) * (len(shapes) + 16)
-    if needed > memory_limit():
-        what = f"{size:g} m would need {needed:.3g} bytes of memory"
-        raise ShapeError("voxel_size", what, "use larger voxels")
+    _refuse_too_many(counts, len(shapes))
     near = np.zeros(counts, dtype=bool)
     filled = np.zeros(counts)
     part = np.zeros(counts, dtype=np.uint8)
@@ -152,8 +148,7 @@ def cuts_cells(design: Design, size: float) -> bool:
     bounds = [body.cells_of(index, _triple(phase)) for index in range(len(shapes))]
     low = np.min([corner for corner, _ in bounds], axis=0) - 1
     counts = np.max([corner for _, corner in bounds], axis=0) + 1 - low
-    if float(np.prod(counts.astype(np.float64))) * (len(shapes) + 16) > memory_limit():
-        return True  # too large a grid is reported where it is measured
+    _refuse_too_many(counts, len(shapes))
     near = np.zeros(counts, dtype=bool)
     for shape in shapes:
         state = _state(shape, design, size, phase + low * size, counts)
@@ -246,6 +241,12 @@ def _triple(values: Floats) -> Triple:
 
 def _shape(design: Design, shape: str | Shape) -> Shape:
     return design.shapes[shape] if isinstance(shape, str) else shape
+
+
+def _refuse_too_many(counts: Ints, parts: int) -> None:
+    """Refuse a grid whose states and filled parts do not fit in memory."""
+    nx, ny, nz = counts.tolist()
+    refuse_too_many((nx, ny, nz), parts + 16)
 
 
 def _whole(filled: Floats) -> Floats:
