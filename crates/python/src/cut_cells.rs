@@ -15,6 +15,9 @@ type Rows<'py> = Bound<'py, PyArray2<f64>>;
 /// Filled fraction of each small cube, normals there, and the share of each shape in each cell.
 type PyFilled<'py> = (Rows<'py>, Bound<'py, PyArray3<f64>>, Rows<'py>);
 
+/// Numbers of masks, and small cubes of each.
+type PyVoid<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>);
+
 fn owned(shapes: &[PyRef<'_, PyShape>]) -> Vec<Shape> {
     shapes.iter().map(|shape| shape.0.clone()).collect()
 }
@@ -113,7 +116,7 @@ pub fn closed_voids<'py>(
     py: Python<'py>,
     states: PyReadonlyArray3<'py, i32>,
     masks: PyReadonlyArray1<'py, u64>,
-) -> PyResult<Vec<(Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>)>> {
+) -> PyResult<Vec<PyVoid<'py>>> {
     let states = states.as_array();
     let shape = [states.shape()[0], states.shape()[1], states.shape()[2]];
     let cells: Vec<CellState> = states
