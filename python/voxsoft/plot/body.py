@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -23,6 +23,7 @@ from voxsoft.plot.style import COLOR_MAP, SERIES, empty_figure
 from voxsoft.plot.tendons import draw_tendons
 from voxsoft.records import closest
 from voxsoft.simulation import Result
+from voxsoft.simulation.setup.places import on_the_surface
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -121,8 +122,7 @@ def plot_body(
         if not isinstance(body, Result):
             raise MeshError("frame", "is for a result, and a mesh came", "leave it out")
         body = at_frame(body, frame)
-    mesh = body.mesh if isinstance(body, Result) else body
-    positions = body.positions if isinstance(body, Result) else mesh.vertices
+    mesh, positions = _drawn(body)
     has_ghost = ghost and isinstance(body, Result) and section is None
     shown = [positions, mesh.vertices] if has_ghost else [positions]
     if objects is None:
@@ -175,8 +175,7 @@ def body_image(
     >>> max(body_image(vs.mesh_of(families.sphere()), pixels=64).shape) <= 80
     True
     """
-    mesh = body.mesh if isinstance(body, Result) else body
-    positions = body.positions if isinstance(body, Result) else mesh.vertices
+    mesh, positions = _drawn(body)
     around = _around(body)
     camera = Camera.around(around.near(positions), view, pixels * _FINER)
     surface = boundary_of(mesh, np.ones(len(mesh.tets), dtype=bool))
@@ -185,6 +184,17 @@ def body_image(
     picture = _paint(seen, positions, surface, colors, camera, None)
     picture = around.drawn_over(picture, seen, camera, positions)
     return np.rint(255.0 * np.clip(_averaged(picture), 0.0, 1.0)).astype(np.uint8)
+
+
+def _drawn(body: Result | Mesh) -> tuple[Mesh, Floats]:
+    """Return the mesh, and positions now, with cut voxels up to the surface that cuts them."""
+    if not isinstance(body, Result):
+        return body, body.vertices
+    if body.mesh.fractions is None:
+        return body.mesh, body.positions
+    vertices = on_the_surface(body.design, body.mesh)
+    # Only for the picture: its voxels are no longer cubes.
+    return replace(body.mesh, vertices=vertices), vertices + body.displacements
 
 
 @dataclass(frozen=True)

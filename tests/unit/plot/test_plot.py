@@ -21,6 +21,7 @@ from voxsoft.plot import (
     plot_scatter,
     plot_shape,
 )
+from voxsoft.plot.body import body_image
 from voxsoft.plot.quantities import scale_for
 from voxsoft.study import StudyResult, Trial
 
@@ -133,6 +134,23 @@ def test_a_frame_is_drawn_as_a_run_that_ends_there():
         plot_body(long, frame=7)
     with pytest.raises(MeshError, match="frames=True"):
         plot_body(short, frame=0)
+
+
+def test_cut_voxels_are_drawn_as_the_shape_that_cuts_them():
+    column = vs.Cylinder(radius=0.0095, height=0.006)
+    design = vs.Design(
+        name="column",
+        voxel_size=0.003,
+        parts=[vs.Part(shape=column, material="ecoflex-00-30")],
+        clamps=[vs.Clamp(region=vs.Region(z=(0, 0)))],
+        loads=[vs.Gravity()],
+    )
+    picture = body_image(vs.simulate(design), pixels=200, view=(-90.0, 90.0))
+    covered = (picture < 250).any(axis=2)
+    rows, columns = covered.any(axis=1), covered.any(axis=0)
+    share = covered.sum() / (rows.sum() * columns.sum())
+    # Polygons with a corner for each vertex around: 24 of them miss 1 % of a disc, voxels 20 %.
+    assert share == pytest.approx(np.pi / 4, rel=0.03)
 
 
 def test_parts_have_colors_of_their_own():

@@ -111,22 +111,54 @@ def on_the_body(design: Design, mesh: Mesh) -> NDArray[np.float64]:
     if mesh.bodies:
         each = ((body, design.alone(body.name)) for body in mesh.bodies)
         return np.concatenate([body.placed(on_the_body(own, body.mesh)) for body, own in each])
+    return _moved_to_surface(design, mesh, inner=False)
+
+
+def on_the_surface(design: Design, mesh: Mesh) -> NDArray[np.float64]:
+    """Compute where the surface of voxels is drawn, (n, 3): on that of the shapes that cut them.
+
+    Vertices of the surface on either side of that of the shapes, within a voxel's diagonal, are at
+    its nearest point; all others, and those of a mesh without cut voxels, are where they are.
+    Parameters are those of :func:`on_the_body`.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> from voxsoft.design.discretization.discretize import mesh_of
+    >>> from voxsoft.shapes import Sphere
+    >>> ball = families.beam().replace(shapes={"body": Sphere(radius=0.02)})
+    >>> mesh = mesh_of(ball)
+    >>> radii = np.linalg.norm(on_the_surface(ball, mesh)[np.unique(mesh.triangles)], axis=1)
+    >>> set(radii.round(6).tolist())
+    {0.02}
+    """
+    if mesh.fractions is None:
+        return mesh.vertices
+    if mesh.bodies:
+        each = ((body, design.alone(body.name)) for body in mesh.bodies)
+        return np.concatenate([body.placed(on_the_surface(own, body.mesh)) for body, own in each])
+    return _moved_to_surface(design, mesh, inner=True)
+
+
+def _moved_to_surface(design: Design, mesh: Mesh, *, inner: bool) -> NDArray[np.float64]:
+    """Move the vertices of the surface that are outside the shapes, or inside too, to theirs."""
     shapes = built_parts(design)
     size = voxel_size(mesh)
     steps = 0.01 * size * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
     points = mesh.vertices.copy()
-    outside = np.unique(mesh.triangles)
+    moved = np.unique(mesh.triangles)
     # Two steps of Newton's method along the gradient: exact at once for distances.
     for _ in range(2):
-        around = (points[outside][:, None] + steps).reshape(-1, 3)
+        around = (points[moved][:, None] + steps).reshape(-1, 3)
         levels = np.min([shape.evaluate(around) for shape in shapes], axis=0).reshape(-1, 7)
         slope = (levels[:, 1:4] - levels[:, 4:]) / (0.02 * size)
         square = np.square(slope).sum(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
-            step = np.where(levels[:, 0] > 0.0, levels[:, 0] / square, 0.0)[:, None] * slope
+            counts = (levels[:, 0] > 0.0) | inner
+            step = np.where(counts, levels[:, 0] / square, 0.0)[:, None] * slope
         far = np.linalg.norm(step, axis=1) > np.sqrt(3.0) * size
         step[far | ~np.isfinite(step).all(axis=1)] = 0.0
-        points[outside] -= step
+        points[moved] -= step
     return points
 
 
