@@ -64,7 +64,7 @@ const KEPT = [
 ] as const;
 
 export const useView = create<View>(() => ({
-  appearance: "smooth",
+  appearance: "voxels",
   coloring: "field",
   field: 0,
   colormap: "viridis",

@@ -45,7 +45,7 @@ export function ViewBar(props: { view: Viewport }) {
       <Select
         bare
         label="Show as"
-        value={view.appearance === "smooth" && !smooth ? "voxels" : view.appearance}
+        value={view.appearance}
         options={appearances}
         onChange={(value) => setView({ appearance: value as Appearance })}
       />
