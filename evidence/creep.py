@@ -23,6 +23,8 @@ linear solid where strains are small. Its error is of first order in the step: t
 
 `--day` follows the template ``pneunet`` with two branches, 10 and 1000 s, under its pressure for a
 day, and reports seconds.
+
+Long because each case stands beside its closed form and its model for FElupe.
 """
 
 from __future__ import annotations

@@ -284,7 +284,13 @@ def _mixed(state: NDArray[np.uint8]) -> NDArray[np.bool_]:
 
 def around(values: NDArray[Any], axis: int, extreme: np.ufunc) -> NDArray[Any]:
     """Return the extreme of each cell and its two neighbors along an axis; beyond lie zeros."""
+    low, high = beside(values, axis)
+    found: NDArray[Any] = extreme(extreme(low, values), high)
+    return found
+
+
+def beside(cells: NDArray[Any], axis: int) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return the neighbors of each cell on the two sides of an axis, zero beyond the grid."""
     width = [(int(n == axis), int(n == axis)) for n in range(3)]
-    padded = np.moveaxis(np.pad(values, width), axis, 0)
-    found = extreme(extreme(padded[:-2], padded[1:-1]), padded[2:])
-    return np.moveaxis(found, 0, axis)
+    padded = np.moveaxis(np.pad(cells, width), axis, 0)
+    return np.moveaxis(padded[:-2], 0, axis), np.moveaxis(padded[2:], 0, axis)

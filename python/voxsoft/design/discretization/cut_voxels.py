@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from voxsoft.design.discretization.cut_cells import (
     CutCells,
     Floats,
     Ints,
+    beside,
     cut_cells,
     measures_of,
 )
@@ -206,20 +207,13 @@ def _without_braces(filled: Floats) -> NDArray[np.bool_]:
     for _ in range(2):
         alone, void = np.zeros(filled.shape, dtype=int), np.ones(filled.shape)
         for axis in range(3):
-            low, high = _beside(active, axis)
+            low, high = beside(active, axis)
             one = low != high
-            part_low, part_high = _beside(filled, axis)
+            part_low, part_high = beside(filled, axis)
             alone += one
             void *= np.where(one, 1.0 - np.where(low, part_high, part_low), 1.0)
         active &= ~((alone >= 2) & (filled <= 1.0 - void + _ALIKE))
     return active
-
-
-def _beside(cells: NDArray[Any], axis: int) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the neighbors of each cell on the two sides of an axis, zero beyond the grid."""
-    width = [(int(n == axis), int(n == axis)) for n in range(3)]
-    padded = np.moveaxis(np.pad(cells, width), axis, 0)
-    return np.moveaxis(padded[:-2], 0, axis), np.moveaxis(padded[2:], 0, axis)
 
 
 def _topology(cells: CutCells, active: NDArray[np.bool_], voxels: Voxels) -> _Topology:

@@ -106,11 +106,6 @@ def on_the_body(design: Design, mesh: Mesh) -> NDArray[np.float64]:
     >>> print(mesh.vertices[:, 0].max().round(4), on_the_body(short, mesh)[:, 0].max().round(4))
     0.1 0.098
     """
-    if mesh.fractions is None:
-        return mesh.vertices
-    if mesh.bodies:
-        each = ((body, design.alone(body.name)) for body in mesh.bodies)
-        return np.concatenate([body.placed(on_the_body(own, body.mesh)) for body, own in each])
     return _moved_to_surface(design, mesh, inner=False)
 
 
@@ -132,16 +127,16 @@ def on_the_surface(design: Design, mesh: Mesh) -> NDArray[np.float64]:
     >>> set(radii.round(6).tolist())
     {0.02}
     """
-    if mesh.fractions is None:
-        return mesh.vertices
-    if mesh.bodies:
-        each = ((body, design.alone(body.name)) for body in mesh.bodies)
-        return np.concatenate([body.placed(on_the_surface(own, body.mesh)) for body, own in each])
     return _moved_to_surface(design, mesh, inner=True)
 
 
 def _moved_to_surface(design: Design, mesh: Mesh, *, inner: bool) -> NDArray[np.float64]:
     """Move the vertices of the surface that are outside the shapes, or inside too, to theirs."""
+    if mesh.fractions is None:
+        return mesh.vertices
+    if mesh.bodies:
+        own = [_moved_to_surface(design.alone(b.name), b.mesh, inner=inner) for b in mesh.bodies]
+        return np.concatenate([b.placed(at) for b, at in zip(mesh.bodies, own, strict=True)])
     shapes = built_parts(design)
     size = voxel_size(mesh)
     steps = 0.01 * size * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
