@@ -1,11 +1,12 @@
-"""Width of error bars beside true errors, on 72 bodies that were fixed before one was solved.
+"""Width of error bars beside true errors, on bodies that were fixed before one was solved.
 
-``python evidence/bars_judged.py --results FILE [--kinds KIND ...] [--again] [--table]``. Bodies are
-those of `evidence/bar_bodies.py`. Each is run with its error bar as ``voxsoft run`` does, and again
-on smaller voxels, the smallest below those of the bar; the truth is the extrapolation of three
-sizes. A bar holds where the truth, give or take a quarter of the extrapolated part, is within it.
-FILE holds a line for each body and question that is done, and a run goes on from there; `--again`
-asks for the bars anew and keeps the truths, `--table` prints alone.
+``python evidence/bars_judged.py --results FILE [--set second] [--kinds KIND ...] [--again]
+[--table]``. Bodies are those of `evidence/bar_bodies.py`. Each is run with its error bar as
+``voxsoft run`` does, and again on smaller voxels, the smallest below those of the bar; the truth is
+the extrapolation of three sizes. A bar holds where the truth, give or take a quarter of the
+extrapolated part, is within it. FILE holds a line for each body and question that is done, and a
+run goes on from there; `--again` asks for the bars anew and keeps the truths, `--table` prints
+alone.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from voxsoft.simulation import Setup
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from bar_bodies import EACH, KINDS, ROUND, TOUCHING, Case, case
+from bar_bodies import EACH, KINDS, ROUND, SETS, TOUCHING, Case, case
 
 #: Voxels that the finest size of a truth may have, in the part that symmetry leaves.
 MOST: Final = 45_000
@@ -147,11 +148,11 @@ def is_finer(truth: Row, bar: Row | None, each: Case) -> bool:
     return bool(truth["sizes"][-1] * voxel_size < 0.99 * bar["sizes"][-1])
 
 
-def ask(file: Path, kinds: Iterable[str], *, again: bool) -> None:
+def ask(file: Path, drawn: str, kinds: Iterable[str], *, again: bool) -> None:
     """Answer what is not answered yet, a line for each question."""
     for kind in kinds:
         for number in range(EACH):
-            each = case(kind, number)
+            each = case(kind, number, drawn)
             for question, answer in QUESTIONS.items():
                 known = answered(file).get((kind, number, question))
                 bar = answered(file).get((kind, number, "bar"))
@@ -208,12 +209,14 @@ def judged(bar: Row | None, truth: Row | None, each: Case) -> Judged | str:
     return Judged(held, off, width, bar["regular"], finer)
 
 
-def show(file: Path) -> None:
+def show(file: Path, drawn: str) -> None:
     """Print how many bars hold, and their width, by kind."""
     known = answered(file)
     found = {
         (kind, number): judged(
-            known.get((kind, number, "bar")), known.get((kind, number, "truth")), case(kind, number)
+            known.get((kind, number, "bar")),
+            known.get((kind, number, "truth")),
+            case(kind, number, drawn),
         )
         for kind in KINDS
         for number in range(EACH)
@@ -261,13 +264,14 @@ def main() -> None:
     """Solve the bodies that are left, and print the table."""
     parser = argparse.ArgumentParser(description="Error bars beside true errors on 72 bodies")
     parser.add_argument("--results", type=Path, required=True, help="file of lines to go on with")
+    parser.add_argument("--set", choices=list(SETS), default="first", help="set of 72 bodies")
     parser.add_argument("--kinds", nargs="*", choices=list(KINDS), help="only these kinds")
     parser.add_argument("--again", action="store_true", help="ask for the bars anew")
     parser.add_argument("--table", action="store_true", help="print the table alone")
     given = parser.parse_args()
     if not given.table:
-        ask(given.results, given.kinds or KINDS, again=given.again)
-    show(given.results)
+        ask(given.results, given.set, given.kinds or KINDS, again=given.again)
+    show(given.results, given.set)
 
 
 if __name__ == "__main__":
