@@ -64,6 +64,26 @@ def test_a_new_topology_goes_first_and_drops_waiting_frames():
     assert pumped(fill).sent == [b"topology", b"new"]
 
 
+def test_shapes_and_displays_of_a_body_wait_beside_each_other():
+    def message(kind, flags, body, name):
+        return bytes(4) + bytes([kind, flags, 0, 0]) + body.to_bytes(4, "little") + name
+
+    surface, tets, anew = (message(1, 1, 7, b"a"), message(1, 2, 7, b"b"), message(1, 1, 7, b"c"))
+    smooth, other = message(3, 0, 7, b"d"), message(1, 1, 8, b"e")
+
+    def sent(*messages):
+        def fill(tab):
+            for each in messages:
+                (tab.put_smooth if each is smooth else tab.put_topology)(each)
+            yield None
+
+        return pumped(fill).sent
+
+    assert sent(surface, smooth, tets) == [surface, smooth, tets]
+    assert sent(surface, tets, anew) == [tets, anew]
+    assert sent(surface, smooth, other) == [other]
+
+
 def test_statistics_and_rows_are_merged_while_they_wait():
     def fill(tab):
         for time in (0.0, 1.0):

@@ -17,6 +17,8 @@ from voxsoft.studio.protocol.wire import CREDITS, CloseCode
 LONGEST_QUEUE: Final = 5_000
 #: Rows of a plot that wait in one message.
 MOST_ROWS: Final = 20_000
+#: Places in a binary message of its kind with its flags, and of the number of its body.
+_KIND, _BODY = slice(4, 6), slice(8, 12)
 #: Events that tell all of something: a newer one makes those that wait useless.
 _STATES: Final = (events.Document, events.Ghosts, events.Body, events.Runs, events.Stat)
 
@@ -85,9 +87,9 @@ class Tab:
         self._woken()
 
     def put_topology(self, packed: bytes) -> None:
-        """Queue a topology; pictures of the one before are of no use any more."""
+        """Queue a topology; frames and shapes of the one before are of no use any more."""
         self._frame = None
-        self._forget(lambda waiting: isinstance(waiting, bytes))
+        self._forget(lambda waiting: isinstance(waiting, bytes) and not _beside(waiting, packed))
         self._queue.append(packed)
         self._woken()
 
@@ -156,3 +158,8 @@ class Tab:
                 frame, self._frame = self._frame, None
                 self.credits -= 1
                 await self.socket.send_bytes(frame)
+
+
+def _beside(waiting: bytes, topology: bytes) -> bool:
+    """True if a message is of the body of a topology, and of another kind or display."""
+    return waiting[_BODY] == topology[_BODY] and waiting[_KIND] != topology[_KIND]
