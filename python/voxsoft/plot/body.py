@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from voxsoft.design import Design
+from voxsoft.design.discretization.discretize import mesh_of
 from voxsoft.errors import MeshError
 from voxsoft.mesh import Mesh
 from voxsoft.plot import shading
@@ -52,7 +54,7 @@ _PALEST = 0.68
 
 
 def plot_body(
-    body: Result | Mesh,
+    body: Result | Design | Mesh,
     field: str | ArrayLike | None = None,
     *,
     label: str = "",
@@ -69,13 +71,14 @@ def plot_body(
     Parameters
     ----------
     body
-        Result, which is drawn deformed, or mesh.
+        Result, which is drawn deformed; design, unloaded; or mesh. Of the first two cut voxels are
+        drawn as the shape that cuts them, which a mesh does not know: its voxels are drawn whole.
     field
         Quantity shown in color: ``"displacement"`` (its magnitude; the default for a result),
         ``"von_mises"``, ``"max_stretch"`` or ``"energy_density"`` of a result, with contact also
-        ``"contact_pressure"``, ``"part"``, ``"plain"`` (the default for a mesh), or one number for
-        each vertex, (n,). Where a few values lie far beyond all others, colors end where 99 % of
-        the area do, and the picture marks the farthest.
+        ``"contact_pressure"``, ``"part"``, ``"plain"`` (the default without a result), or one
+        number for each vertex, (n,). Where a few values lie far beyond all others, colors end where
+        99 % of the area do, and the picture marks the farthest.
     label
         Label of the color bar for such numbers.
     section
@@ -89,9 +92,9 @@ def plot_body(
     lines
         True to draw the edges of triangles; default: where they are long enough to be seen.
     objects
-        True to draw the rigid objects and the floor of a result, gray; default: unless the color
-        shows their contact pressure. Those of a mesh are given, ``Surroundings.of(design, {})`` of
-        ``voxsoft.plot.objects``: a mesh does not know them.
+        True to draw the rigid objects and the floor of a result or design, gray; default: unless
+        the color shows their contact pressure. Those of a mesh are given,
+        ``Surroundings.of(design, {})`` of ``voxsoft.plot.objects``: a mesh does not know them.
     frame
         Index of the recorded frame of a result to draw, in place of its end: a run with
         ``frames=True`` has one for each of ``result.recording.times``. Tendons are drawn at the end
@@ -120,7 +123,7 @@ def plot_body(
     """
     if frame is not None:
         if not isinstance(body, Result):
-            raise MeshError("frame", "is for a result, and a mesh came", "leave it out")
+            raise MeshError("frame", "is for a result alone", "leave it out")
         body = at_frame(body, frame)
     mesh, positions = _drawn(body)
     has_ghost = ghost and isinstance(body, Result) and section is None
@@ -143,21 +146,22 @@ def plot_body(
         before = rasterize(points, surface.triangles, camera.width, camera.height)
         picture = _with_ghost(picture, seen, before, mesh, surface, camera)
     picture = around.drawn_over(picture, seen, camera, positions, plane, before)
-    name = body.design.name if isinstance(body, Result) else ""
+    design = _design_of(body)
+    name = "" if design is None else design.name
     figure = _figure(picture, camera, colors, name if title is None else title)
     draw_tendons(figure.axes[0], tendons, camera, _FINER)
     return figure
 
 
 def body_image(
-    body: Result | Mesh, *, pixels: int = 320, view: tuple[float, float] = (-60.0, 25.0)
+    body: Result | Design | Mesh, *, pixels: int = 320, view: tuple[float, float] = (-60.0, 25.0)
 ) -> NDArray[np.uint8]:
     """Draw a small picture of a body without words, as for a list.
 
     Parameters
     ----------
     body
-        Result, which is drawn deformed and colored by its displacement, or mesh.
+        Result, which is drawn deformed and colored by its displacement; design, or mesh.
     pixels
         Size of the longer side in pixels.
     view
@@ -170,9 +174,8 @@ def body_image(
 
     Examples
     --------
-    >>> import voxsoft as vs
     >>> from voxsoft.design import families
-    >>> max(body_image(vs.mesh_of(families.sphere()), pixels=64).shape) <= 80
+    >>> max(body_image(families.sphere(), pixels=64).shape) <= 80
     True
     """
     mesh, positions = _drawn(body)
@@ -186,15 +189,27 @@ def body_image(
     return np.rint(255.0 * np.clip(_averaged(picture), 0.0, 1.0)).astype(np.uint8)
 
 
-def _drawn(body: Result | Mesh) -> tuple[Mesh, Floats]:
+def _design_of(body: Result | Design | Mesh) -> Design | None:
+    """Return the design of a body; None for a mesh, which does not know it."""
+    if isinstance(body, Result):
+        return body.design
+    return body if isinstance(body, Design) else None
+
+
+def _drawn(body: Result | Design | Mesh) -> tuple[Mesh, Floats]:
     """Return the mesh, and positions now, with cut voxels up to the surface that cuts them."""
-    if not isinstance(body, Result):
+    if isinstance(body, Mesh):
         return body, body.vertices
-    if body.mesh.fractions is None:
-        return body.mesh, body.positions
-    vertices = on_the_surface(body.design, body.mesh)
+    if isinstance(body, Result):
+        design, mesh, moved = body.design, body.mesh, body.displacements
+    else:
+        design, mesh = body, mesh_of(body)
+        moved = np.zeros_like(mesh.vertices)
+    if mesh.fractions is None:
+        return mesh, mesh.vertices + moved
+    vertices = on_the_surface(design, mesh)
     # Only for the picture: its voxels are no longer cubes.
-    return replace(body.mesh, vertices=vertices), vertices + body.displacements
+    return replace(mesh, vertices=vertices), vertices + moved
 
 
 @dataclass(frozen=True)
@@ -210,11 +225,12 @@ class _Colors:
     clipped: str = ""  # extremes outside the color range
 
 
-def _around(body: Result | Mesh, *, shown: bool = True) -> Surroundings:
+def _around(body: Result | Design | Mesh, *, shown: bool = True) -> Surroundings:
     """Return the rigid objects and floor around a body that are shown."""
-    if not shown or not isinstance(body, Result):
+    design = _design_of(body)
+    if not shown or design is None:
         return Surroundings()
-    return Surroundings.of(body.design, body.objects)
+    return Surroundings.of(design, body.objects if isinstance(body, Result) else {})
 
 
 def _is(field: str | ArrayLike | None, name: str) -> bool:
@@ -249,7 +265,11 @@ def _kept(mesh: Mesh, plane: tuple[Axis, float, int] | None) -> NDArray[np.bool_
 
 
 def _colors(
-    body: Result | Mesh, mesh: Mesh, surface: Boundary, field: str | ArrayLike | None, label: str
+    body: Result | Design | Mesh,
+    mesh: Mesh,
+    surface: Boundary,
+    field: str | ArrayLike | None,
+    label: str,
 ) -> _Colors:
     from matplotlib.colors import Normalize, to_rgb
 
@@ -287,7 +307,7 @@ def _clipped(shown: ColorRange, values: Floats, mesh: Mesh) -> str:
 
 
 def _values(
-    body: Result | Mesh, mesh: Mesh, field: str | ArrayLike, label: str
+    body: Result | Design | Mesh, mesh: Mesh, field: str | ArrayLike, label: str
 ) -> tuple[Floats, str]:
     if isinstance(field, str):
         of_result = _FIELDS if isinstance(body, Result) else {}

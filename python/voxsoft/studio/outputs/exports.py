@@ -22,6 +22,7 @@ from voxsoft.formats.registry import WRITTEN, Format
 from voxsoft.simulation import Result, named_regions
 from voxsoft.simulation.results.result import Status
 from voxsoft.simulation.runs.state import result_at
+from voxsoft.simulation.setup.places import on_the_surface
 from voxsoft.studio.bodies.body import StudioBody
 from voxsoft.studio.bodies.objects import poses_in, surroundings_of
 from voxsoft.studio.outputs.html import export_page, page_of_body
@@ -234,7 +235,7 @@ def _draw(shown: Shown, target: Path, scale: object) -> None:
         known = shown.moment is not None or shown.time == 0.0
         around = surroundings_of(design, poses_in(shown.moment, design))
         figure = plot_body(
-            replace(mesh, vertices=shown.positions),
+            replace(mesh, vertices=on_the_surface(design, mesh) + shown.positions - mesh.vertices),
             1e3 * moved,
             label="displacement (mm)",
             objects=around if known else Surroundings(floor=around.floor),

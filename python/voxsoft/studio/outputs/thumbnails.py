@@ -14,6 +14,7 @@ from voxsoft.errors import FileError, MeshError, SimulationError, VoxSoftError
 from voxsoft.files.figures import save_cutout, scale_of
 from voxsoft.files.run_folder import make_folder
 from voxsoft.plot.cutout import cutout
+from voxsoft.simulation.setup.places import on_the_surface
 from voxsoft.studio.bodies.body import PART_COLORS, filled_within_memory
 from voxsoft.studio.bodies.objects import surroundings_of
 from voxsoft.study.equilibria import Equilibria
@@ -21,7 +22,7 @@ from voxsoft.study.equilibria import Equilibria
 #: Name of a folder of pictures, in that of a study and in the studio's own.
 FOLDER: Final = "thumbnails"
 #: Edition of the pictures; those of another one are drawn anew.
-_EDITION: Final = "with-objects"
+_EDITION: Final = "cut"
 #: Number of pictures in the studio's own folder; those of a study are as many as its designs.
 MOST: Final = 500
 
@@ -115,7 +116,9 @@ class Thumbnails:
         equilibria = (each.find(design.hash, mesh) for each in holders)
         found = next((each for each in equilibria if each is not None), None)
         around = surroundings_of(design, {} if found is None else found.objects)
-        positions = None if found is None else found.positions
+        positions = on_the_surface(design, mesh)
+        if found is not None:
+            positions = positions + found.positions - mesh.vertices
         picture = cutout(mesh, positions, colors=PART_COLORS, around=around)
         file = self._file(name, at_rest=found is not None)
         make_folder(self._folder)
