@@ -11,6 +11,7 @@ declare global {
       readonly seq: number;
       /** Milliseconds from a command to the first picture that knows of it. */
       readonly latency: number | null;
+      /** Number of drawn triangles of the body: of its voxels, tetrahedra or smooth shape. */
       readonly triangles: number;
       readonly topology: number;
       readonly fps: number;

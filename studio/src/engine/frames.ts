@@ -86,10 +86,11 @@ export function decodeAll(buffer: ArrayBuffer): (Topology | Frame | Smooth)[] {
 
 function lengthOf(message: Topology | Frame | Smooth): number {
   if (message.kind === "frame") return HEADER + message.packed.byteLength;
-  if (message.kind === "smooth")
-    return HEADER + message.vertices.byteLength + message.triangles.byteLength;
-  const { rest, triangles, edges, voxels, owners } = message;
-  const parts = [rest, triangles, edges, voxels, owners];
+  const { triangles, owners } = message;
+  const parts =
+    message.kind === "smooth"
+      ? [message.vertices, triangles, owners]
+      : [message.rest, triangles, message.edges, message.voxels, owners];
   const bytes = parts.reduce((sum, part) => sum + part.byteLength, 0);
   return HEADER + bytes + (-bytes & 3);
 }

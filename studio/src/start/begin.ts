@@ -3,7 +3,7 @@ import { openDocument } from "../shell/actions";
 import { openSheet, type Pending, usePage } from "../store/page";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
-import { setView } from "../store/view";
+import { setView, useView } from "../store/view";
 
 /** Open a design from the start screen, which then goes away. */
 export function openFromStart(what: Pending["what"], name: string): void {
@@ -13,14 +13,14 @@ export function openFromStart(what: Pending["what"], name: string): void {
 }
 
 /**
- * Open a finished robot: smooth, and moving to where its loads take it. Where edited work stands in
- * the way that is asked about first, and nothing moves by itself.
+ * Open a finished robot: smooth unless a hand chose otherwise, and moving to where its loads take
+ * it. Where edited work stands in the way that is asked about first, and nothing moves by itself.
  */
 export function openRobot(what: "robot" | "start", name: string): void {
   const rev = useStudio.getState().document?.rev ?? 0;
   openFromStart(what, name);
   if (usePage.getState().sheet === "discard") return;
-  setView({ appearance: "smooth" });
+  if (useView.getState().appearance === "auto") setView({ appearance: "smooth" });
   const stop = useStudio.subscribe(({ body, document, stat }) => {
     if (!document || document.rev <= rev || body?.rev !== document.rev || !stat) return;
     if (stat.topology !== body.topology) return; // of the body before

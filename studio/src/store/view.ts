@@ -4,16 +4,16 @@ import { create } from "zustand";
 import type { ColormapName } from "../view/body/colormaps";
 import type { Clipped } from "../view/body/colorRange";
 import type { Scheme } from "../view/hands/schemes";
+import type { ChosenAppearance } from "./appearance";
 import { keepAs, kept } from "./page";
 
-export type Appearance = "voxels" | "smooth" | "tets" | "wireframe";
 export type Coloring = "field" | "parts";
 export type RangeMode = "auto" | "locked" | "symmetric";
 /** Across an axis, or in the direction that `sectionNormal` has. */
 export type SectionAxis = "off" | "x" | "y" | "z" | "free";
 
 export interface View {
-  appearance: Appearance;
+  appearance: ChosenAppearance;
   coloring: Coloring;
   field: number;
   colormap: ColormapName;
@@ -64,7 +64,7 @@ const KEPT = [
 ] as const;
 
 export const useView = create<View>(() => ({
-  appearance: "voxels",
+  appearance: "auto",
   coloring: "field",
   field: 0,
   colormap: "viridis",

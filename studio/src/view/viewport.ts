@@ -18,6 +18,7 @@ import { shapeGrips } from "../panes/design/shapes/shapeGrips";
 import type { ShapeGrip } from "../panes/design/shapes/shapeReader";
 import { typedChanges } from "../panes/design/shapes/typedNumber";
 import type { DocumentEvent, OverlapPlace, StatEvent } from "../protocol";
+import { appearanceOf } from "../store/appearance";
 import { chooseFace, useFace } from "../store/face";
 import { usePage } from "../store/page";
 import { currentEngine, onReady, present, send, sinceSent } from "../store/session";
@@ -309,6 +310,8 @@ export class Viewport {
   }
 
   smoothSurface(smooth: Smooth): void {
+    // A viewport that is made later is given the last shape, which may be that of a body before.
+    if (smooth.topology !== (this.surface ?? this.tets)?.topology.id) return;
     this.smooth?.dispose();
     this.smooth = new SmoothMesh(smooth, { plane: this.section.plane, section: this.section.on });
     this.scene.add(this.smooth.group);
@@ -623,15 +626,21 @@ export class Viewport {
     return wanted && this.tets?.frame ? this.tets : this.surface;
   }
 
+  /** The smooth shape, where it is drawn in place of the voxels. */
+  private get drawnSmooth(): SmoothMesh | null {
+    const appearance = appearanceOf(useView.getState(), useStudio.getState().body);
+    return appearance === "smooth" ? this.smooth : null;
+  }
+
   private style(view: View, mesh: BodyMesh | null): void {
     const parts = partColors(useStudio.getState().body, view.chosen);
     const colors = { parts, ink: this.ink };
-    const smooth = view.appearance === "smooth" && this.smooth !== null;
+    const smooth = this.drawnSmooth !== null;
     const [low, high] = this.range(view);
     for (const one of [this.surface, this.tets]) {
       one?.setRange(low, high);
       one?.setPixels(this.renderer.domElement.height / 2);
-      one?.style(view, colors, one === mesh && !smooth);
+      one?.style(view, colors, one === mesh, smooth);
     }
     if (this.surface) this.smooth?.style(view, colors, smooth, this.surface);
     if (smooth && this.surface) this.smooth?.follow(this.surface, view.exaggeration);
@@ -828,9 +837,8 @@ export class Viewport {
     const [surface, mesh] = [this.surface, this.shownMesh()];
     if (!surface || !mesh) return null;
     const keep = (point: Vector3) => this.section.keeps(point);
-    const smooth = view.appearance === "smooth" ? this.smooth : null;
     const positions = this.drawnPositions(mesh, view);
-    return targetOf(this.ray(x, y), surface, mesh, positions, smooth, keep);
+    return targetOf(this.ray(x, y), surface, mesh, positions, this.drawnSmooth, keep);
   }
 
   /** Choose the ghost at a place of the page where no body is; none where there is none. */
@@ -974,7 +982,7 @@ export class Viewport {
       time: this.latest?.time ?? 0,
       seq: this.lastSeq,
       latency: this.latency,
-      triangles: mesh?.triangles ?? 0,
+      triangles: (mesh?.triangles ?? 0) + (this.smooth?.count ?? 0),
       topology: this.drawnTopology,
       fps: this.times.length,
     };

@@ -38,7 +38,11 @@ const BODY: BodyEvent = {
     seconds: 0,
     memory: 0,
   },
-  ...{ smooth: false, probes: [{ name: "tip", center: [0.03, 0.005, 0.005], vertices: [57] }] },
+  ...{
+    smooth: false,
+    cut: false,
+    probes: [{ name: "tip", center: [0.03, 0.005, 0.005], vertices: [57] }],
+  },
   bounds: [
     [0, 0, 0],
     [0.03, 0.01, 0.01],

@@ -62,6 +62,18 @@ describe("a body at rest", () => {
     expect(() => stillOf(joined(topology(2), frame(0, 1)))).toThrow("without a shape");
   });
 
+  it("has the shape that cuts its voxels, before the objects", () => {
+    expect(stillOf(joined(topology(), frame(0, 0.5))).smooth).toBeNull();
+    // Three vertices and one triangle, with its owner.
+    const shape = head(64 + 36 + 12 + 4, 3);
+    shape.setUint32(24, 3, true);
+    shape.setUint32(28, 1, true);
+    shape.setFloat32(64, 0.25, true);
+    const still = stillOf(joined(topology(), frame(0, 0.5), shape, topology(2)));
+    expect(still.smooth?.vertices[0]).toBe(0.25);
+    expect(still.objects?.id).toBe(2);
+  });
+
   it("is refused where a part is missing", () => {
     expect(() => stillOf(joined(topology()))).toThrow("without a shape");
     expect(() => stillOf(joined(frame(0, 1)))).toThrow("without a shape");

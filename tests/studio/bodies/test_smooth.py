@@ -9,6 +9,7 @@ import voxsoft as vs
 from voxsoft.design import families
 from voxsoft.design.discretization.discretize import voxels_of
 from voxsoft.shapes.tracing import trace
+from voxsoft.studio.bodies.body import StudioBody
 from voxsoft.studio.bodies.smooth import pack_smooth
 
 
@@ -36,6 +37,11 @@ def crossings(vertices, triangles, axis, at):
     where = a[:, axis] + u * (b - a)[:, axis] + v * (c - a)[:, axis]
     met = np.isfinite(area) & (u >= 0) & (v >= 0) & (u + v <= 1)
     return np.sort(where[met])
+
+
+def test_the_page_knows_where_shapes_cut_voxels():
+    bodies = [StudioBody.of(each(), 0, 1) for each in (families.sphere, families.pneunet)]
+    assert [body.event().cut for body in bodies] == [True, False]
 
 
 def test_equal_slots_are_equal_and_as_wide_as_in_the_voxels():

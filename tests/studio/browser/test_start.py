@@ -26,8 +26,7 @@ def test_a_robot_opens_smooth_and_moves(bare, open_tab):
     tab.find("robot-tendon_finger").click()
     start.wait_for(state="detached")
     tab.find("document-name").get_by_text("tendon_finger.toml").wait_for()
-    # The surface of voxels is not drawn, so that it has no triangles in the picture.
-    tab.until("voxsoft.time > 0")
+    tab.until("voxsoft.time > 0 && voxsoft.triangles > 0")
     assert tab.page.get_by_label("Show as").input_value() == "smooth"
     assert "edited" not in tab.find("document-name").inner_text()
     # It is not in the way again, and comes when it is asked for.

@@ -15,6 +15,7 @@ from own_loop import run
 
 from voxsoft import files
 from voxsoft.design import Design
+from voxsoft.design import families as cut_families
 from voxsoft.simulation import simulate
 from voxsoft.studio.outputs import stills
 from voxsoft.study import Study
@@ -109,6 +110,21 @@ def test_a_stored_run_is_shown_where_it_came_to_rest(studio):
     # To the 16 bits of a frame.
     assert positions[:, 2].max() == pytest.approx(result.positions[:, 2].max(), rel=1e-6)
     assert np.linalg.norm(positions - rest, axis=1).max() == pytest.approx(largest, rel=1e-4)
+
+
+def test_a_run_of_cut_voxels_is_shown_as_the_shape_that_cuts_them(studio):
+    ball = cut_families.sphere()
+    files.write_run(simulate(ball), studio.session.runs / "ball")
+    content = asked(studio, "ball").content
+    at = content.rindex(struct.pack("<IB", struct.unpack_from("<I", content)[0], 3))
+    points, triangles = struct.unpack_from("<2I", content, at + 24)
+    shape = np.frombuffer(content, "<f4", 3 * points, at + 64).reshape(-1, 3)
+    outside = ball.shapes["body"].build(ball.shapes).evaluate(shape.astype(float))
+    assert np.abs(outside).max() < 0.01 * ball.voxel_size
+    assert triangles == struct.unpack_from("<I", content, 28)[0]
+    # A body on the grid has no other shape.
+    files.write_run(simulate(families.beam()), studio.session.runs / "beam")
+    read(asked(studio, "beam").content)
 
 
 def test_a_design_of_a_study_is_solved_as_the_study_did(studio, study):

@@ -215,6 +215,7 @@ class StudioBody:
             touches=has_contact(setup.design),
             seconds=self.seconds,
             memory=len(mesh.tets) / 5 * BYTES_PER_VOXEL,
+            cut=mesh.fractions is not None,
             bodies=_bodies(mesh, self.surface),
             planes=[
                 events.BodyPlane(axis=plane.axis, at=plane.at) for plane in setup.design.symmetry

@@ -28,6 +28,7 @@ from voxsoft.simulation import Setup, simulate
 from voxsoft.simulation.features import has_feature
 from voxsoft.simulation.results.fields import remember
 from voxsoft.simulation.setup.contact import Pose
+from voxsoft.simulation.setup.places import on_the_surface
 from voxsoft.studio.bodies.body import StudioBody
 from voxsoft.studio.bodies.fields import DISPLACEMENT, FIELDS
 from voxsoft.studio.bodies.objects import surroundings_of
@@ -77,7 +78,7 @@ class Still:
     poses: Mapping[str, Pose] = field(default_factory=dict, repr=False)
 
     def packed(self) -> bytes:
-        """Write it as the page reads it: the surface, a frame for each field, then objects."""
+        """Write it as the page reads it: the surface, a frame for each field, shape, objects."""
         mesh, flags = self.setup.mesh, _FLAGS.get(self.status, FrameFlag.PAUSED)
         surface = Surface.of(mesh)
         messages = [surface.outline.pack_topology(STILL_BODY)]
@@ -94,7 +95,7 @@ class Still:
                 values=moved[surface.vertices],
                 flags=flags,
             )
-            return b"".join([*messages, shape, *self._objects()])
+            return b"".join([*messages, shape, *self._smooth(surface), *self._objects()])
         messages += [
             display.pack_frame(
                 self.positions, topology=STILL_BODY, frame=0, field=each.id, flags=flags
@@ -102,7 +103,15 @@ class Still:
             for each in _FIELDS
             if each.name in self.fields
         ]
-        return b"".join([*messages, *self._objects()])
+        return b"".join([*messages, *self._smooth(surface), *self._objects()])
+
+    def _smooth(self, surface: Surface) -> Iterator[bytes]:
+        """The surface of cut voxels on that of the shapes that cut them, unloaded."""
+        mesh, triangles = self.setup.mesh, surface.outline.triangles
+        if mesh.fractions is not None:
+            points = on_the_surface(self.setup.design, mesh)[surface.vertices]
+            owners = np.zeros(len(triangles), dtype=np.uint8)
+            yield _core.pack_smooth(STILL_BODY, points, triangles, owners)
 
     def _objects(self) -> Iterator[bytes]:
         """The surface of all rigid objects where they are, if there are any."""

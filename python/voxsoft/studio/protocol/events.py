@@ -473,10 +473,11 @@ class Body(Event):
     """A new body: its topology follows as a binary message with the same id.
 
     `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
-    shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text;
-    `touches` tells whether anything of the design may touch. `bodies` is empty where there is one.
-    `floor` is the height of the floor in m; null where there is none. `refused` has a sentence for
-    each use that refuses the design (`voxsoft.simulation.compatibility`).
+    shapes follows as well (kind 3), `cut` that this surface cuts voxels. `not_live` is why time
+    does not run, or an empty text; `touches` tells whether anything of the design may touch.
+    `bodies` is empty where there is one. `floor` is the height of the floor in m; null where there
+    is none. `refused` has a sentence for each use that refuses the design
+    (`voxsoft.simulation.compatibility`).
     """
 
     topology: int
@@ -505,6 +506,7 @@ class Body(Event):
     seconds: float
     memory: float
     smooth: bool = False
+    cut: bool = False
     bodies: list[BodyOfSeveral] = field(default_factory=list)
     planes: list[BodyPlane] = field(default_factory=list)
     floor: float | None = None

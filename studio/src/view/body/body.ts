@@ -228,7 +228,13 @@ export class BodyMesh {
 
   private lutKey = "";
 
-  style(view: View, colors: { parts: readonly string[]; ink: Color }, visible: boolean): void {
+  /** `covered` is true where the smooth shape is drawn in place of the voxels. */
+  style(
+    view: View,
+    colors: { parts: readonly string[]; ink: Color },
+    visible: boolean,
+    covered = false,
+  ): void {
     const key = `${view.colormap} ${view.bands}`;
     if (key !== this.lutKey) {
       this.lutKey = key;
@@ -261,7 +267,7 @@ export class BodyMesh {
         mesh.material.needsUpdate = true;
       }
       mesh.renderOrder = through ? 5 : 2;
-      mesh.visible = visible && !wire;
+      mesh.visible = visible && !covered && !wire;
       if (mesh.visible) this.triangles += mesh.geometry.drawRange.count / 3;
       for (const stencil of stencils) stencil.visible = mesh.visible && cut && !this.topology.tets;
     }
@@ -272,7 +278,7 @@ export class BodyMesh {
     const flatField = !this.frame || this.frame.max <= this.frame.min;
     this.edges.material.uniforms.uByField!.value =
       wire && view.coloring === "field" && !flatField ? 1 : 0;
-    this.edges.visible = visible && (wire || view.edges);
+    this.edges.visible = visible && !covered && (wire || view.edges);
     const ghost = this.ghost.material.uniforms;
     (ghost.uInk!.value as Vector4).set(colors.ink.r, colors.ink.g, colors.ink.b, 0.3);
     ghost.uFade!.value = 0;

@@ -115,6 +115,7 @@ export class SmoothMesh {
       return { owner, mesh };
     });
     this.stencils = stencilPair(this.geometry, VERTEX, cut);
+    this.group.visible = false;
     this.group.add(...this.parts.map((part) => part.mesh), ...this.stencils);
   }
 
@@ -132,6 +133,11 @@ export class SmoothMesh {
     }
     this.group.visible = visible;
     for (const stencil of this.stencils) stencil.visible = view.section !== "off";
+  }
+
+  /** Number of drawn triangles. */
+  get count(): number {
+    return this.group.visible ? this.triangles.length / 3 : 0;
   }
 
   /** Move it and give it the values of the field as the surface has them. */

@@ -3,8 +3,9 @@ import { useAway } from "../../controls/away";
 import { Button, Select, Toggle } from "../../controls/Choice";
 import { NumberField } from "../../controls/NumberField";
 import { Icon } from "../../shell/icons";
+import { type Appearance, appearanceOf } from "../../store/appearance";
 import { useStudio } from "../../store/studio";
-import { type Appearance, type SectionAxis, setView, useShown, useView } from "../../store/view";
+import { type SectionAxis, setView, useShown, useView } from "../../store/view";
 import { COLORMAPS, type ColormapName } from "../body/colormaps";
 import { SCHEMES, type Scheme } from "../hands/schemes";
 import { recordGif, recordWebm, savePicture } from "../recorder";
@@ -25,6 +26,7 @@ export function ViewBar(props: { view: Viewport }) {
   const touches = useStudio((state) => state.body?.touches ?? false);
   const fields = known.filter((field) => touches || !field.contact);
   const smooth = useStudio((state) => state.body?.smooth ?? false);
+  const drawn = useStudio((state) => appearanceOf(view, state.body));
   const recording = useShown((shown) => shown.recording);
   const [open, setOpen] = useState<"more" | "film" | null>(null);
   const menus = useRef<HTMLDivElement>(null);
@@ -45,9 +47,15 @@ export function ViewBar(props: { view: Viewport }) {
       <Select
         bare
         label="Show as"
-        value={view.appearance}
+        value={drawn}
         options={appearances}
-        onChange={(value) => setView({ appearance: value as Appearance })}
+        onChange={(value) =>
+          setView(
+            value === "smooth"
+              ? { appearance: value, cavities: false }
+              : { appearance: value as Appearance },
+          )
+        }
       />
       <Select
         bare

@@ -1,5 +1,5 @@
 // Bodies at rest beside the one of the view: of runs, of designs of studies, of calibrations.
-import { decodeAll, type Frame, type Topology } from "../../engine/frames";
+import { decodeAll, type Frame, type Smooth, type Topology } from "../../engine/frames";
 import { STILL_OBJECTS } from "../../protocol";
 import { colorRange } from "../body/colorRange";
 
@@ -7,6 +7,8 @@ export interface Still {
   readonly topology: Topology;
   /** One frame for each field that can be told, by the field's number. */
   readonly frames: ReadonlyMap<number, Frame>;
+  /** The shape that cuts the voxels of the body; null where none does. */
+  readonly smooth: Smooth | null;
   /** The surface of all rigid objects around it, where they are; null where there is none. */
   readonly objects: Topology | null;
 }
@@ -24,18 +26,20 @@ export async function fetchStill(name: string, signal: AbortSignal): Promise<Sti
   return stillOf(await answer.arrayBuffer());
 }
 
-/** Read an answer: a surface, frames of it, and the objects around it. */
+/** Read an answer: a surface, frames of it, the shape of cut voxels, and the objects around it. */
 export function stillOf(buffer: ArrayBuffer): Still {
   let topology: Topology | null = null;
+  let smooth: Smooth | null = null;
   let objects: Topology | null = null;
   const frames = new Map<number, Frame>();
   for (const message of decodeAll(buffer)) {
     if (message.kind === "topology" && message.id === STILL_OBJECTS) objects = message;
     else if (message.kind === "topology") topology = message;
     else if (message.kind === "frame") frames.set(message.field, message);
+    else smooth = message;
   }
   if (!topology || frames.size === 0) throw new Error("The body came without a shape.");
-  return { topology, frames, objects };
+  return { topology, frames, smooth, objects };
 }
 
 /** A refusal as a sentence for people. */

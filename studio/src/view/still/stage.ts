@@ -10,8 +10,10 @@ import {
   WebGLRenderer,
 } from "three";
 import type { Frame } from "../../engine/frames";
+import { appearanceOf } from "../../store/appearance";
 import type { View } from "../../store/view";
 import { BodyMesh } from "../body/body";
+import { SmoothMesh } from "../body/smooth";
 import { CameraRig, type StandardView } from "../drawing/camera";
 import { Ground, Sky } from "../drawing/ground";
 import { themeColor } from "../drawing/theme";
@@ -40,6 +42,7 @@ export interface StillScene {
 interface Shown {
   readonly still: Still;
   readonly mesh: BodyMesh;
+  readonly smooth: SmoothMesh | null;
   readonly objects: ObjectMesh | null;
   readonly scene: Scene;
 }
@@ -160,16 +163,20 @@ export class StillStage {
     const mesh = new BodyMesh(still.topology, uncut);
     const scene = new Scene();
     scene.add(mesh.group);
+    const smooth =
+      still.smooth && new SmoothMesh(still.smooth, { plane: uncut.plane, section: uncut.section });
+    if (smooth) scene.add(smooth.group);
     const { rest, triangles } = still.objects ?? {};
     const cut = { plane: uncut.plane, on: uncut.section };
     const objects = rest && triangles ? objectMesh(rest, triangles, cut) : null;
     if (objects) scene.add(objects);
-    return { still, mesh, objects, scene };
+    return { still, mesh, smooth, objects, scene };
   }
 
   private drop(index: number): void {
     const gone = this.shown[index];
     gone?.mesh.dispose();
+    gone?.smooth?.dispose();
     gone?.objects?.geometry.dispose();
     gone?.objects?.material.dispose();
     this.shown[index] = null;
@@ -265,7 +272,12 @@ export class StillStage {
       const told = one.still.frames.has(scene.field) && !wire;
       const appearance = wire ? "wireframe" : "voxels";
       const coloring = told ? "field" : "parts";
-      one.mesh.style({ ...scene.view, appearance, coloring }, colors, true);
+      const traced = one.smooth !== null;
+      const drawn = wire ? appearance : appearanceOf(scene.view, { smooth: traced, cut: traced });
+      const smooth = drawn === "smooth";
+      one.mesh.style({ ...scene.view, appearance, coloring }, colors, true, smooth);
+      one.smooth?.style({ ...scene.view, coloring }, colors, smooth, one.mesh);
+      if (smooth) one.smooth?.follow(one.mesh, 1);
     }
   }
 }
