@@ -319,20 +319,17 @@ impl Body {
     pub(crate) fn warp_unless(&mut self, held: &[[bool; 3]], pressed: &[[u32; 3]]) {
         let (small, materials) = (self.small_hex8s(), &self.hex8s.materials);
         let membranes = &self.membranes.0;
-        let (mut faces, mut edges) =
+        let mut faces =
             free_faces::faces_of(small, materials, &self.voxels, membranes, held, pressed);
         if !self.coarse.is_empty() {
-            (faces, edges) = self.coarse.merged(&faces, &edges);
+            faces = self.coarse.merged(&faces);
         }
-        for ((hex8, faces), edges) in self.hex8s.hex8s.iter_mut().zip(&faces).zip(&edges) {
-            let poisson = materials[hex8.material as usize].poisson();
+        for (hex8, faces) in self.hex8s.hex8s.iter_mut().zip(&faces) {
             hex8.warping = match faces {
                 Some(faces) if free_faces::is_full(hex8) && !hex8.filling.surface.is_oblique() => {
-                    WarpingModes::of(faces).with_reentrant_edges(edges, poisson)
+                    WarpingModes::of(faces)
                 }
-                Some(faces) => {
-                    WarpingModes::of_cut(faces, &hex8.filling).with_reentrant_edges(edges, poisson)
-                }
+                Some(faces) => WarpingModes::of_cut(faces, &hex8.filling),
                 None => WarpingModes::SURFACE,
             };
         }
