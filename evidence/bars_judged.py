@@ -127,11 +127,13 @@ def limit_of(sizes: list[float], values: list[float]) -> float:
 QUESTIONS: Final[dict[str, Callable[[Case], Row]]] = {"bar": bar_of, "truth": truth_of}
 
 
-def answered(file: Path) -> dict[tuple[str, int, str], Row]:
-    """The lines of a file by kind, number and question; the last truth that was found counts."""
+def answered(file: Path, drawn: str) -> dict[tuple[str, int, str], Row]:
+    """The lines of a set by kind, number and question; the last truth that was found counts."""
     lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
     known: dict[tuple[str, int, str], Row] = {}
     for row in map(json.loads, lines):
+        if row["set"] != drawn:
+            continue
         key = row["kind"], row["number"], row["question"]
         if "truth" in row or "truth" not in known.get(key, {}):
             known[key] = row
@@ -154,8 +156,8 @@ def ask(file: Path, drawn: str, kinds: Iterable[str], *, again: bool) -> None:
         for number in range(EACH):
             each = case(kind, number, drawn)
             for question, answer in QUESTIONS.items():
-                known = answered(file).get((kind, number, question))
-                bar = answered(file).get((kind, number, "bar"))
+                known = answered(file, drawn).get((kind, number, question))
+                bar = answered(file, drawn).get((kind, number, "bar"))
                 if known is not None and (
                     not again
                     if question == "bar"
@@ -166,7 +168,7 @@ def ask(file: Path, drawn: str, kinds: Iterable[str], *, again: bool) -> None:
                     row = answer(each)
                 except (VoxSoftError, TooSlowError) as error:
                     row = {"missing": str(error), "why": str(error)}
-                row |= {"kind": kind, "number": number, "question": question}
+                row |= {"set": drawn, "kind": kind, "number": number, "question": question}
                 with file.open("a", encoding="utf-8", newline="\n") as lines:
                     lines.write(json.dumps(row) + "\n")
                 print(json.dumps(row), flush=True)
@@ -211,7 +213,7 @@ def judged(bar: Row | None, truth: Row | None, each: Case) -> Judged | str:
 
 def show(file: Path, drawn: str) -> None:
     """Print how many bars hold, and their width, by kind."""
-    known = answered(file)
+    known = answered(file, drawn)
     found = {
         (kind, number): judged(
             known.get((kind, number, "bar")),
