@@ -319,17 +319,20 @@ impl Body {
     pub(crate) fn warp_unless(&mut self, held: &[[bool; 3]], pressed: &[[u32; 3]]) {
         let (small, materials) = (self.small_hex8s(), &self.hex8s.materials);
         let membranes = &self.membranes.0;
-        let mut faces =
+        let (mut faces, mut edges) =
             free_faces::faces_of(small, materials, &self.voxels, membranes, held, pressed);
         if !self.coarse.is_empty() {
-            faces = self.coarse.merged(&faces);
+            (faces, edges) = self.coarse.merged(&faces, &edges);
         }
-        for (hex8, faces) in self.hex8s.hex8s.iter_mut().zip(&faces) {
+        for ((hex8, faces), edges) in self.hex8s.hex8s.iter_mut().zip(&faces).zip(&edges) {
+            let poisson = materials[hex8.material as usize].poisson();
             hex8.warping = match faces {
                 Some(faces) if free_faces::is_full(hex8) && !hex8.filling.surface.is_oblique() => {
-                    WarpingModes::of(faces)
+                    WarpingModes::of(faces).with_reentrant_edges(edges, poisson)
                 }
-                Some(faces) => WarpingModes::of_cut(faces, &hex8.filling),
+                Some(faces) => {
+                    WarpingModes::of_cut(faces, &hex8.filling).with_reentrant_edges(edges, poisson)
+                }
                 None => WarpingModes::SURFACE,
             };
         }

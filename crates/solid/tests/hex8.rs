@@ -33,7 +33,7 @@ fn cut() -> Filling {
     }
 }
 
-/// Warping with any faces free, and any of them held; or at a clamp.
+/// Warping with any faces free, and any of them held; or at a clamp; with any re-entrant edges.
 fn warping() -> impl Strategy<Value = WarpingModes> {
     let faces = any::<[[[bool; 2]; 3]; 3]>().prop_map(|[free, stiff, held]| FaceConditions {
         free,
@@ -50,7 +50,9 @@ fn warping() -> impl Strategy<Value = WarpingModes> {
         let surface = CutSurface::of(turn, areas);
         WarpingModes::of_cut(&FaceConditions::default(), &Filling { surface, ..cut() })
     });
-    prop_oneof![whole, cut]
+    let edges = any::<[bool; 3]>();
+    (prop_oneof![whole, cut], edges)
+        .prop_map(|(warping, edges)| warping.with_reentrant_edges(&edges, 0.4))
 }
 
 /// Faces of a voxel with a clamp on one side of an axis, free faces across it, some of them under pressure.

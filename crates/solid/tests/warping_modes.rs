@@ -298,3 +298,86 @@ fn cut_voxels_and_fibers_do_not_warp() {
             .all(|b| b.warping == WarpingModes::SURFACE)
     );
 }
+
+/// Two arms of a voxel across and `long` voxels along x and z beside their common one, three along y.
+fn angle(long: usize) -> Mesh {
+    let size = long + 2;
+    let mut grid = Grid::empty([size, 3, size], [0.0; 3], 1.0, u64::MAX).unwrap();
+    grid.fill_box([0.0; 3], [size as f64, 3.0, 2.0], 1);
+    grid.fill_box([0.0; 3], [2.0, 3.0, size as f64], 1);
+    let tets = tet_mesh(&grid, u64::MAX).unwrap();
+    let count = tets.tets.len();
+    Mesh {
+        tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
+        tet_part: vec![0; count],
+        tet_block: (0..count as u32).map(|t| t / 5).collect(),
+        vertices: tets.vertices,
+        ..Mesh::default()
+    }
+}
+
+#[test]
+fn voxels_at_a_reentrant_edge_lose_shear_across_it() {
+    let body = body(&angle(2));
+    let relieved =
+        |warping: WarpingModes| warping.with_reentrant_edges(&[false, true, false], 0.49);
+    for (x, z, free) in [
+        (1, 1, &[][..]),
+        (1, 2, &[(0, 1)][..]),
+        (2, 1, &[(2, 1)][..]),
+    ] {
+        let at = [f64::from(x), 1.0, f64::from(z)];
+        let found = voxel(&body, at).warping;
+        assert_eq!(found, relieved(with(free, &[])), "{at:?}");
+        let [one, other, across] = [0, 2, 1].map(|b| left(found, b) / left(with(free, &[]), b));
+        assert!(
+            (one - 1.0).abs() < 1e-5 && (other - 1.0).abs() < 1e-5,
+            "{at:?}"
+        );
+        let faces = left(with(free, &[]), 1);
+        // 0.310 of the table for this Poisson's ratio, in series with the faces.
+        let expected = 1.0 / (1.0 + faces * 0.31 / 0.69);
+        assert!(
+            (across - expected).abs() < 1e-5,
+            "{at:?}: {across} {expected}"
+        );
+    }
+    for (x, z, free) in [
+        (0, 0, &[(0, 0), (2, 0)][..]),
+        (0, 1, &[(0, 0)]),
+        (1, 3, &[(0, 1), (2, 1)]),
+        (3, 1, &[(0, 1), (2, 1)]),
+    ] {
+        let at = [f64::from(x), 1.0, f64::from(z)];
+        assert_eq!(voxel(&body, at).warping, with(free, &[]), "{at:?}");
+    }
+}
+
+#[test]
+fn relief_at_an_edge_levels_off() {
+    let hex8 = Hex8 {
+        warping: WarpingModes::NONE.with_reentrant_edges(&[false, false, true], 0.49),
+        ..body(&boxed([1; 3])).hex8s()[0]
+    };
+    let plain = Hex8 {
+        warping: WarpingModes::NONE,
+        ..hex8
+    };
+    let rest: Vec<Vec3> = body(&boxed([1; 3])).rest().to_vec();
+    let share = |shear: f64| {
+        let place = |x: &Vec3| [x[0] + shear / 2.0 * x[1], x[1] + shear / 2.0 * x[0], x[2]];
+        let sheared: Vec<Vec3> = rest.iter().map(place).collect();
+        let energies = [hex8, plain].map(|own| own.energy(&rubber(), &sheared));
+        // The determinant of both is 1 - shear^2 / 4, whose energy is theirs alone.
+        1.0 - energies[0] / energies[1]
+    };
+    let shares = [0.02, 0.2, 0.4, 0.8].map(share);
+    assert!((shares[0] - 0.31).abs() < 0.01, "{shares:?}");
+    assert!(shares.is_sorted_by(|a, b| a > b), "{shares:?}");
+}
+
+#[test]
+fn stairs_of_one_voxel_have_no_reentrant_edge() {
+    let body = body(&angle(1));
+    assert_eq!(voxel(&body, [1.0; 3]).warping, WarpingModes::NONE);
+}

@@ -9,6 +9,7 @@ use std::collections::HashSet;
 
 use crate::element::faces::FaceConditions;
 use crate::element::free_faces::is_full;
+use crate::element::reentrant_edges::ReentrantEdges;
 use crate::element::ties::Ties;
 use crate::{Filling, Hex8, ProblemError};
 
@@ -116,17 +117,22 @@ impl Coarse {
         }
     }
 
-    /// The faces of each element, merged from those of the small voxels.
-    pub fn merged(&self, faces: &[Option<FaceConditions>]) -> Vec<Option<FaceConditions>> {
+    /// The faces and re-entrant edges of each element, merged from those of the small voxels.
+    pub fn merged(
+        &self,
+        faces: &[Option<FaceConditions>],
+        edges: &[ReentrantEdges],
+    ) -> (Vec<Option<FaceConditions>>, Vec<ReentrantEdges>) {
         let each = self.members.iter().map(|members| match members {
-            Members::One(index) => faces[*index as usize],
+            Members::One(index) => (faces[*index as usize], edges[*index as usize]),
             Members::Eight(cube) => {
                 let all: Option<Vec<FaceConditions>> =
                     cube.iter().map(|index| faces[*index as usize]).collect();
-                all.map(|all| face_of_cube(&all))
+                let has = |axis: usize| cube.iter().any(|index| edges[*index as usize][axis]);
+                (all.map(|all| face_of_cube(&all)), [0, 1, 2].map(has))
             }
         });
-        each.collect()
+        each.unzip()
     }
 }
 

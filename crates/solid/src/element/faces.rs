@@ -13,6 +13,10 @@ pub struct WarpingModes {
     parts: [[f64; 2]; 3],
     /// The share of faces under pressure in these parts.
     pressed: [[f64; 2]; 3],
+    /// Relief by re-entrant edges: the part of each remaining shear.
+    pub(crate) edges: [f64; 3],
+    /// Shears whose relief by edges thins the voxel and leaves its volume as it is.
+    pub(crate) thins: [bool; 3],
     /// At the surface: a face is free, or the surface cuts the voxel.
     pub(crate) surface: bool,
     /// Lateral contraction at a clamp, in place of the parts.
@@ -41,6 +45,8 @@ impl WarpingModes {
     pub const NONE: Self = Self {
         parts: [[0.0; 2]; 3],
         pressed: [[0.0; 2]; 3],
+        edges: [0.0; 3],
+        thins: [false; 3],
         surface: false,
         clamped: None,
         frame: IDENTITY,
@@ -52,9 +58,19 @@ impl WarpingModes {
         ..Self::NONE
     };
 
-    /// Tests whether free faces take a part of a shear.
+    /// Tests whether free faces or edges take a part of a shear.
     pub(crate) fn has_parts(&self) -> bool {
-        self.parts != Self::NONE.parts
+        self.parts != Self::NONE.parts || self.has_edges()
+    }
+
+    /// Tests whether re-entrant edges take a part of a shear.
+    pub(crate) fn has_edges(&self) -> bool {
+        self.edges != [0.0; 3]
+    }
+
+    /// The part of each shear that faces relieve.
+    pub(crate) fn of_faces(&self) -> [f64; 3] {
+        self.parts.map(|[j, k]| j + k)
     }
 
     /// Tests whether the axes of the pairs are others than those of the voxel.

@@ -11,12 +11,13 @@
 use std::collections::HashSet;
 
 use crate::element::faces::FaceConditions;
+use crate::element::reentrant_edges::{ReentrantEdges, reentrant_edges_of};
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::{Filling, Hex8, Membrane};
 
 /// Tolerance for fraction and distribution of the material of a full voxel: a voxel at the edge of a box whose faces
 /// are on the grid loses 1/3072 where its fill is measured.
-const FULL_SLACK: f64 = 4e-4;
+pub(crate) const FULL_SLACK: f64 = 4e-4;
 
 /// The neighbor behind a face.
 #[derive(Clone, Copy, PartialEq)]
@@ -31,7 +32,7 @@ enum Behind {
 /// Ratio of Young's moduli from which another material counts as a clamp.
 const HOLDS: f64 = 2.0;
 
-/// The faces of each voxel; `None` for voxels that do not warp. `voxels` are all cubes of the body, `held` the axes of
+/// The faces of each voxel, `None` for voxels that do not warp, and its re-entrant edges. `voxels` are all cubes of the body, `held` the axes of
 /// each vertex that clamps hold, `pressed` the triangles under pressure.
 pub(crate) fn faces_of(
     hex8s: &[Hex8],
@@ -40,8 +41,8 @@ pub(crate) fn faces_of(
     membranes: &[Membrane],
     held: &[[bool; 3]],
     pressed: &[[u32; 3]],
-) -> Vec<Option<FaceConditions>> {
-    let behind = neighbors(hex8s, materials, voxels, held.len());
+) -> (Vec<Option<FaceConditions>>, Vec<ReentrantEdges>) {
+    let Neighbors { behind, alike } = neighbors(hex8s, materials, voxels, held.len());
     let pressed: HashSet<[u32; 3]> = pressed.iter().map(|&triangle| sorted(triangle)).collect();
     let layers: HashSet<[u32; 3]> = membranes.iter().map(|m| sorted(m.vertices())).collect();
     let each = |(hex8, behind): (&Hex8, &[[Behind; 2]; 3])| {
@@ -72,7 +73,19 @@ pub(crate) fn faces_of(
         }
         Some(faces)
     };
-    hex8s.iter().zip(&behind).map(each).collect()
+    let faces: Vec<Option<FaceConditions>> = hex8s.iter().zip(&behind).map(each).collect();
+    let edges = reentrant_edges_of(hex8s, &faces, &alike);
+    (faces, edges)
+}
+
+/// The number of a voxel that is not there.
+pub(crate) const NO_VOXEL: u32 = u32::MAX;
+
+/// Neighbors behind the faces of each voxel.
+struct Neighbors {
+    behind: Vec<[[Behind; 2]; 3]>,
+    /// The voxels among them that are of the same material.
+    alike: Vec<[[u32; 2]; 3]>,
 }
 
 /// The neighbor behind each face. A cube is found by its lowest corner, which no other has.
@@ -81,34 +94,38 @@ fn neighbors(
     materials: &[HyperelasticMaterial],
     voxels: &[[u32; 8]],
     vertices: usize,
-) -> Vec<[[Behind; 2]; 3]> {
-    const NONE: u32 = u32::MAX;
-    let mut cube_at = vec![NONE; vertices];
+) -> Neighbors {
+    let mut cube_at = vec![NO_VOXEL; vertices];
     for (index, voxel) in voxels.iter().enumerate() {
         cube_at[voxel[0] as usize] = index as u32;
     }
-    let mut hex8_of = vec![NONE; voxels.len()];
+    let mut hex8_of = vec![NO_VOXEL; voxels.len()];
     for (index, hex8) in hex8s.iter().enumerate() {
         hex8_of[cube_at[hex8.vertices[0] as usize] as usize] = index as u32;
     }
     let mut behind = vec![[[Behind::Nothing; 2]; 3]; hex8s.len()];
+    let mut alike = vec![[[NO_VOXEL; 2]; 3]; hex8s.len()];
     for (cube, voxel) in voxels.iter().enumerate() {
         for axis in 0..3 {
             let next = cube_at[voxel[corner_beyond(axis)] as usize];
-            if next == NONE || face(*voxel, axis, 1) != face(voxels[next as usize], axis, 0) {
+            if next == NO_VOXEL || face(*voxel, axis, 1) != face(voxels[next as usize], axis, 0) {
                 continue;
             }
             let [low, high] = [hex8_of[cube], hex8_of[next as usize]];
             for (hex8, other, side) in [(low, high, 1), (high, low, 0)] {
-                if hex8 != NONE {
-                    let other = (other != NONE).then(|| hex8s[other as usize].material);
+                if hex8 != NO_VOXEL {
+                    let material = (other != NO_VOXEL).then(|| hex8s[other as usize].material);
                     let own = hex8s[hex8 as usize].material;
-                    behind[hex8 as usize][axis][side] = what_is(materials, own, other);
+                    let what = what_is(materials, own, material);
+                    behind[hex8 as usize][axis][side] = what;
+                    if what == Behind::Same {
+                        alike[hex8 as usize][axis][side] = other;
+                    }
                 }
             }
         }
     }
-    behind
+    Neighbors { behind, alike }
 }
 
 /// Classifies the material `other` of a neighbor against `own`; a lattice has none.

@@ -12,6 +12,7 @@ pub mod hex8;
 mod hex8_energy;
 pub(crate) mod hex8_simd;
 pub(crate) mod membrane;
+pub(crate) mod reentrant_edges;
 pub(crate) mod rotated;
 mod thickness;
 pub(crate) mod ties;

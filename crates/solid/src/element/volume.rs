@@ -42,6 +42,7 @@
 //! Fiber-reinforced voxels, whose faces nobody classifies, are treated likewise.
 
 use crate::element::coordinates::{AXES, OFF, STRAIN_COMPONENTS, StrainFunction, place};
+use crate::element::reentrant_edges::EdgeRelief;
 use crate::element::rotated::Rotated;
 use crate::hyperelastic::symmetric::{determinant_response, to_matrix};
 use crate::vector::{Vec3, cross};
@@ -52,9 +53,19 @@ impl Rotated {
     /// The volume ratio of a voxel that no clamp holds, with its Hessian if `second`.
     pub(crate) fn relieved_volume(&self, thinning: f64, second: bool) -> StrainFunction {
         let shears = self.warping.volume_shears();
+        let relief: [[f64; 3]; 3] = std::array::from_fn(|axis| {
+            let shear = self.stretch[OFF + axis] * HALF_ROOT;
+            let edge = if self.warping.thins[axis] {
+                EdgeRelief::none(shear)
+            } else {
+                EdgeRelief::of(self.warping.edges[axis], shear)
+            };
+            let [value, slope, turn] = edge.shear.map(|value| shears[axis] * value);
+            [value / HALF_ROOT, slope, turn * HALF_ROOT]
+        });
         let mut seen = self.with_strain(&self.strain());
         for axis in 0..3 {
-            seen.stretch[OFF + axis] *= shears[axis];
+            seen.stretch[OFF + axis] = relief[axis][0];
         }
         let mut volume = if self.warping.surface {
             seen.mean(thinning, second, |at| determinant_response(at, second))
@@ -62,13 +73,16 @@ impl Rotated {
             seen.nodal_volume(second)
         };
         for axis in 0..3 {
-            volume.gradient[OFF + axis] *= shears[axis];
+            let [_, slope, turn] = relief[axis];
+            let place = OFF + axis;
             if second {
                 for other in 0..STRAIN_COMPONENTS {
-                    volume.hessian[OFF + axis][other] *= shears[axis];
-                    volume.hessian[other][OFF + axis] *= shears[axis];
+                    volume.hessian[place][other] *= slope;
+                    volume.hessian[other][place] *= slope;
                 }
+                volume.hessian[place][place] += volume.gradient[place] * turn;
             }
+            volume.gradient[place] *= slope;
         }
         volume
     }

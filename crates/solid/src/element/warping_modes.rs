@@ -61,6 +61,7 @@
 
 use crate::element::coordinates::{AXES, Hex8Strain, OFF, STRAIN_COMPONENTS, StrainFunction};
 use crate::element::faces::WarpingModes;
+use crate::element::reentrant_edges::EdgeRelief;
 use crate::element::rotated::Rotated;
 use crate::element::thickness::positive;
 use crate::hyperelastic::symmetric::{Response, Sym, to_matrix, to_sym};
@@ -92,12 +93,28 @@ impl WarpingModes {
         let mut relieved = *stretch;
         let shears = self.shears();
         for (pair, (b, j, k)) in self.thinning_parts().iter().zip(AXES) {
-            relieved[OFF + b] *= shears[b];
+            let edge = self.edge(b, stretch);
+            relieved[OFF + b] = shears[b] * SQRT_2 * edge.shear[0];
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
+                let part = part + self.edge_thinning(b) * edge.part[0];
                 relieved[n] -= part * Thinning::of(stretch, OFF + b, n, t).value;
             }
         }
         relieved
+    }
+
+    /// The relief of a shear by re-entrant edges.
+    fn edge(&self, b: usize, stretch: &Sym) -> EdgeRelief {
+        EdgeRelief::of(self.edges[b], stretch[OFF + b] / SQRT_2)
+    }
+
+    /// The share of the part that edges relieve by which the voxel thins along each of both axes.
+    fn edge_thinning(&self, b: usize) -> f64 {
+        if self.thins[b] {
+            0.5 * (1.0 - self.of_faces()[b])
+        } else {
+            0.0
+        }
     }
 
     /// The derivatives of the relieved stretch (rows) by the stretch.
@@ -108,12 +125,16 @@ impl WarpingModes {
         }
         let shears = self.shears();
         for (pair, (b, j, k)) in self.thinning_parts().iter().zip(AXES) {
-            slopes[OFF + b][OFF + b] = shears[b];
+            let edge = self.edge(b, stretch);
+            let share = self.edge_thinning(b);
+            slopes[OFF + b][OFF + b] = shears[b] * edge.shear[1];
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 let thinning = Thinning::of(stretch, OFF + b, n, t);
+                let part = part + share * edge.part[0];
                 for (place, slope) in [OFF + b, n, t].into_iter().zip(thinning.gradient()) {
                     slopes[n][place] -= part * slope;
                 }
+                slopes[n][OFF + b] -= share * edge.part[1] / SQRT_2 * thinning.value;
             }
         }
         slopes
@@ -121,15 +142,26 @@ impl WarpingModes {
 
     /// Adds the second derivatives of the relieved stretch, each component times its `force`.
     fn add_curvature(&self, stretch: &Sym, force: &Sym, hessian: &mut [Sym; 6]) {
+        let shears = self.shears();
         for (pair, (b, j, k)) in self.thinning_parts().iter().zip(AXES) {
+            let edge = self.edge(b, stretch);
+            let share = self.edge_thinning(b);
+            hessian[OFF + b][OFF + b] += force[OFF + b] * shears[b] * edge.shear[2] / SQRT_2;
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 let places = [OFF + b, n, t];
-                let curvature = Thinning::of(stretch, OFF + b, n, t).hessian();
-                for (row, values) in places.into_iter().zip(curvature) {
+                let thinning = Thinning::of(stretch, OFF + b, n, t);
+                let part = part + share * edge.part[0];
+                for (row, values) in places.into_iter().zip(thinning.hessian()) {
                     for (column, value) in places.into_iter().zip(values) {
                         hessian[row][column] -= part * force[n] * value;
                     }
                 }
+                let slope = share * edge.part[1] / SQRT_2 * force[n];
+                for (place, value) in places.into_iter().zip(thinning.gradient()) {
+                    hessian[OFF + b][place] -= slope * value;
+                    hessian[place][OFF + b] -= slope * value;
+                }
+                hessian[OFF + b][OFF + b] -= 0.5 * share * edge.part[2] * force[n] * thinning.value;
             }
         }
     }

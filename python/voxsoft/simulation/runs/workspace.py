@@ -213,7 +213,7 @@ def workspace(
     >>> finger = families.pneunet(chambers=2)
     >>> found = vs.workspace(finger, "tip", ["loads[0].value=0..1 kPa/3"])
     >>> found.shape, found.size_kind, f"{1e3 * found.size:.1f} mm"
-    ((3,), 'length', '1.3 mm')
+    ((3,), 'length', '1.4 mm')
     """
     given = require_design(design)
     if probe not in given.probes:

@@ -45,7 +45,9 @@ impl<'a> Together<'a> {
     }
 
     fn has_lanes(&self, hex8: &Hex8) -> bool {
-        hex8.warping.clamped.is_none() && has_lanes(self.material(hex8))
+        hex8.warping.clamped.is_none()
+            && !hex8.warping.has_edges()
+            && has_lanes(self.material(hex8))
     }
 
     /// Sets the stiffness matrix of each voxel, see [`Hex8::stiffness`].

@@ -61,7 +61,7 @@ fn voxel() -> impl Strategy<Value = (usize, bool, WarpingModes, f64, [Vec3; 8], 
     )
 }
 
-/// Warping of voxels inside the body, at its surface, and at a clamp.
+/// Warping of voxels inside the body, at its surface, at an edge, and at a clamp.
 fn warpings() -> Vec<WarpingModes> {
     let free = FaceConditions {
         free: [[true, false], [false, true], [false, false]],
@@ -81,6 +81,7 @@ fn warpings() -> Vec<WarpingModes> {
     vec![
         WarpingModes::NONE,
         WarpingModes::of(&free),
+        WarpingModes::of(&free).with_reentrant_edges(&[false, true, true], 0.49),
         WarpingModes::of(&clamped),
         WarpingModes::of_cut(&FaceConditions::default(), &oblique),
     ]
