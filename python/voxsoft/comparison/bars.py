@@ -59,8 +59,8 @@ HIDDEN_BY_WALLS: Final = 0.1
 HIDDEN_BY_SHAPES: Final = 0.25
 #: Least error from two sizes, as a part of the number: errors of corners and of free sides have
 #: either sign, and may cancel in both. Among 70 bodies with known truth those that two sizes missed
-#: agreed within 0.4 %, and all but one were less than this off. Since voxels at re-entrant edges are
-#: relieved, two of five that agreed within 0.6 % were 1.5 and 2 % off (docs/method/verification.md).
+#: agreed within 0.4 %, and all but one were less than this off. Since voxels at re-entrant edges
+#: are relieved, two of five that agreed within 0.6 % were 1.5 and 2 % off (verification.md).
 UNKNOWN: Final = 0.01
 #: Relative change that is rounding: equilibrium or the shape alone sets such a number.
 UNCHANGED: Final = 1e-6
