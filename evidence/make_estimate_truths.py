@@ -5,7 +5,8 @@ of a set were fixed before any of it was solved, and so was the rule of
 `voxsoft.comparison.richardson`: the first set was for the rule with a safety factor of 1.25 on two
 sizes, the second for the one that replaced it. The truth is our own element on voxels split 2, 4
 and 8 times (where 8 is too much, 2, 4 and 6), extrapolated with the order that they show; CalculiX
-(C3D20R, voxels split 2 and 3 times) stands beside it as a code that shares no line past the nodes.
+(C3D20R, voxels split 2 and 3 times) stands beside it as a code that shares no line past the nodes;
+where their limits differ the truth is only known to lie between them.
 Probes are points that every split has, since means over faces weigh vertices, of which finer
 elements have others.
 """

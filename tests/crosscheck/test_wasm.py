@@ -132,7 +132,7 @@ def test_implicit_steps_agree(tmp_path, layers, apart):
     assert json.loads(done.stdout)["stat"]["substeps"] == 12
     wasm = np.fromfile(tmp_path / "positions").reshape(setup.mesh.vertices.shape)
     # A search ends where its last move is below a thousandth of the step, and rounding may end it
-    # one move earlier: on the layer, native paths of loads that differ by 1e-12 are 0.6 % apart.
+    # one move earlier: on the layer, native paths of loads 1e-12 apart end 0.4 % apart.
     # Wasm has to be on one of them.
     least = np.inf
     for change in range(5):

@@ -11,7 +11,12 @@ use voxsoft_voxel::{Grid, tet_mesh};
 fn boxed(shape: [usize; 3]) -> Mesh {
     let mut grid = Grid::empty(shape, [0.0; 3], 1.0, u64::MAX).unwrap();
     grid.fill_box([0.0; 3], shape.map(|n| n as f64), 1);
-    let tets = tet_mesh(&grid, u64::MAX).unwrap();
+    mesh_of(&grid)
+}
+
+/// The mesh of all filled voxels.
+fn mesh_of(grid: &Grid) -> Mesh {
+    let tets = tet_mesh(grid, u64::MAX).unwrap();
     let count = tets.tets.len();
     Mesh {
         tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
@@ -305,15 +310,7 @@ fn angle(long: usize) -> Mesh {
     let mut grid = Grid::empty([size, 3, size], [0.0; 3], 1.0, u64::MAX).unwrap();
     grid.fill_box([0.0; 3], [size as f64, 3.0, 2.0], 1);
     grid.fill_box([0.0; 3], [2.0, 3.0, size as f64], 1);
-    let tets = tet_mesh(&grid, u64::MAX).unwrap();
-    let count = tets.tets.len();
-    Mesh {
-        tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
-        tet_part: vec![0; count],
-        tet_block: (0..count as u32).map(|t| t / 5).collect(),
-        vertices: tets.vertices,
-        ..Mesh::default()
-    }
+    mesh_of(&grid)
 }
 
 #[test]
