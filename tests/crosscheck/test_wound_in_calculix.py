@@ -98,19 +98,30 @@ def in_calculix(folder, **tube):
     return strains(points, moved)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(
     shutil.which("ccx") is None, reason="CalculiX is not installed (apt install calculix-ccx)"
 )
 def test_a_single_helix_twists_as_in_calculix(tmp_path):
     # Small strain, 4e-4 around, and fibers that carry compression, as CalculiX's do.
     tube = {"modulus": 0.5 * MPa, "pressure": 10.0}
-    along, around, twist = in_calculix(tmp_path, degrees=30.0, **tube)
+    expected = in_calculix(tmp_path, degrees=30.0, **tube)
+    along, around, twist = expected
     design = wound_tube((30.0,), compression=True, wall=WALL, poisson=POISSON, **tube)
-    result = vs.simulate(design)
-    assert result.status == "ok"
-    found = strains(result.mesh.vertices, result.displacements)
-    # Finer bricks move CalculiX's numbers by 0.2 %. Measured with one voxel through the wall: twist
-    # 0.6 %, around 0.1 %; along, a tenth of around, 1.1 %; with two 0.5, 0.1 and 2.3 %.
-    assert found[2] == pytest.approx(twist, rel=0.015)
-    assert found[1] == pytest.approx(around, rel=0.01)
-    assert found[0] == pytest.approx(along, abs=0.01 * around)
+
+    def found(voxel):
+        result = vs.simulate(design.replace(voxel_size=voxel))
+        assert result.status == "ok"
+        return strains(result.mesh.vertices, result.displacements)
+
+    # Finer bricks move CalculiX's numbers by 0.2 %. Measured with two voxels through the wall:
+    # twist 0.5 %, around 0.2 %; along, an eighth of around, 1.9 %.
+    fine = found(WALL / 2)
+    assert fine[2] == pytest.approx(twist, rel=0.015)
+    assert fine[1] == pytest.approx(around, rel=0.01)
+    assert fine[0] == pytest.approx(along, abs=0.01 * around)
+    # A round wall of one voxel widens 5 % too much, without fibers as well (docs/method/fibers.md):
+    # an error of second order at least has a quarter of it left at half the size.
+    coarse = found(WALL)
+    excess = np.abs(fine - coarse)
+    assert np.all(np.abs(fine - expected) <= np.maximum(excess / 3.0, 0.003 * around))
