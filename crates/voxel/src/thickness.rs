@@ -23,14 +23,16 @@ pub struct WallThickness {
     pub cells: Vec<u16>,
     /// Number of cells of each thickness; entry 0 is 0.
     pub histogram: Vec<u64>,
-    /// The first of the thinnest cells in C order; `None` if none is filled.
+    /// The first in C order of the thinnest cells that are no bumps; `None` if none is filled.
+    ///
+    /// A bump is a cell without two cells around it along each axis, at whose face lies a block of 2 × 2 × 2 filled
+    /// cells: the rim of a disk and the pole of a ball end in rows of one cell, and are no walls.
     pub thinnest: Option<Wall>,
 }
 
 /// Computes the thickness of the material at each cell.
 ///
-/// Takes two bytes per cell. At an outer edge or tip of a rounded body a row can be short without a wall;
-/// [`cavity_walls`] avoids that.
+/// Takes two bytes per cell.
 pub fn wall_thickness(grid: &Grid) -> WallThickness {
     let [nx, ny, nz] = grid.shape();
     let filled = |index: usize| grid.cells()[index] != 0;
@@ -58,19 +60,59 @@ pub fn wall_thickness(grid: &Grid) -> WallThickness {
         }
         histogram[place] += 1;
     }
-    let least = histogram.iter().position(|&count| count > 0).unwrap_or(0) as u16;
-    let first = cells
-        .iter()
-        .position(|&thickness| least != 0 && thickness == least);
-    let thinnest = first.map(|index| Wall {
-        thickness: least,
-        cell: [index / (ny * nz), index / nz % ny, index % nz].map(|n| n as u32),
+    let cell_at = |index: usize| [index / (ny * nz), index / nz % ny, index % nz];
+    let mut thinnest: Option<(u16, usize)> = None;
+    for (index, &thickness) in cells.iter().enumerate() {
+        if thickness != 0
+            && thinnest.is_none_or(|(least, _)| thickness < least)
+            && !(thickness == 1 && is_bump(grid, cell_at(index)))
+        {
+            thinnest = Some((thickness, index));
+        }
+    }
+    let thinnest = thinnest.map(|(thickness, index)| Wall {
+        thickness,
+        cell: cell_at(index).map(|n| n as u32),
     });
     WallThickness {
         cells,
         histogram,
         thinnest,
     }
+}
+
+/// Returns true if a block of 2 × 2 × 2 filled cells lies at a face of a cell.
+fn is_bump(grid: &Grid, cell: [usize; 3]) -> bool {
+    (0..6).any(|direction| {
+        beside(grid, cell, direction / 2, direction % 2 == 1)
+            .is_some_and(|near| grid.get(near) != 0 && is_in_block(grid, near))
+    })
+}
+
+/// Returns true if a filled cell is one of a block of 2 × 2 × 2 of them.
+fn is_in_block(grid: &Grid, cell: [usize; 3]) -> bool {
+    (0..8).any(|corner| {
+        (0..8).all(|part| {
+            let mut at = Some(cell);
+            for axis in 0..3 {
+                if part >> axis & 1 == 1 {
+                    at = at.and_then(|at| beside(grid, at, axis, corner >> axis & 1 == 1));
+                }
+            }
+            at.is_some_and(|at| grid.get(at) != 0)
+        })
+    })
+}
+
+/// Returns the next cell along an axis, if it is in the grid.
+fn beside(grid: &Grid, mut cell: [usize; 3], axis: usize, forward: bool) -> Option<[usize; 3]> {
+    let next = if forward {
+        cell[axis].checked_add(1)
+    } else {
+        cell[axis].checked_sub(1)
+    };
+    cell[axis] = next.filter(|&n| n < grid.shape()[axis])?;
+    Some(cell)
 }
 
 /// Updates the thickness by the runs of filled cells in `lines` adjacent lines.
@@ -140,16 +182,7 @@ fn wall_behind(
     let mut at = cell.map(|n| n as usize);
     let mut wall: Option<Wall> = None;
     loop {
-        let next = if forward {
-            at[axis].checked_add(1)
-        } else {
-            at[axis].checked_sub(1)
-        };
-        let beyond = next.filter(|&n| n < grid.shape()[axis]).map(|n| {
-            let mut cell = at;
-            cell[axis] = n;
-            cell
-        });
+        let beyond = beside(grid, at, axis, forward);
         match beyond {
             Some(cell) if grid.get(cell) != 0 => {
                 let thickness = wall.map_or(1, |wall| wall.thickness + 1);
@@ -221,6 +254,48 @@ mod tests {
         assert_eq!(found.histogram, [0, 0, 0, 108]);
         let empty = Grid::empty([2; 3], [0.0; 3], 1.0, 8).unwrap();
         assert_eq!(wall_thickness(&empty).thinnest, None);
+    }
+
+    /// Cells within a distance of a point in cells, along some axes.
+    fn round(shape: [usize; 3], radius: f64, axes: &[usize]) -> Grid {
+        let middle = |axis: usize| shape[axis] as f64 / 2.0;
+        let mut grid = Grid::empty(shape, [0.0; 3], 1.0, u64::MAX).unwrap();
+        for index in 0..shape.iter().product::<usize>() {
+            let cell = [
+                index / (shape[1] * shape[2]),
+                index / shape[2] % shape[1],
+                index % shape[2],
+            ];
+            let away = |&axis: &usize| (cell[axis] as f64 + 0.5 - middle(axis)).powi(2);
+            if axes.iter().map(away).sum::<f64>() <= radius * radius {
+                grid.set(cell, 1);
+            }
+        }
+        grid
+    }
+
+    #[test]
+    fn rims_and_poles_of_round_bodies_are_no_walls() {
+        for tenths in 20..120 {
+            let radius = f64::from(tenths) / 10.0;
+            for size in [24, 25] {
+                let ball = round([size; 3], radius, &[0, 1, 2]);
+                let disk = round([size, 5, size], radius, &[0, 2]);
+                for (body, name) in [(ball, "ball"), (disk, "disk")] {
+                    let thickness = wall_thickness(&body).thinnest.unwrap().thickness;
+                    assert!(thickness > 1, "{name} of {radius} in {size}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn wall_of_one_cell_beside_a_block_is_a_wall() {
+        let mut grid = block([6, 6, 9]);
+        grid.fill_box([1.0, 0.0, 4.0], [6.0, 6.0, 9.0], 0);
+        let found = wall_thickness(&grid).thinnest;
+        let cell = [0, 0, 5];
+        assert_eq!(found, Some(Wall { thickness: 1, cell }));
     }
 
     #[test]

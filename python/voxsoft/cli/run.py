@@ -162,8 +162,7 @@ def _show(outcome: JobOutcome[Result], folder: Path) -> None:
     _show_factors(result, bars)
     _show_reactions(result, bars)
     for name, tendon in result.tendons.items():
-        pull = bars.tendons[name]["tension"] if bars and name in bars.tendons else None
-        say(f"{plain(name)}: {tendon.words}{_with(pull)}")
+        say(f"{plain(name)}: {tendon.words}{_tendon_in_words(bars, name)}")
     for supply in result.supplies:
         say(plain(supply.sentence))
     for contact in result.contacts:
@@ -258,6 +257,14 @@ def _probe_rows(result: Result, bars: ErrorBars | None) -> Iterator[list[str]]:
         yield [name, *(f"{round(component * 1e3, 3) + 0.0:.3f} mm" for component in moved)]
         if bars is not None and name in bars.probes:
             yield ["  estimate", *map(str, bars.probes[name])]
+
+
+def _tendon_in_words(bars: ErrorBars | None, name: str) -> str:
+    from voxsoft.comparison.error_bar import tendon_in_words
+
+    if bars is None or name not in bars.tendons:
+        return ""
+    return f", estimate {tendon_in_words(bars.tendons[name])}"
 
 
 def _with(bar: ErrorBar | None) -> str:

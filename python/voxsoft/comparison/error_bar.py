@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from voxsoft.units import KINDS, format_quantity, si_value
@@ -94,6 +94,23 @@ class ErrorBar:
         if self.unknown:
             return {"value": self.value, "estimate": None, "error": None, "reason": self.unknown}
         return {"value": self.value, "estimate": self.estimate, "error": self.error}
+
+
+def tendon_in_words(bars: Named) -> str:
+    """Write the answer of a tendon: its tension, or the length to which a given tension draws it.
+
+    Examples
+    --------
+    >>> pull, drawn = ErrorBar(3.0, 3.0, 0.0, "force"), ErrorBar(-0.0025, -0.0026, 3e-5, "length")
+    >>> tendon_in_words({"tension": pull, "shortening": drawn, "slack": drawn})
+    '2.600 ± 0.030 mm'
+    """
+    if bars["slack"].value > 0.0:
+        return str(bars["slack"])
+    if not bars["tension"].is_exact:
+        return str(bars["tension"])
+    drawn = bars["shortening"]
+    return str(replace(drawn, value=abs(drawn.value), estimate=abs(drawn.estimate)))
 
 
 def vector_in_words(components: Sequence[ErrorBar]) -> str:

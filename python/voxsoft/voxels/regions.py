@@ -132,8 +132,8 @@ class WallThickness:
     histogram : tuple of int
         Number of cells of each thickness; entry 0 is 0.
     thinnest : Wall or None
-        First of the thinnest cells; None if no cell is filled. At the outer edge of a rounded
-        body a row can be short without there being a wall; the walls of cavities are free of that.
+        First of the thinnest cells that are no bumps; None if no cell is filled. A bump is a row
+        of one cell at whose face lies a block of 2 × 2 × 2 cells: the rim of a disk, a ball's pole.
     """
 
     cells: NDArray[np.uint16] = field(repr=False)

@@ -11,6 +11,7 @@ import voxsoft as vs
 from voxsoft.cli.app import app
 from voxsoft.comparison import path_error_bars
 from voxsoft.comparison.contact_patch import voxels_across
+from voxsoft.comparison.error_bar import tendon_in_words
 from voxsoft.comparison.path_bars import bars_of
 from voxsoft.design import Contact, MassSupply, Object, Symmetry, Tendon, VolumeSupply
 from voxsoft.errors import SimulationError
@@ -225,26 +226,34 @@ def test_the_bar_of_a_pointed_body_holds():
     assert holds(bars.contacts["body", "tip"]["pressed"], POINTED)
 
 
-def test_a_tendon_of_given_length_has_a_bar_of_its_tension():
-    beam = vs.Design(
+def pulled(**line):
+    """A beam bent by a tendon above its middle."""
+    through = [(0, 5 * mm, 8 * mm), (40 * mm, 5 * mm, 8 * mm)]
+    return vs.Design(
         name="pulled",
         voxel_size=5 * mm,
         parts=[vs.Part(shape=vs.Box(size=(40 * mm, 10 * mm, 10 * mm)), material=RUBBER)],
         clamps=[vs.Clamp(region=vs.Region(x=(0, 0)))],
-        tendons=[
-            Tendon(
-                name="pull",
-                through=[(0, 5 * mm, 8 * mm), (40 * mm, 5 * mm, 8 * mm)],
-                shortening="2 mm",
-            )
-        ],
+        tendons=[Tendon(name="pull", through=through, **line)],
     )
-    bars = vs.error_bars(vs.simulate(beam)).tendons["pull"]
+
+
+def test_a_tendon_of_given_length_has_a_bar_of_its_tension():
+    bars = vs.error_bars(vs.simulate(pulled(shortening="2 mm"))).tendons["pull"]
     # In N on voxels of 1.25 mm; on 2.5 mm it is 0.336, on 5 mm 0.404.
     assert holds(bars["tension"], 0.286)
     assert 0.0 < bars["tension"].error < 0.5 * 0.286
     assert bars["shortening"].error < 1e-4 * mm
     assert bars["length"].error < 1e-4 * mm
+    assert tendon_in_words(bars) == str(bars["tension"])
+
+
+def test_a_tendon_of_given_tension_has_a_bar_of_the_length_drawn_in():
+    bars = vs.error_bars(vs.simulate(pulled(tension="0.3 N"))).tendons["pull"]
+    finest = vs.simulate(pulled(tension="0.3 N").replace(voxel_size=1.25 * mm))
+    assert holds(bars["shortening"], finest.tendons["pull"].shortening)
+    assert bars["shortening"].error > 0.01 * bars["shortening"].value
+    assert tendon_in_words(bars) == str(bars["shortening"])
 
 
 def swinging(**entries):

@@ -5,6 +5,8 @@ import pickle
 import numpy as np
 import pytest
 
+import voxsoft as vs
+from voxsoft.design.discretization.discretize import voxels_of
 from voxsoft.errors import MeshError, VoxelError
 from voxsoft.voxels import Voxels
 
@@ -226,3 +228,16 @@ def test_walls_are_counted_in_voxels():
     assert sum(grid.wall_thickness.histogram) == grid.count
     assert [wall.thickness for wall in grid.cavity_walls] == [1]
     assert Voxels.empty((1, 1, 1), 0.1).wall_thickness.thinnest is None
+
+
+def test_rims_of_round_bodies_are_no_walls():
+    cone = vs.Cone(radius=15 * MM, top_radius=7 * MM, height=40 * MM)
+    rubber = vs.NeoHookean(young=60e3)
+    for shape in (vs.Sphere(radius=11 * MM), vs.Cylinder(radius=9 * MM, height=9 * MM), cone):
+        for size in (1 * MM, 1.7 * MM, 2.5 * MM, 4 * MM):
+            cells = voxels_of(
+                vs.Design(
+                    name="round", voxel_size=size, parts=[vs.Part(shape=shape, material=rubber)]
+                )
+            )
+            assert cells.wall_thickness.thinnest.thickness > 1

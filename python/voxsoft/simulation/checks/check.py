@@ -503,10 +503,7 @@ def _locks(body: Design | Voxels, voxels: Voxels, wall: Wall) -> bool:
 
 
 def _thinnest_wall(voxels: Voxels) -> Wall | None:
-    """The thinnest wall of a cavity, or of the body where there is no cavity.
-
-    Rounded ends of a body have rows of one voxel that are no walls.
-    """
+    """The thinnest wall of a cavity, or of the body where there is no cavity."""
     walls = sorted(voxels.cavity_walls, key=lambda wall: wall.thickness)
     return walls[0] if walls else voxels.wall_thickness.thinnest
 

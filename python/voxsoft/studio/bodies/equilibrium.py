@@ -11,7 +11,7 @@ import numpy as np
 
 from voxsoft._shown import rounded
 from voxsoft.comparison.bars import error_bars
-from voxsoft.comparison.error_bar import ErrorBars, share_of, vector_in_words
+from voxsoft.comparison.error_bar import ErrorBars, share_of, tendon_in_words, vector_in_words
 from voxsoft.errors import VoxSoftError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation import Diagnostic, Result
@@ -139,7 +139,7 @@ def equilibrium_of(
             events.Summarized(
                 name=name,
                 words=tendon.words,
-                estimate=str(bars.tendons[name]["tension"]) if name in bars.tendons else "",
+                estimate=tendon_in_words(bars.tendons[name]) if name in bars.tendons else "",
             )
             for name, tendon in result.tendons.items()
         ],
