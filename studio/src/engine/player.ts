@@ -2,6 +2,7 @@
 // Nothing here knows whether it runs in a worker; time is handed in.
 import type { AnyEvent, BodyEvent, Field, Moment, OverlapEvent, StatEvent } from "../protocol";
 import { CREDITS, PROTOCOL } from "../protocol";
+import { bytesOf } from "./base64";
 import type { Core, Told } from "./core";
 import type { Draft } from "./engine";
 
@@ -16,6 +17,8 @@ export interface Notes {
   readonly sentence: string;
   readonly fields: Field[];
   readonly body: BodyEvent;
+  /** Smooth surface of the shapes as a binary message, base64; empty where none was traced. */
+  readonly smooth?: string;
   /** Overlap of the body with itself as it is shown first. */
   readonly overlap?: OverlapEvent | null;
   /** Poses of objects then, and contacts. */
@@ -98,8 +101,10 @@ export class Player {
       can_redo: false,
       histories: [],
     });
-    this.audience.event({ ...notes.body, smooth: false });
+    const { smooth = "" } = notes;
+    this.audience.event({ ...notes.body, smooth: smooth !== "" });
     this.audience.binary(this.run.topology());
+    if (smooth) this.audience.binary(bytesOf(smooth));
     if (notes.overlap) this.audience.event(notes.overlap);
     if (notes.moment) this.tellMoment(notes.moment);
     this.audience.event({ t: "log", level: "info", text: notes.sentence });

@@ -34,6 +34,7 @@ export class WasmEngine implements Engine {
         const decoded = decode(data);
         if (decoded.kind === "frame") listener.frame(decoded);
         else if (decoded.kind === "topology") listener.topology(decoded);
+        else listener.smooth(decoded);
       } else if (data.kind === "failed") report("refused", data.reason);
       else {
         if (data.event.t === "hello") report("open");

@@ -95,12 +95,13 @@ function pass(seconds: number): void {
   }
 }
 let shown: number;
+let run: Core;
 
 beforeEach(async () => {
   [events, frames, seq, shown] = [[], [], 0, 0];
   // The time that passes is that of the test: no turn is cut short.
   clock = 0;
-  const run = await Core.open(file("../../public/voxsoft.wasm"), file("beam.scene"), () => clock);
+  run = await Core.open(file("../../public/voxsoft.wasm"), file("beam.scene"), () => clock);
   player = new Player(run, NOTES, {
     event: (event) => events.push(event),
     binary(message) {
@@ -115,6 +116,24 @@ describe("a scene that plays in the page", () => {
   it("greets as a server does", () => {
     expect(events.map((event) => event.t)).toEqual(["hello", "document", "body", "log", "stat"]);
     expect(stat().state).toBe("paused");
+  });
+
+  it("tells the smooth shape that is written beside it", () => {
+    // A header alone, with no vertices.
+    const message = new DataView(new ArrayBuffer(64));
+    message.setUint32(0, 0x31465856, true);
+    message.setUint8(4, 3);
+    message.setUint32(8, 4, true);
+    const text = btoa(String.fromCharCode(...new Uint8Array(message.buffer)));
+    const kinds: string[] = [];
+    const bodies: BodyEvent[] = [];
+    new Player(run, { ...NOTES, smooth: text }, {
+      event: (event) => event.t === "body" && bodies.push(event),
+      binary: (sent) => kinds.push(decode(sent).kind),
+    }).greet();
+    expect(bodies.map((body) => body.smooth)).toEqual([true]);
+    expect(kinds).toEqual(["topology", "smooth"]);
+    expect(events.some((event) => event.t === "body" && event.smooth)).toBe(false);
   });
 
   it("sags to rest, tells so, and keeps its frames", () => {

@@ -2,6 +2,8 @@
 
 import pytest
 
+import voxsoft as vs
+
 pytestmark = pytest.mark.browser
 
 ROD = """
@@ -31,6 +33,9 @@ TRACED = """(() => {
   return option !== null && !option.disabled && voxsoft.triangles > 0;
 })()"""
 
+# Triangles of the voxels of a rod: 8 layers of 4 x 4. The shape that is traced has more.
+MOST = 2 * (2 * 4 * 4 + 4 * 4 * 8)
+
 
 @pytest.fixture
 def opened(serving, tmp_path, open_tab):
@@ -51,12 +56,10 @@ def opened(serving, tmp_path, open_tab):
 def test_cut_voxels_are_drawn_smooth_until_a_hand_chooses(opened):
     tab, show = opened(ROD)
     assert show.input_value() == "smooth"
-    # The shape is finer than the voxels, which have few triangles: 8 layers of 4 x 4.
-    most = 2 * (2 * 4 * 4 + 4 * 4 * 8)
-    tab.until(f"voxsoft.triangles > {2 * most}")
+    tab.until(f"voxsoft.triangles > {2 * MOST}")
     tab.shot("cut-voxels")
     show.select_option("voxels")
-    voxels = tab.until(f"voxsoft.triangles <= {most} && voxsoft.triangles")
+    voxels = tab.until(f"voxsoft.triangles <= {MOST} && voxsoft.triangles")
     # The choice stays for the next body.
     topology = tab.page.evaluate("voxsoft.topology")
     tab.page.locator(".dv-default-tab", has_text="Design").click()
@@ -66,6 +69,22 @@ def test_cut_voxels_are_drawn_smooth_until_a_hand_chooses(opened):
     tab.until(f"voxsoft.topology !== {topology} && {TRACED}")
     assert show.input_value() == "voxels"
     assert tab.page.evaluate("voxsoft.triangles") == voxels + 2 * 2 * 4 * 4
+    assert tab.errors == []
+
+
+def test_a_page_from_disk_draws_cut_voxels_smooth(alone, tmp_path):
+    (tmp_path / "rod.toml").write_text(ROD)
+    path = tmp_path / "rod.html"
+    vs.load(tmp_path / "rod.toml").show().save(path)
+    tab = alone(path.as_uri())
+    tab.until(f"window.voxsoft !== undefined && {TRACED} && voxsoft.triangles > {2 * MOST}")
+    show = tab.page.get_by_label("Show as")
+    assert show.input_value() == "smooth"
+    tab.shot("page-of-cut-voxels")
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.01")
+    show.select_option("voxels")
+    tab.until(f"voxsoft.triangles <= {MOST}")
     assert tab.errors == []
 
 

@@ -17,6 +17,7 @@ from voxsoft.studio.bodies.body import StudioBody
 from voxsoft.studio.motion.player import Player
 from voxsoft.studio.outputs.html import page_of
 from voxsoft.studio.protocol import commands
+from voxsoft.studio.protocol.wire import MessageKind
 
 CYLINDER = families.family_text("paper-cylinder")
 
@@ -105,6 +106,16 @@ def test_a_body_with_a_layer_has_a_page():
     assert len(fabric["triangles"]) == 3 * 2 * 20 * 6
     assert set(fabric["triangles"]) <= set(range(body["surface_vertices"]))
     assert fabric["center"] == pytest.approx([0.04, 0.012, 0.0])
+
+
+def test_a_page_holds_the_smooth_surface_of_its_shapes():
+    notes = notes_of(families.cylinder().show().text)
+    message = base64.b64decode(notes["smooth"], validate=True)
+    kind, topology = message[4], int.from_bytes(message[8:12], "little")
+    assert (kind, topology) == (MessageKind.SMOOTH, notes["body"]["topology"])
+    vertices, triangles = (int.from_bytes(message[at : at + 4], "little") for at in (24, 28))
+    # The closed surface of a body with a chamber: two spheres of it, by Euler's formula.
+    assert vertices - triangles / 2 == 4
 
 
 def test_designs_that_cannot_move_live_are_reported():

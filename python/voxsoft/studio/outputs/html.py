@@ -25,6 +25,7 @@ from voxsoft.studio.bodies.fields import FIELDS
 from voxsoft.studio.bodies.objects import moments_of
 from voxsoft.studio.bodies.overlap_event import overlap_of
 from voxsoft.studio.bodies.scene import scene_of
+from voxsoft.studio.bodies.smooth import pack_smooth
 from voxsoft.studio.outputs.page import page_file
 from voxsoft.studio.protocol import events
 
@@ -44,6 +45,8 @@ class Notes(msgspec.Struct):
     sentence: str
     fields: list[events.Field]
     body: events.Body
+    #: Smooth surface of the shapes as the page reads it, base64; empty where none was traced.
+    smooth: str = ""
     #: Overlap of the body with itself as it is shown first; None: nowhere, or unloaded.
     overlap: events.Overlap | None = None
     #: Poses of objects as they are shown first, and contacts then; None: nowhere, or unloaded.
@@ -135,6 +138,7 @@ def page_of_body(
         sentence=sentence or "Press play, pull on the body, change the loads.",
         fields=list(FIELDS),
         body=body.event(),
+        smooth=_smooth(body),
         overlap=None if positions is None else _overlap(body, design, positions),
         # The frame that the page shows first has number 0 there.
         moment=moment and msgspec.structs.replace(moment, frame=0, fields=False),
@@ -142,6 +146,11 @@ def page_of_body(
     )
     scene = scene_of(body).pack(msgspec.json.encode(notes).decode(), positions)
     return LivePage(_filled(scene, design.name))
+
+
+def _smooth(body: StudioBody) -> str:
+    packed = pack_smooth(body.setup.design, body.voxels, body.topology)
+    return "" if packed is None else base64.b64encode(packed).decode()
 
 
 def _overlap(
