@@ -127,10 +127,14 @@ describe("a scene that plays in the page", () => {
     const text = btoa(String.fromCharCode(...new Uint8Array(message.buffer)));
     const kinds: string[] = [];
     const bodies: BodyEvent[] = [];
-    new Player(run, { ...NOTES, smooth: text }, {
-      event: (event) => event.t === "body" && bodies.push(event),
-      binary: (sent) => kinds.push(decode(sent).kind),
-    }).greet();
+    new Player(
+      run,
+      { ...NOTES, smooth: text },
+      {
+        event: (event) => event.t === "body" && bodies.push(event),
+        binary: (sent) => kinds.push(decode(sent).kind),
+      },
+    ).greet();
     expect(bodies.map((body) => body.smooth)).toEqual([true]);
     expect(kinds).toEqual(["topology", "smooth"]);
     expect(events.some((event) => event.t === "body" && event.smooth)).toBe(false);
