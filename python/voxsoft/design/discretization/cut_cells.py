@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from typing import Any, Final
 
 import numpy as np
@@ -116,7 +117,7 @@ def cut_cells(design: Design, size: float) -> CutCells:
         if not state.any():
             hint = "use a smaller voxel_size, or check its sizes and place"
             raise ShapeError(f"parts[{index}]", "is empty: it fills no part of any voxel", hint)
-        near |= _mixed(state)
+        near |= _unlike(state) | (state == 1)
         filled[state == 2] = 1.0
         part[state == 2] = index
     cells = np.argwhere(near)
@@ -133,8 +134,9 @@ def cut_cells(design: Design, size: float) -> CutCells:
 def cuts_cells(design: Design, size: float) -> bool:
     """Return True if the surface of a design, or that between its parts, cuts a cell of the grid.
 
-    A cell near the surface is whole where points all over it, up to its faces, are of one part, or
-    of none. Parameters and errors are those of :func:`cut_cells`.
+    A cell near the surface is whole where all its small cubes are of one part, or of none, and
+    points at its faces, edges and corners toward cells of other parts too. Parameters and errors
+    are those of :func:`cut_cells`.
 
     Examples
     --------
@@ -149,22 +151,27 @@ def cuts_cells(design: Design, size: float) -> bool:
     low = np.min([corner for corner, _ in bounds], axis=0) - 1
     counts = np.max([corner for _, corner in bounds], axis=0) + 1 - low
     _refuse_too_many(counts, len(shapes))
-    near = np.zeros(counts, dtype=bool)
-    for shape in shapes:
-        state = _state(shape, design, size, phase + low * size, counts)
+    owner = np.zeros(counts, dtype=np.uint8)
+    for index in range(len(shapes), 0, -1):  # the first part wins
+        state = _state(shapes[index - 1], design, size, phase + low * size, counts)
         if (state == 1).any() or not state.any():
             return True
-        near |= _mixed(state)
+        owner[state == 2] = index
     built = built_parts(design)
-    cells = np.argwhere(near)
+    cells, padded = np.argwhere(_unlike(owner)), np.pad(owner, 1)
     for start in range(0, len(cells), _CHUNK):
-        corners = phase + (cells[start : start + _CHUNK] + low) * size
-        points = (corners[:, None] + size * _ALL_OVER).reshape(-1, 3)
-        owner = np.zeros(len(points), dtype=np.uint8)
-        for index in range(len(built), 0, -1):  # the first part wins
-            owner[built[index - 1].evaluate(points) < 0.0] = index
-        if np.ptp(owner.reshape(-1, len(_ALL_OVER)), axis=1).any():
-            return True
+        chunk = cells[start : start + _CHUNK]
+        own = owner[tuple(chunk.T)]
+        beyond = padded[tuple(np.moveaxis(chunk[:, None] + 1 + _AROUND, -1, 0))]
+        differs = (beyond != own[:, None]).astype(np.float32)
+        rows, places = np.nonzero(differs @ _TOWARD)
+        points = phase + (chunk[rows] + low) * size + size * _ALL_OVER[places]
+        expected, left = own[rows], np.arange(len(points))
+        for index, shape in enumerate(built, 1):  # points of a part are outside all before it
+            is_inside = shape.evaluate(points[left]) < 0.0
+            if (is_inside != (expected[left] == index)).any():
+                return True
+            left = left[~is_inside]
     return False
 
 
@@ -232,6 +239,13 @@ def measures_of(
 _INSET = np.array([_RIM, 0.25, 0.5, 0.75, 1.0 - _RIM])
 #: Points in a cell, as parts of its edge.
 _ALL_OVER = np.stack(np.meshgrid(_INSET, _INSET, _INSET, indexing="ij"), axis=-1).reshape(-1, 3)
+#: Steps to the cells around one, (26, 3).
+_AROUND = np.array([step for step in product((-1, 0, 1), repeat=3) if any(step)])
+#: Points of a cell that lie at the face, edge or corner toward each of them, (26, 125).
+_TOWARD = np.all(
+    (_AROUND[:, None] == 0) | (np.where(_AROUND < 0, _RIM, 1.0 - _RIM)[:, None] == _ALL_OVER),
+    axis=2,
+).astype(np.float32)
 
 
 def _triple(values: Floats) -> Triple:
@@ -273,13 +287,13 @@ def _state(
     return state
 
 
-def _mixed(state: NDArray[np.uint8]) -> NDArray[np.bool_]:
-    """Cells partly filled, or beside one in another state: the surface may touch them."""
-    lowest, highest = state, state
+def _unlike(values: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """Cells beside one of another value, at a face, an edge or a corner."""
+    lowest, highest = values, values
     for axis in range(3):
         lowest, highest = around(lowest, axis, np.minimum), around(highest, axis, np.maximum)
-    mixed: NDArray[np.bool_] = (lowest != highest) | (state == 1)
-    return mixed
+    unlike: NDArray[np.bool_] = lowest != highest
+    return unlike
 
 
 def around(values: NDArray[Any], axis: int, extreme: np.ufunc) -> NDArray[Any]:
