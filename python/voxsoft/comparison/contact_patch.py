@@ -11,9 +11,8 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from voxsoft._components import components
 from voxsoft.simulation import Result
 
 Floats = NDArray[np.float64]
@@ -65,8 +64,7 @@ def voxels_across(result: Result) -> float | None:
     edges = result.mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     pairs = number[edges]
     pairs = pairs[(pairs >= 0).all(axis=1)]
-    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(pressed), len(pressed)))
-    _, patches = connected_components(graph, directed=False)
+    patches = components(pairs[:, 0], pairs[:, 1], len(pressed))
     widths = []
     for patch in range(patches.max() + 1):
         own = pressed[patches == patch]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import meshio
-
 from voxsoft.files.mesh_file import MeshFile
 
 
@@ -21,5 +19,7 @@ def write_stl(path: Path, content: MeshFile) -> None:
 
 def write_obj(path: Path, content: MeshFile) -> None:
     """Write Wavefront OBJ."""
+    import meshio  # slow to load
+
     triangles = [("triangle", content.mesh.triangles)]
     meshio.obj.write(str(path), meshio.Mesh(content.mesh.vertices, triangles))

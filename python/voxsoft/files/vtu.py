@@ -12,9 +12,9 @@ import mmap
 import os
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape
 
-import meshio
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,6 +23,9 @@ from voxsoft.files.mesh_file import MeshFile, vertex_set, with_cavities
 from voxsoft.formats.region_names import UNIT_COMMENT
 from voxsoft.formats.report import ReadReport
 from voxsoft.mesh import Mesh
+
+if TYPE_CHECKING:
+    import meshio
 
 _REGION = "region:"
 _CLOSE = b"</VTKFile>"
@@ -34,6 +37,8 @@ _OWN_ARRAYS = {"part", "cavity", "voxel", "voxel_size", "fraction", "moments", "
 
 def write(path: Path, content: MeshFile) -> None:
     """Write a compressed binary VTU file."""
+    import meshio  # slow to load
+
     mesh = content.mesh
     counts = [len(cavity.triangles) for cavity in mesh.cavities]
     cells = [("tetra", mesh.tets)]
@@ -102,6 +107,8 @@ def read(path: Path) -> MeshFile:
     FileError
         If it has no end, or its arrays cannot be unpacked.
     """
+    import meshio  # slow to load
+
     try:
         data = meshio.vtu.read(str(path))
     except (Exception, SystemExit) as error:

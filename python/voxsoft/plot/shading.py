@@ -46,18 +46,36 @@ def depth_contrast(seen: Raster) -> Floats:
     Computed from the difference between a blurred depth buffer and the depth itself, Luft, Colditz
     and Deussen (2006), doi:10.1145/1141911.1142016. It distinguishes a pore from a bump.
     """
-    from scipy.ndimage import gaussian_filter
-
     reach = _REACH * max(seen.width, seen.height)
     # Blurred values change slowly: every second row and column is enough.
     inside = seen.spread(np.ones(len(seen.pixels)), 0.0)[::2, ::2]
     depth = seen.spread(seen.depth, 0.0)[::2, ::2]
-    weight = gaussian_filter(inside, reach / 2)
-    blurred = gaussian_filter(depth, reach / 2) / np.maximum(weight, 1e-6)
+    weight = _blurred(inside, reach / 2)
+    blurred = _blurred(depth, reach / 2) / np.maximum(weight, 1e-6)
     rows, columns = np.divmod(seen.pixels, seen.width)
     behind = np.clip((seen.depth - blurred[rows // 2, columns // 2]) / (3.0 * reach), 0.0, 1.0)
     brightness: Floats = 1.0 - _DARKEST * behind
     return brightness
+
+
+def _blurred(image: Floats, spread: float) -> Floats:
+    """Blur an image by a Gaussian of a standard deviation in pixels, mirrored at the border."""
+    rows, columns = (_gaussian(count, spread) for count in image.shape)
+    blurred: Floats = rows @ image @ columns.T
+    return blurred
+
+
+def _gaussian(count: int, spread: float) -> Floats:
+    """Weights of the pixels of a row in each blurred pixel, (n, n), up to four deviations away."""
+    reach = round(4.0 * spread)
+    steps = np.arange(-reach, reach + 1)
+    weights = np.exp(-0.5 * (steps / spread) ** 2)
+    # Pixels n, n + 1 … beyond the border are n - 1, n - 2 … within.
+    places = (np.arange(count)[:, None] + steps) % (2 * count)
+    found = np.zeros((count, count))
+    rows = np.broadcast_to(np.arange(count)[:, None], places.shape)
+    np.add.at(found, (rows, np.minimum(places, 2 * count - 1 - places)), weights / weights.sum())
+    return found
 
 
 def mesh_lines(seen: Raster, flat_corners: Floats) -> Floats:

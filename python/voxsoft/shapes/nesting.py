@@ -14,6 +14,8 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft._components import components
+
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Nested = Literal["solid", "void"]
@@ -198,17 +200,10 @@ def _edges(triangles: Indices) -> tuple[Indices, NDArray[np.int64]]:
 
 def _joined(triangles: Indices, through: NDArray[np.bool_]) -> Indices:
     """Number triangles by their component, connected through some of their edges, (t,)."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     edge, _ = _edges(triangles)
     face = np.repeat(np.arange(len(triangles)), 3)
     size = len(triangles) + int(edge.max(initial=-1)) + 1
-    links = coo_array(
-        (np.ones(int(through.sum())), (face[through], edge[through] + len(triangles))),
-        shape=(size, size),
-    )
-    _, label = connected_components(links, directed=False)
+    label = components(face[through], edge[through] + len(triangles), size)
     _, number = np.unique(label[: len(triangles)], return_inverse=True)
     return number.reshape(-1).astype(np.int64)
 

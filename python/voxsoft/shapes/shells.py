@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft._components import components
+
 Indices = NDArray[np.int64]
 
 
@@ -86,17 +88,12 @@ def holes_of(points: NDArray[np.float64], triangles: Indices) -> tuple[Hole, ...
     >>> holes_of(corners, np.array([[0, 1, 2]]))
     (Hole(edges=3, width=4.0, center=(1.5, 2.0, 0.0)),)
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     edges, uses = np.unique(edges, axis=0, return_counts=True)
     bare = edges[uses == 1]
     if not len(bare):
         return ()
-    count = len(points)
-    links = coo_array((np.ones(len(bare)), (bare[:, 0], bare[:, 1])), shape=(count, count))
-    _, label = connected_components(links, directed=False)
+    label = components(bare[:, 0], bare[:, 1], len(points))
     found = []
     for each in np.unique(label[bare[:, 0]]):
         rim = points[label == each]

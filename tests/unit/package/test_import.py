@@ -6,6 +6,9 @@ from importlib.metadata import version
 
 import pytest
 
+import voxsoft as vs
+from voxsoft.units import mm
+
 #: Modules that take long to load, and are loaded by the names that need them.
 HEAVY = {"numpy", "scipy", "pydantic", "optuna", "matplotlib", "pandas", "voxsoft._core"}
 
@@ -37,6 +40,29 @@ def test_a_run_loads_no_library_that_only_plots_studies_and_fits_need():
         "vs.simulate(families.beam()).metrics"
     )
     assert not {"scipy", "matplotlib", "optuna", "pandas"} & modules
+
+
+@pytest.mark.parametrize(
+    ("command", "unneeded"),
+    [
+        ("check", {"scipy", "matplotlib", "meshio", "optuna", "pandas"}),
+        ("run", {"scipy", "optuna", "pandas"}),
+    ],
+)
+def test_a_command_loads_no_library_that_it_does_not_need(command, unneeded, tmp_path):
+    # A round body, of cut voxels; a run draws its thumbnail and writes a file of VTK.
+    file = tmp_path / "rod.toml"
+    vs.Design(
+        name="rod",
+        voxel_size=5 * mm,
+        parts=[vs.Part(shape=vs.Cylinder(radius=8 * mm, height=40 * mm), material="ecoflex-00-30")],
+        clamps=[vs.Clamp(region=vs.Region(z=(0, 0)))],
+        loads=[vs.Gravity()],
+    ).save(file)
+    out = ["--out", str(tmp_path / "run")] if command == "run" else []
+    arguments = [command, str(file), *out]
+    line = f"from voxsoft.cli.app import app; app({arguments}, standalone_mode=False)"
+    assert unneeded & loaded_by(line) == set()
 
 
 def test_the_package_is_a_program():

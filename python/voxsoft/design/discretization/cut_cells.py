@@ -117,7 +117,7 @@ def cut_cells(design: Design, size: float) -> CutCells:
         if not state.any():
             hint = "use a smaller voxel_size, or check its sizes and place"
             raise ShapeError(f"parts[{index}]", "is empty: it fills no part of any voxel", hint)
-        near |= _unlike(state) | (state == 1)
+        near |= beside_others(state) | (state == 1)
         filled[state == 2] = 1.0
         part[state == 2] = index
     cells = np.argwhere(near)
@@ -158,7 +158,7 @@ def cuts_cells(design: Design, size: float) -> bool:
             return True
         owner[state == 2] = index
     built = built_parts(design)
-    cells, padded = np.argwhere(_unlike(owner)), np.pad(owner, 1)
+    cells, padded = np.argwhere(beside_others(owner)), np.pad(owner, 1)
     for start in range(0, len(cells), _CHUNK):
         chunk = cells[start : start + _CHUNK]
         own = owner[tuple(chunk.T)]
@@ -287,8 +287,8 @@ def _state(
     return state
 
 
-def _unlike(values: NDArray[np.uint8]) -> NDArray[np.bool_]:
-    """Cells beside one of another value, at a face, an edge or a corner."""
+def beside_others(values: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """Cells with one of another value at a face, edge or corner; beyond the grid lie zeros."""
     lowest, highest = values, values
     for axis in range(3):
         lowest, highest = around(lowest, axis, np.minimum), around(highest, axis, np.maximum)

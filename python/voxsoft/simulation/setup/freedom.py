@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft._components import components
 from voxsoft.simulation.setup.contact import has_contact
 from voxsoft.simulation.setup.setup import Setup
 
@@ -53,14 +54,10 @@ def free_motion(setup: Setup) -> str:
 
 def _joined(setup: Setup) -> list[NDArray[np.intp]]:
     """Find the vertices of each component."""
-    from scipy.sparse import coo_array  # slow to load
-    from scipy.sparse.csgraph import connected_components
-
-    tets, count = setup.mesh.tets, len(setup.mesh.vertices)
-    pairs = tets[:, :1].repeat(3, axis=1).ravel(), tets[:, 1:].ravel()
-    links = coo_array((np.ones(len(pairs[0])), pairs), shape=(count, count))
-    number, labels = connected_components(links, directed=False)
-    return [np.flatnonzero(labels == label) for label in range(number)]
+    tets = setup.mesh.tets
+    first, others = tets[:, :1].repeat(3, axis=1), tets[:, 1:]
+    labels = components(first.ravel(), others.ravel(), len(setup.mesh.vertices))
+    return [np.flatnonzero(labels == label) for label in range(labels.max(initial=-1) + 1)]
 
 
 def _free(points: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[np.float64]:

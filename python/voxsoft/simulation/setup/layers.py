@@ -18,6 +18,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft._components import components
 from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design, Layer
 from voxsoft.design.discretization.cut_voxels import CutVoxels
@@ -418,9 +419,6 @@ def _connected_air(filled: Mask, layers: tuple[LayerTriangles, ...]) -> Ints:
 
     Two empty cells are connected if they share a face that no layer spans.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     air = ~np.pad(filled, 1)
     index = np.cumsum(air).reshape(air.shape) - 1
     links = []
@@ -437,9 +435,6 @@ def _connected_air(filled: Mask, layers: tuple[LayerTriangles, ...]) -> Ints:
         first, second = index[tuple(behind)][open_face], index[tuple(ahead)][open_face]
         links.append(np.stack([first, second]))
     first, second = np.concatenate(links, axis=1)
-    count = int(air.sum())
-    graph = coo_array((np.ones(len(first), dtype=bool), (first, second)), shape=(count, count))
-    _, labels = connected_components(graph, directed=False)
     numbered = np.full(air.shape, -1, dtype=np.int64)
-    numbered[air] = labels
+    numbered[air] = components(first, second, int(air.sum()))
     return numbered

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.design import Design
-from voxsoft.design.discretization.cut_cells import built_parts
+from voxsoft.design.discretization.cut_cells import beside_others, built_parts
 from voxsoft.errors import VoxSoftError
 from voxsoft.geometry import tet_volumes
 from voxsoft.materials import Hyperelastic
@@ -303,11 +303,7 @@ class GridRegions:
     @property
     def near(self) -> NDArray[np.bool_]:
         """Cells with a cell of another part beside them."""
-        from scipy.ndimage import maximum_filter, minimum_filter
-
-        highest = maximum_filter(self.parts, size=3, mode="constant")
-        near: NDArray[np.bool_] = highest != minimum_filter(self.parts, size=3, mode="constant")
-        return near
+        return beside_others(self.parts)
 
 
 def _affordable(shapes: Iterable[Shape], points: int) -> int:
