@@ -388,7 +388,7 @@ def _branches(
     model: BranchModel, asked: int | None, *, plateau: bool
 ) -> tuple[Unknowns, list[str]]:
     """Find the branches: as many as were asked for, or as are identified and fit better."""
-    found = model.elastic_start()
+    before = found = model.elastic_start()
     tried: list[Unknowns] = []
     for _ in range(asked or _MOST):
         before, found = found, _with_one_more(model, found)
@@ -396,16 +396,14 @@ def _branches(
             break
         tried.append(found)
     if not tried:
-        raise MeasurementError(
-            "tests",
-            "show no relaxation: an elastic material fits as well",
-            "leave them out, or test over a longer time or at rates farther apart",
-        )
+        raise _no_better(1)
     if asked is not None:
         tried = tried[-1:]
     causes = [_not_identified(model, each, plateau=plateau) for each in tried]
     known = [at for at, cause in enumerate(causes) if not cause]
     if not known:
+        if asked is not None and not _is_better(model, found, before):
+            raise _no_better(asked)
         raise _refused(causes[-1])
     kept, best = tried[known[-1]], tried[-1]
     if asked is not None:
@@ -502,6 +500,22 @@ def _refused(causes: Mapping[int, str]) -> MeasurementError:
     elif any("shorter than" in cause for cause in causes.values()):
         hint = "record more rows at the start"
     return MeasurementError(where, what, hint)
+
+
+def _no_better(count: int) -> MeasurementError:
+    """Refuse a branch that is not there: where noise puts it says nothing."""
+    if count == 1:
+        return MeasurementError(
+            "tests",
+            "show no relaxation: an elastic material fits as well",
+            "leave them out, or test over a longer time or at rates farther apart",
+        )
+    fewer = f"{count - 1} branches" if count > 2 else "one"
+    return MeasurementError(
+        f"branch {count}",
+        f"not identified: {count} branches fit no better than {fewer}",
+        "take fewer --branches, or test over a longer time or at rates farther apart",
+    )
 
 
 def _unseen(model: BranchModel, at: Unknowns) -> float:
