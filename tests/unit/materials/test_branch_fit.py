@@ -123,6 +123,8 @@ def test_a_branch_that_is_not_there_is_not_identified():
 def test_an_elastic_material_shows_no_relaxation():
     with pytest.raises(MeasurementError, match="show no relaxation"):
         fit_branches([held(NeoHookean(young="60 kPa"))], model="neo-hookean")
+    with pytest.raises(MeasurementError, match="show no relaxation"):
+        fit_branches([held(NeoHookean(young="60 kPa"))], branches=1, model="neo-hookean")
 
 
 def test_a_test_of_many_rows_gives_the_branches_of_its_means():
