@@ -166,8 +166,8 @@ def test_a_file_of_a_gigabyte_takes_no_memory(in_own_process, tmp_path):
     try:
         parts = (bytes(2**20) for _ in range(1024))
         assert upload(studio.port, "token", "large.stl", parts).status_code == 413
-    except httpx.WriteError:  # refused while the rest was still being sent
-        pass
+    except (httpx.WriteError, httpx.ReadError, httpx.RemoteProtocolError):
+        pass  # refused while the rest was still being sent: the answer may be lost in part
     # 64 MB are taken before it is known to be too large.
     assert memory_of(studio) - before < 300
 
