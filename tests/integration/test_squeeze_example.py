@@ -34,15 +34,15 @@ def test_leaves_that_meet_bear_on_each_other():
 
 @pytest.mark.slow
 def test_it_is_soft_until_it_is_solid():
-    soft, solid = squeezed(8 * mm), squeezed(14 * mm)
+    soft, solid = squeezed(8 * mm), squeezed(13 * mm)
     assert not solid.penetration.overlaps
     assert not solid.warnings
-    # 0.24 and 10.8 N: leaves on each other are many times as stiff as leaves that bend.
+    # 0.23 and 8.3 N: leaves on each other are many times as stiff as leaves that bend.
     assert forces(solid)[0] > 20 * forces(soft)[0]
     pairs = [
         {"of": ["body", "plate"], "kind": "bonded"},
         {"of": ["body", "body"], "kind": "none"},
     ]
-    through = squeezed(14 * mm, contact={"pairs": pairs})
+    through = squeezed(13 * mm, contact={"pairs": pairs})
     assert any("overlap" in str(warning) for warning in through.warnings)
     assert forces(through)[0] < 0.1 * forces(solid)[0]
