@@ -1,4 +1,5 @@
 // Written by `python -m voxsoft.studio.typescript`; change python/voxsoft/studio instead.
+// Long because all messages of the studio stand in one file.
 
 /** Page and server must speak the same. */
 export const PROTOCOL = 1;

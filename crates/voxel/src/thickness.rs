@@ -25,8 +25,8 @@ pub struct WallThickness {
     pub histogram: Vec<u64>,
     /// The first in C order of the thinnest cells that are no bumps; `None` if none is filled.
     ///
-    /// A bump is a cell without two cells around it along each axis, at whose face lies a block of 2 × 2 × 2 filled
-    /// cells: the rim of a disk and the pole of a ball end in rows of one cell, and are no walls.
+    /// A bump is a cell alone in its row along an axis, at whose face lies a block of 2 × 2 × 2 filled cells: the rim of a
+    /// disk and the pole of a ball end in rows of one cell, and are no walls.
     pub thinnest: Option<Wall>,
 }
 

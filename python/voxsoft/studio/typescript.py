@@ -41,6 +41,7 @@ from voxsoft.units.kinds import describe_dimension
 
 _HEAD: Final = """\
 // Written by `python -m voxsoft.studio.typescript`; change python/voxsoft/studio instead.
+// Long because all messages of the studio stand in one file.
 """
 _SIMPLE: Final[dict[type[types.Type], str]] = {
     types.AnyType: "unknown",

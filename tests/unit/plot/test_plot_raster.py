@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.ndimage import gaussian_filter
 
 from voxsoft.plot.boundary import beyond, boundary_of
 from voxsoft.plot.camera import Camera
 from voxsoft.plot.raster import rasterize
-from voxsoft.plot.shading import depth_contrast, lit, normals_of
+from voxsoft.plot.shading import _blurred, depth_contrast, lit, normals_of
 from voxsoft.voxels import Voxels
 
 # Two squares of two triangles each, one in front of the other, rows downwards.
@@ -126,3 +127,10 @@ def test_a_cut_keeps_whole_voxels(side):
     assert np.count_nonzero(kept) == 5 * len(voxels)
     # A plane just before the face between the second and third voxel cuts neither.
     assert len(voxels) == 8
+
+
+@pytest.mark.parametrize(("shape", "spread"), [((90, 120), 2.9), ((30, 40), 20.0), ((7, 5), 3.0)])
+def test_a_blurred_image_is_that_of_scipy(shape, spread):
+    # Spreads beyond the image are mirrored at its border again and again.
+    image = np.random.default_rng(0).random(shape)
+    assert np.abs(_blurred(image, spread) - gaussian_filter(image, spread)).max() < 1e-12
