@@ -11,7 +11,7 @@ use voxsoft_solid::{Load, Problem, Term, elastic};
 use crate::linear::backend::{Backend, MakeBackend};
 use crate::linear::conjugate_gradients::{End, Equation, conjugate_gradients};
 use crate::linear::error::FactorError;
-use crate::linear::multigrid::{BlockMatrix, Part, cells_of, color, for_each_large};
+use crate::linear::multigrid::{BlockMatrix, cells_of, color, for_each_large};
 use crate::linear::operator::RankUpdated;
 use crate::linear::options::LinearOptions;
 use crate::linear::rank::rank;
@@ -122,7 +122,7 @@ impl IterativeSystem {
         residual: &mut [f64],
     ) {
         self.lifted = 0.0;
-        self.matrix.values.clear();
+        self.matrix.clear();
         let mut target = Target {
             places: &self.places,
             held: &self.held,
@@ -160,10 +160,15 @@ impl IterativeSystem {
         if by == 1.0 {
             return;
         }
-        for &place in &self.matrix.diagonals {
+        for row in 0..self.matrix.rows() {
+            let (place, block) = (
+                self.matrix.diagonal_place(row),
+                self.matrix.diagonal_block(row),
+            );
             for axis in 0..3 {
-                if self.matrix.values.block(place)[4 * axis] > 0.0 {
-                    self.matrix.values.scale(place, axis, axis, by);
+                if block[4 * axis] > 0.0 {
+                    let values = &mut self.matrix.upper.values;
+                    values.scale(place, axis, axis, by);
                 }
             }
         }
@@ -171,7 +176,7 @@ impl IterativeSystem {
 
     /// Preconditioner for the assembled tangent.
     pub fn factor(&mut self, downhill: bool) -> Result<IterativeFactor, FactorError> {
-        if !self.matrix.values.are_finite() {
+        if !self.matrix.are_finite() {
             return Err(FactorError::Singular);
         }
         self.backend.take(&self.matrix);
@@ -330,37 +335,22 @@ impl Target<'_> {
             held,
             matrix,
         } = self;
-        let rows = matrix.diagonals.len();
+        let rows = matrix.rows();
         let count = if elements.vertices.len() < MANY * elements.width {
             1
         } else {
             PARTS
         };
-        let BlockMatrix {
-            starts,
-            columns,
-            values,
-            ..
-        } = &mut **matrix;
         // Rows are numbered by colors, each of which occurs once in a voxel: equal parts are equal work.
         let ranges = (0..count).map(|part| rows * part / count..rows * (part + 1) / count);
-        let sizes = ranges
-            .clone()
-            .map(|rows| starts[rows.end] - starts[rows.start]);
-        let values = values.parts(sizes);
-        let mut parts: Vec<Rows<'_>> = ranges
-            .zip(values)
-            .map(|(range, values)| Rows { range, values })
-            .collect();
+        let (mut parts, [before, after]) = matrix.parts(ranges);
         for_each_large(&mut parts, |_, rows| {
             for (vertices, entries) in elements.iter() {
                 for (a, &vertex) in vertices.iter().enumerate() {
                     let row = places[vertex as usize] as usize;
-                    if !rows.range.contains(&row) {
+                    if !rows.rows.contains(&row) {
                         continue;
                     }
-                    let columns = &columns[starts[row]..starts[row + 1]];
-                    let first = starts[row] - starts[rows.range.start];
                     let fixed = held[vertex as usize];
                     let width = 3 * vertices.len();
                     let entries = &entries[3 * a * width..(3 * a + 3) * width];
@@ -378,17 +368,18 @@ impl Target<'_> {
                                 }
                             }
                         }
-                        let place = first + rank(columns, places[other as usize]);
-                        rows.values.add(place, &block);
+                        let column = places[other as usize];
+                        let ((starts, columns), values) = if (column as usize) < row {
+                            (before, &mut rows.lower)
+                        } else {
+                            (after, &mut rows.upper)
+                        };
+                        let columns = &columns[starts[row]..starts[row + 1]];
+                        let first = starts[row] - starts[rows.rows.start];
+                        values.add(first + rank(columns, column), &block);
                     }
                 }
             }
         });
     }
-}
-
-/// Range of rows of a matrix.
-struct Rows<'a> {
-    range: std::ops::Range<usize>,
-    values: Part<'a>,
 }

@@ -1,6 +1,8 @@
 //! Linear systems of Newton's method: the tangent on free coordinates, factorized or solved iteratively.
 
 pub(crate) mod backend;
+#[cfg(test)]
+mod bandwidth;
 pub mod conformance;
 pub(crate) mod conjugate_gradients;
 pub(crate) mod direct;

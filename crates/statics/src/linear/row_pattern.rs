@@ -69,5 +69,5 @@ pub(crate) fn pattern(problem: &Problem) -> BlockMatrix {
         columns.extend_from_slice(&row);
         row_starts.push(columns.len());
     }
-    BlockMatrix::with_pattern(row_starts, columns)
+    BlockMatrix::with_pattern(&row_starts, &columns)
 }

@@ -28,6 +28,28 @@ const OPTIONS: LinearOptions = LinearOptions {
     memory: u64::MAX,
 };
 
+/// Cube of rubber of `across` voxels along each edge, clamped at one side, under its weight.
+pub(crate) fn cube(across: usize) -> Problem {
+    let side = 0.1 / across as f64;
+    let mut grid = Grid::empty([across; 3], [0.0; 3], side, u64::MAX).unwrap();
+    grid.fill_box([0.0; 3], [0.1; 3], 1);
+    let tets = tet_mesh(&grid, u64::MAX).unwrap();
+    let mesh = Mesh {
+        tet_part: vec![0; tets.tets.len()],
+        tet_block: (0..tets.tets.len() as u32).map(|t| t / 5).collect(),
+        tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
+        vertices: tets.vertices,
+        block_fraction: vec![1.0; tets.tets.len() / 5],
+        ..Mesh::default()
+    };
+    let foot = mesh.vertices.iter().enumerate();
+    let foot = foot.filter(|(_, place)| place[2] < 1e-9);
+    let foot = Clamp::fixed(foot.map(|(vertex, _)| vertex as u32).collect());
+    let body = Body::new(&mesh, &[Material::from(rubber())]).unwrap();
+    let gravity = Load::gravity([0.0, 0.0, -9.81]);
+    Problem::new(body, vec![foot], vec![gravity], None).unwrap()
+}
+
 /// Beam of voxels, some of them cut, clamped at one end, and held along y at two vertices of the other: large enough
 /// for a coarse level.
 fn beam(material: impl Into<Material>) -> Problem {
@@ -72,7 +94,7 @@ fn lattice() -> LatticeMaterial {
 }
 
 /// Tangent at rest, with the back end that `make` makes.
-fn assembled(problem: &Problem, make: MakeBackend) -> IterativeSystem {
+pub(crate) fn assembled(problem: &Problem, make: MakeBackend) -> IterativeSystem {
     let system = IterativeSystem::new(problem, problem.held(), OPTIONS, make);
     let mut system = system.unwrap().expect("a body of equal voxels");
     let mut unused = vec![0.0; system.size()];
@@ -182,7 +204,7 @@ impl Preconditioner for Exact<'_> {
     }
 }
 
-fn multigrid() -> MakeBackend {
+pub(crate) fn multigrid() -> MakeBackend {
     LinearSolver::Iterative.backend(0).expect("a back end")
 }
 

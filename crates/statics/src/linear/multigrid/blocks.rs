@@ -1,38 +1,112 @@
 //! Sparse matrices of 3 × 3 blocks.
 
+use std::ops::Range;
+
 use voxsoft_solid::vector::Vec3;
 
 use super::cells::Interpolation;
-use super::parallel;
-use super::values::{Block, Values};
+use super::kernels::{Rounded, Single, Span, Whole};
+use super::parallel::{self, CHUNK};
+use super::values::{Block, Part, Values};
 use crate::linear::operator::LinearOperator;
 
-/// Sparse matrix of 3 × 3 blocks by rows, with rising columns; every row has its diagonal.
+/// One half of each row: its columns, rising, and their blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct BlockMatrix {
+pub(crate) struct Half {
+    /// First place of each row, and the end.
     pub starts: Vec<usize>,
+    /// Column at each place.
     pub columns: Vec<u32>,
     pub values: Values,
-    /// Index of the diagonal block of each row.
-    pub diagonals: Vec<usize>,
 }
 
-impl BlockMatrix {
-    /// Matrix of zeros with the given columns in each row.
-    pub fn with_pattern(starts: Vec<usize>, columns: Vec<u32>) -> Self {
-        let diagonals = starts
-            .windows(2)
-            .enumerate()
-            .map(|(row, ends)| {
-                let place = columns[ends[0]..ends[1]].partition_point(|&c| (c as usize) < row);
-                ends[0] + place
-            })
-            .collect();
+impl Half {
+    /// Places of a row.
+    #[inline(always)]
+    pub fn places(&self, row: usize) -> Range<usize> {
+        self.starts[row]..self.starts[row + 1]
+    }
+
+    /// Columns of a row.
+    #[inline(always)]
+    pub fn row(&self, row: usize) -> &[u32] {
+        &self.columns[self.places(row)]
+    }
+
+    fn with_pattern(starts: Vec<usize>, columns: Vec<u32>) -> Self {
         Self {
             values: Values::zeros(columns.len()),
             starts,
             columns,
-            diagonals,
+        }
+    }
+
+    fn span(&self, skip: usize) -> Span<'_> {
+        Span {
+            starts: &self.starts,
+            skip,
+        }
+    }
+
+    /// Rounded blocks of each row from its place `skip` on, times vectors, of which `x` holds those from `from` on.
+    fn rounded<'a>(&'a self, skip: usize, x: &'a [Single], from: usize) -> Rounded<'a> {
+        Rounded {
+            blocks: &self.values.high,
+            columns: &self.columns,
+            span: self.span(skip),
+            x,
+            from,
+        }
+    }
+
+    /// Blocks of each row times vectors.
+    fn whole<'a>(&'a self, x: &'a [Vec3]) -> Whole<'a> {
+        Whole {
+            high: &self.values.high,
+            low: &self.values.low,
+            columns: &self.columns,
+            span: self.span(0),
+            x,
+        }
+    }
+}
+
+/// Sparse matrix of 3 × 3 blocks by rows, with rising columns; every row has its diagonal.
+///
+/// Sweeps read the blocks before the diagonal of all rows, then those after it, so each half lies in one stretch of
+/// memory: where they alternate, the processor fetches both to use one.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct BlockMatrix {
+    /// Blocks before the diagonal.
+    pub lower: Half,
+    /// Diagonal of each row, and the blocks after it.
+    pub upper: Half,
+}
+
+/// Mutable blocks of a range of rows.
+pub(crate) struct RowsPart<'a> {
+    pub rows: Range<usize>,
+    pub lower: Part<'a>,
+    pub upper: Part<'a>,
+}
+
+impl BlockMatrix {
+    /// Matrix of zeros with the given columns in each row.
+    pub fn with_pattern(starts: &[usize], columns: &[u32]) -> Self {
+        let rows = starts.len() - 1;
+        let (mut lower, mut upper) = (Vec::new(), Vec::with_capacity(columns.len() / 2 + rows));
+        let (mut lower_starts, mut upper_starts) = (vec![0], vec![0]);
+        for (row, ends) in starts.windows(2).enumerate() {
+            let columns = &columns[ends[0]..ends[1]];
+            let (before, rest) = columns.split_at(columns.partition_point(|&c| (c as usize) < row));
+            lower.extend_from_slice(before);
+            upper.extend_from_slice(rest);
+            lower_starts.push(lower.len());
+            upper_starts.push(upper.len());
+        }
+        Self {
+            lower: Half::with_pattern(lower_starts, lower),
+            upper: Half::with_pattern(upper_starts, upper),
         }
     }
 
@@ -42,39 +116,108 @@ impl BlockMatrix {
         for (node, &place) in places.iter().enumerate() {
             order[place as usize] = node as u32;
         }
-        let mut starts = Vec::with_capacity(self.starts.len());
+        let mut starts = Vec::with_capacity(order.len() + 1);
         starts.push(0);
-        let mut columns = Vec::with_capacity(self.columns.len());
+        let mut columns = Vec::with_capacity(self.blocks());
         for &node in &order {
             let first = columns.len();
-            let row = self.row(node as usize).1;
-            columns.extend(row.iter().map(|&c| places[c as usize]));
+            let row = self.columns(node as usize);
+            columns.extend(row.map(|c| places[c as usize]));
             columns[first..].sort_unstable();
             starts.push(columns.len());
         }
-        Self::with_pattern(starts, columns)
+        Self::with_pattern(&starts, &columns)
     }
 
     pub fn rows(&self) -> usize {
-        self.diagonals.len()
+        self.upper.starts.len() - 1
     }
 
-    /// Columns of a row and the index of their first block.
-    pub fn row(&self, row: usize) -> (usize, &[u32]) {
-        let (start, end) = (self.starts[row], self.starts[row + 1]);
-        (start, &self.columns[start..end])
+    /// Number of blocks.
+    pub fn blocks(&self) -> usize {
+        self.lower.columns.len() + self.upper.columns.len()
+    }
+
+    /// Columns of a row, rising.
+    pub fn columns(&self, row: usize) -> impl Iterator<Item = u32> + '_ {
+        let halves = [self.lower.row(row), self.upper.row(row)];
+        halves.into_iter().flatten().copied()
+    }
+
+    /// Blocks of a row, in the order of its columns.
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (u32, Block)> + '_ {
+        let halves = [&self.lower, &self.upper];
+        halves.into_iter().flat_map(move |half| {
+            let places = half.places(row);
+            places.map(|place| (half.columns[place], half.values.block(place)))
+        })
+    }
+
+    /// Place of the block on the diagonal of a row, in the upper half.
+    pub fn diagonal_place(&self, row: usize) -> usize {
+        self.upper.starts[row]
+    }
+
+    /// Block on the diagonal of a row.
+    pub fn diagonal_block(&self, row: usize) -> Block {
+        self.upper.values.block(self.diagonal_place(row))
+    }
+
+    /// Sets all blocks to zero.
+    pub fn clear(&mut self) {
+        self.lower.values.clear();
+        self.upper.values.clear();
+    }
+
+    /// Tests whether all numbers are finite.
+    pub fn are_finite(&self) -> bool {
+        self.lower.values.are_finite() && self.upper.values.are_finite()
+    }
+
+    /// Splits into ranges of rows, one after the other, beside the columns of both halves.
+    pub fn parts(
+        &mut self,
+        ranges: impl Iterator<Item = Range<usize>> + Clone,
+    ) -> (Vec<RowsPart<'_>>, [Columns<'_>; 2]) {
+        let counts = |starts: &[usize]| {
+            let count = |rows: Range<usize>| starts[rows.end] - starts[rows.start];
+            ranges.clone().map(count).collect::<Vec<usize>>()
+        };
+        let lower_counts = counts(&self.lower.starts);
+        let upper_counts = counts(&self.upper.starts);
+        let lower = self.lower.values.parts(lower_counts.into_iter());
+        let upper = self.upper.values.parts(upper_counts.into_iter());
+        let parts = ranges.zip(lower).zip(upper);
+        let parts = parts.map(|((rows, lower), upper)| RowsPart { rows, lower, upper });
+        let columns = [
+            (&*self.lower.starts, &*self.lower.columns),
+            (&*self.upper.starts, &*self.upper.columns),
+        ];
+        (parts.collect(), columns)
     }
 
     /// Computes `y = A x`.
     pub fn multiply(&self, x: &[Vec3], y: &mut [Vec3]) {
-        parallel::for_each(y, |row, y| {
-            let mut sum = [0.0; 4];
-            for place in self.starts[row]..self.starts[row + 1] {
-                let x = x[self.columns[place] as usize];
-                self.values.add_product(place, x, &mut sum);
+        let (lower, upper) = (self.lower.whole(x), self.upper.whole(x));
+        parallel::for_each_chunk(y, |first, y| {
+            lower.set(first, y);
+            let mut room = [[0.0; 3]; CHUNK];
+            let right = &mut room[..y.len()];
+            upper.set(first, right);
+            for (y, right) in y.iter_mut().zip(right) {
+                *y = std::array::from_fn(|axis| y[axis] + right[axis]);
             }
-            *y = [sum[0], sum[1], sum[2]];
         });
+    }
+
+    /// Rounded blocks left of the diagonal of each row, times vectors.
+    pub fn before<'a>(&'a self, x: &'a [Single]) -> Rounded<'a> {
+        self.lower.rounded(0, x, 0)
+    }
+
+    /// Rounded blocks right of the diagonal of each row, times vectors, of which `x` holds those from `from` on.
+    pub fn after<'a>(&'a self, x: &'a [Single], from: usize) -> Rounded<'a> {
+        self.upper.rounded(1, x, from)
     }
 
     /// Pattern of `Pᵀ A P`, with `fine_of`, the transpose of the interpolation `p`.
@@ -83,7 +226,7 @@ impl BlockMatrix {
         let mut rows: Vec<Vec<u32>> = vec![Vec::new(); count];
         parallel::for_each(&mut rows, |row, columns| {
             for &(fine, _) in fine_of.row(row) {
-                for &neighbor in self.row(fine as usize).1 {
+                for neighbor in self.columns(fine as usize) {
                     columns.extend(p.row(neighbor as usize).iter().map(|&(coarse, _)| coarse));
                 }
                 columns.sort_unstable();
@@ -100,31 +243,24 @@ impl BlockMatrix {
             columns.extend(row);
             starts.push(columns.len());
         }
-        Self::with_pattern(starts, columns)
+        Self::with_pattern(&starts, &columns)
     }
 
     /// Sets `coarse = Pᵀ A P`.
     pub fn project(&self, p: &Interpolation, fine_of: &Interpolation, coarse: &mut Self) {
-        let Self {
-            starts,
-            columns,
-            values,
-            ..
-        } = coarse;
-        let mut rows = values.parts(starts.windows(2).map(|ends| ends[1] - ends[0]));
-        let count = starts.len() - 1;
+        let count = coarse.rows();
+        let (mut rows, [before, after]) = coarse.parts((0..count).map(|row| row..row + 1));
         let scratch = || (vec![0u32; count], Vec::<Block>::new());
         parallel::for_each_with(&mut rows, scratch, |(place_of, sums), row, blocks| {
-            let columns = &columns[starts[row]..starts[row + 1]];
-            for (place, &column) in columns.iter().enumerate() {
+            let (before, after) = (columns_of(before, row), columns_of(after, row));
+            let columns = before.iter().chain(after);
+            for (place, &column) in columns.enumerate() {
                 place_of[column as usize] = place as u32;
             }
             sums.clear();
-            sums.resize(columns.len(), [0.0; 9]);
+            sums.resize(before.len() + after.len(), [0.0; 9]);
             for &(fine, weight) in fine_of.row(row) {
-                let (start, neighbors) = self.row(fine as usize);
-                for (offset, &neighbor) in neighbors.iter().enumerate() {
-                    let block = self.values.block(start + offset);
+                for (neighbor, block) in self.row(fine as usize) {
                     let weighted = block.map(|entry| weight * entry);
                     for &(column, share) in p.row(neighbor as usize) {
                         let sum = &mut sums[place_of[column as usize] as usize];
@@ -134,11 +270,24 @@ impl BlockMatrix {
                     }
                 }
             }
-            for (place, sum) in sums.iter().enumerate() {
-                blocks.set(place, sum);
+            let (left, right) = sums.split_at(before.len());
+            for (place, sum) in left.iter().enumerate() {
+                blocks.lower.set(place, sum);
+            }
+            for (place, sum) in right.iter().enumerate() {
+                blocks.upper.set(place, sum);
             }
         });
     }
+}
+
+/// Starts of the rows of a half, and its columns.
+pub(crate) type Columns<'a> = (&'a [usize], &'a [u32]);
+
+/// Columns of a row of a half.
+#[inline(always)]
+pub(crate) fn columns_of<'a>((starts, columns): Columns<'a>, row: usize) -> &'a [u32] {
+    &columns[starts[row]..starts[row + 1]]
 }
 
 impl LinearOperator for &BlockMatrix {
@@ -155,11 +304,11 @@ impl LinearOperator for &BlockMatrix {
     }
 
     fn diagonal(&self) -> Vec<Vec3> {
-        let diagonal = |&place: &usize| {
-            let block = self.values.block(place);
+        let diagonal = |row| {
+            let block = self.diagonal_block(row);
             [block[0], block[4], block[8]]
         };
-        self.diagonals.iter().map(diagonal).collect()
+        (0..BlockMatrix::rows(self)).map(diagonal).collect()
     }
 }
 

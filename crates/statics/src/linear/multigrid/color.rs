@@ -25,7 +25,7 @@ pub(crate) fn color(pattern: &BlockMatrix) -> (Coloring, Vec<u32>) {
     let mut sizes: Vec<usize> = Vec::new();
     let mut taken: Vec<usize> = Vec::new();
     for node in 0..count {
-        for &neighbor in pattern.row(node).1 {
+        for neighbor in pattern.columns(node) {
             if let Some(mark) = taken.get_mut(colors[neighbor as usize] as usize) {
                 *mark = node + 1;
             }

@@ -12,8 +12,8 @@ use voxsoft_solid::vector::Vec3;
 use super::blocks::{BlockMatrix, pseudo_inverse, transposed};
 use super::cells::{Cell, Interpolation, coarsen};
 use super::color::{Coloring, color};
-use super::parallel;
-use super::values::Single;
+use super::kernels::Single;
+use super::parallel::{self, CHUNK};
 use crate::linear::backend::Backend;
 use crate::linear::operator::{LinearOperator, Preconditioner};
 
@@ -117,7 +117,7 @@ impl Hierarchy {
         let levels = std::iter::once(finest).chain(&self.patterns);
         for (inverses, matrix) in self.inverses.iter_mut().zip(levels) {
             parallel::for_each(inverses, |row, inverse| {
-                let block = pseudo_inverse(&matrix.values.block(matrix.diagonals[row]));
+                let block = pseudo_inverse(&matrix.diagonal_block(row));
                 for k in 0..9 {
                     // Symmetric: by rows is by columns.
                     inverse[k] = block[k] as f32;
@@ -222,10 +222,12 @@ impl Cycle<'_> {
         own.forward_from_zero(&work.sides[level], x);
         // A forward sweep from zero leaves the residual −U x of the entries that it has not used.
         let residual = &mut work.residuals[level];
-        parallel::for_each(residual, |row, r| {
-            let after = own.pattern.diagonals[row] + 1..own.pattern.starts[row + 1];
-            let seen = own.product(after, |column| &x[column]);
-            *r = minus([0.0; 4], seen);
+        let after = own.pattern.after(x, 0);
+        parallel::for_each_chunk(residual, |first, residual| {
+            after.set(first, residual);
+            for r in residual {
+                *r = minus([0.0; 4], *r);
+            }
         });
         parallel::for_each(&mut work.sides[level + 1], |row, side| {
             *side = [0.0; 4];
@@ -254,50 +256,39 @@ struct Level<'a> {
 }
 
 impl Level<'_> {
-    /// Product of the given blocks of one row and the vectors that `value` returns for their columns.
-    #[inline(always)]
-    fn product<'a>(
-        &self,
-        places: std::ops::Range<usize>,
-        value: impl Fn(usize) -> &'a Single,
-    ) -> Single {
-        let values = &self.pattern.values;
-        values.rounded_product(&self.pattern.columns, places, value)
-    }
-
     /// Forward Gauss–Seidel sweep through the colors, from zero.
     fn forward_from_zero(&self, side: &[Single], x: &mut [Single]) {
-        let Self {
-            pattern, inverses, ..
-        } = self;
         for range in self.coloring.ranges() {
-            let first = range.start;
-            let (before, rest) = x.split_at_mut(first);
-            parallel::for_each(&mut rest[..range.len()], |place, x| {
-                let row = first + place;
-                let seen = pattern.starts[row]..pattern.diagonals[row];
-                let known = self.product(seen, |column| &before[column]);
-                *x = solved(&inverses[row], minus(side[row], known));
+            let (before, rest) = x.split_at_mut(range.start);
+            let known = self.pattern.before(before);
+            parallel::for_each_chunk(&mut rest[..range.len()], |first, own| {
+                let first = range.start + first;
+                known.set(first, own);
+                for (row, x) in (first..).zip(own) {
+                    *x = solved(&self.inverses[row], minus(side[row], *x));
+                }
             });
         }
     }
 
     /// Backward Gauss–Seidel sweep through the colors.
     fn backward(&self, side: &[Single], x: &mut [Single]) {
-        let Self {
-            pattern, inverses, ..
-        } = self;
         for range in self.coloring.ranges().rev() {
             let (before, rest) = x.split_at_mut(range.start);
             let (own, after) = rest.split_at_mut(range.len());
-            parallel::for_each(own, |place, x| {
-                let row = range.start + place;
-                let diagonal = pattern.diagonals[row];
-                let below = self.product(pattern.starts[row]..diagonal, |column| &before[column]);
-                let above = self.product(diagonal + 1..pattern.starts[row + 1], |column| {
-                    &after[column - range.end]
-                });
-                *x = solved(&inverses[row], minus(minus(side[row], below), above));
+            let (below, above) = (
+                self.pattern.before(before),
+                self.pattern.after(after, range.end),
+            );
+            parallel::for_each_chunk(own, |first, own| {
+                let first = range.start + first;
+                below.set(first, own);
+                let mut room = [[0.0; 4]; CHUNK];
+                let right = &mut room[..own.len()];
+                above.set(first, right);
+                for ((row, x), right) in (first..).zip(own).zip(right) {
+                    *x = solved(&self.inverses[row], minus(minus(side[row], *x), *right));
+                }
             });
         }
     }
@@ -335,9 +326,7 @@ fn dense_factor(matrix: &BlockMatrix) -> Option<Llt<f64>> {
     let size = 3 * matrix.rows();
     let mut dense = Mat::<f64>::zeros(size, size);
     for row in 0..matrix.rows() {
-        let (start, columns) = matrix.row(row);
-        for (offset, &column) in columns.iter().enumerate() {
-            let block = matrix.values.block(start + offset);
+        for (column, block) in matrix.row(row) {
             for i in 0..3 {
                 for j in 0..3 {
                     dense[(3 * row + i, 3 * column as usize + j)] = block[3 * i + j];

@@ -4,6 +4,7 @@ mod blocks;
 mod cells;
 mod color;
 mod hierarchy;
+mod kernels;
 mod parallel;
 mod values;
 
@@ -12,4 +13,3 @@ pub(crate) use cells::{Cell, cells_of};
 pub(crate) use color::{Coloring, color};
 pub(crate) use hierarchy::Hierarchy;
 pub(crate) use parallel::{for_each, for_each_large, sum};
-pub(crate) use values::Part;

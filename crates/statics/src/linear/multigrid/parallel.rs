@@ -4,15 +4,20 @@
 use rayon::prelude::*;
 
 /// Rows per task.
-const CHUNK: usize = 512;
+pub(crate) const CHUNK: usize = 512;
 
 /// Calls `each(index, item)` for all items.
 pub(crate) fn for_each<T: Send>(items: &mut [T], each: impl Fn(usize, &mut T) + Sync) {
-    let run = |(chunk, items): (usize, &mut [T])| {
+    for_each_chunk(items, |first, items| {
         for (place, item) in items.iter_mut().enumerate() {
-            each(chunk * CHUNK + place, item);
+            each(first + place, item);
         }
-    };
+    });
+}
+
+/// Calls `each(first, items)` for at most [`CHUNK`] items at a time, those from `first` on.
+pub(crate) fn for_each_chunk<T: Send>(items: &mut [T], each: impl Fn(usize, &mut [T]) + Sync) {
+    let run = |(chunk, items): (usize, &mut [T])| each(chunk * CHUNK, items);
     #[cfg(feature = "threads")]
     if items.len() > CHUNK {
         items.par_chunks_mut(CHUNK).enumerate().for_each(run);

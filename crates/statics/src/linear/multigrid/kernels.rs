@@ -1,0 +1,315 @@
+//! Sums of blocks times vectors over a row, the inner loops of all iterative solutions.
+//!
+//! The nine numbers of a block are nine lanes, `3 j + i` for row `i` and column `j`, each with a sum of its own over the
+//! blocks of a row; three lanes make a coordinate at the end. A block's numbers lie one after the other, so that eight
+//! lanes are one register of AVX2, which is found at run time. The order of the sums and their roundings are the same
+//! everywhere (no product is fused with a sum), so that every processor, and a page, gives the same bits.
+//!
+//! Blocks are fetched some rows ahead: a processor's own prefetching stops at the end of each page of memory.
+
+use std::ops::Range;
+
+use pulp::NullaryFnOnce;
+use voxsoft_solid::vector::Vec3;
+
+/// Vector on a node; the fourth place fills a register, and is zero.
+pub(crate) type Single = [f32; 4];
+
+/// Numbers of a block.
+pub(crate) const BLOCK: usize = 9;
+
+/// Coordinate of the vector that each of the first eight lanes is multiplied with.
+const COORDINATES: [usize; 8] = [0, 0, 0, 1, 1, 1, 2, 2];
+/// Blocks from one to the one that is fetched meanwhile: two rows of a full grid, or four halves.
+#[cfg(target_arch = "x86_64")]
+const AHEAD: usize = 54;
+
+/// Places of the blocks of each row that are summed: all but the first `skip`.
+#[derive(Clone, Copy)]
+pub(crate) struct Span<'a> {
+    pub starts: &'a [usize],
+    pub skip: usize,
+}
+
+impl Span<'_> {
+    /// Places in a row.
+    #[inline(always)]
+    fn places(&self, row: usize) -> Range<usize> {
+        self.starts[row] + self.skip..self.starts[row + 1]
+    }
+}
+
+/// Sums of the rows from `first` on, of rounded blocks.
+pub(crate) struct Rounded<'a> {
+    pub blocks: &'a [[f32; BLOCK]],
+    /// Column of each block.
+    pub columns: &'a [u32],
+    pub span: Span<'a>,
+    /// Vectors of the columns from `from` on.
+    pub x: &'a [Single],
+    pub from: usize,
+}
+
+/// Sums of the rows from `first` on, of blocks that are each the sum of two.
+pub(crate) struct Whole<'a> {
+    pub high: &'a [[f32; BLOCK]],
+    pub low: &'a [[f32; BLOCK]],
+    /// Column of each block.
+    pub columns: &'a [u32],
+    pub span: Span<'a>,
+    pub x: &'a [Vec3],
+}
+
+/// Sums over rows of one kind.
+trait Sums {
+    type Sum;
+
+    /// Sum over the blocks at `places`.
+    fn sum<L: Lanes>(&self, lanes: L, places: Range<usize>) -> Self::Sum;
+
+    fn span(&self) -> Span<'_>;
+}
+
+impl Sums for Rounded<'_> {
+    type Sum = Single;
+
+    #[inline(always)]
+    fn sum<L: Lanes>(&self, lanes: L, places: Range<usize>) -> Single {
+        let columns = &self.columns[places.clone()];
+        lanes.rounded(&self.blocks[places], columns, self.from, self.x)
+    }
+
+    #[inline(always)]
+    fn span(&self) -> Span<'_> {
+        self.span
+    }
+}
+
+impl Sums for Whole<'_> {
+    type Sum = Vec3;
+
+    #[inline(always)]
+    fn sum<L: Lanes>(&self, lanes: L, places: Range<usize>) -> Vec3 {
+        let columns = &self.columns[places.clone()];
+        let (high, low) = (&self.high[places.clone()], &self.low[places]);
+        lanes.whole(high, low, columns, self.x)
+    }
+
+    #[inline(always)]
+    fn span(&self) -> Span<'_> {
+        self.span
+    }
+}
+
+impl Rounded<'_> {
+    /// Sets the sums of the rows from `first` on.
+    pub fn set(&self, first: usize, sums: &mut [Single]) {
+        set(self, first, sums);
+    }
+}
+
+impl Whole<'_> {
+    /// Sets the sums of the rows from `first` on.
+    pub fn set(&self, first: usize, sums: &mut [Vec3]) {
+        set(self, first, sums);
+    }
+}
+
+/// Loop over rows, compiled for the lanes it is given.
+struct Loop<'a, L, S: Sums> {
+    lanes: L,
+    of: &'a S,
+    first: usize,
+    sums: &'a mut [S::Sum],
+}
+
+impl<L: Lanes, S: Sums> NullaryFnOnce for Loop<'_, L, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let span = self.of.span();
+        for (row, sum) in self.sums.iter_mut().enumerate() {
+            *sum = self.of.sum(self.lanes, span.places(self.first + row));
+        }
+    }
+}
+
+/// Sets sums on the widest lanes of the processor.
+fn set<S: Sums>(of: &S, first: usize, sums: &mut [S::Sum]) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(lanes) = pulp::x86::V3::try_new() {
+        return pulp::Simd::vectorize(
+            lanes,
+            Loop {
+                lanes,
+                of,
+                first,
+                sums,
+            },
+        );
+    }
+    let lanes = Portable;
+    Loop {
+        lanes,
+        of,
+        first,
+        sums,
+    }
+    .call();
+}
+
+/// Lanes of a processor.
+trait Lanes: Copy {
+    /// Sum of `blocks` times the vectors of `columns`, of which `x` holds those from `from` on.
+    fn rounded(self, blocks: &[[f32; BLOCK]], columns: &[u32], from: usize, x: &[Single])
+    -> Single;
+
+    /// Sum of blocks, each the sum of two, times the vectors of `columns`.
+    fn whole(
+        self,
+        high: &[[f32; BLOCK]],
+        low: &[[f32; BLOCK]],
+        columns: &[u32],
+        x: &[Vec3],
+    ) -> Vec3;
+}
+
+/// Lanes in a loop.
+#[derive(Clone, Copy)]
+struct Portable;
+
+impl Lanes for Portable {
+    #[inline(always)]
+    fn rounded(
+        self,
+        blocks: &[[f32; BLOCK]],
+        columns: &[u32],
+        from: usize,
+        x: &[Single],
+    ) -> Single {
+        let (mut sums, mut last) = ([0.0; 8], 0.0);
+        for (block, &column) in blocks.iter().zip(columns) {
+            let x = x[column as usize - from];
+            for lane in 0..8 {
+                sums[lane] += block[lane] * x[COORDINATES[lane]];
+            }
+            last += block[8] * x[2];
+        }
+        let [x, y, z] = added(sums, last);
+        [x, y, z, 0.0]
+    }
+
+    #[inline(always)]
+    fn whole(
+        self,
+        high: &[[f32; BLOCK]],
+        low: &[[f32; BLOCK]],
+        columns: &[u32],
+        x: &[Vec3],
+    ) -> Vec3 {
+        let (mut sums, mut last) = ([0.0; 8], 0.0);
+        for ((high, low), &column) in high.iter().zip(low).zip(columns) {
+            let x = x[column as usize];
+            for lane in 0..8 {
+                let number = f64::from(high[lane]) + f64::from(low[lane]);
+                sums[lane] += number * x[COORDINATES[lane]];
+            }
+            last += (f64::from(high[8]) + f64::from(low[8])) * x[2];
+        }
+        added(sums, last)
+    }
+}
+
+/// Coordinates of the sums of nine lanes.
+#[inline(always)]
+fn added<T: Copy + std::ops::Add<Output = T>>(sums: [T; 8], last: T) -> [T; 3] {
+    [
+        sums[0] + (sums[3] + sums[6]),
+        sums[1] + (sums[4] + sums[7]),
+        sums[2] + (sums[5] + last),
+    ]
+}
+
+/// Lanes in registers of AVX2.
+#[cfg(target_arch = "x86_64")]
+mod avx2 {
+    use std::arch::x86_64::{__m128, __m256, __m256d, _MM_HINT_T0};
+
+    use pulp::cast;
+    use pulp::x86::V3;
+
+    use super::{AHEAD, BLOCK, COORDINATES, Lanes, Single, Vec3, added};
+
+    impl Lanes for V3 {
+        #[inline(always)]
+        fn rounded(
+            self,
+            blocks: &[[f32; BLOCK]],
+            columns: &[u32],
+            from: usize,
+            x: &[Single],
+        ) -> Single {
+            let coordinates = cast(COORDINATES.map(|coordinate| coordinate as u32));
+            let mut sums: __m256 = self.avx._mm256_setzero_ps();
+            let mut last = 0.0;
+            for (block, &column) in blocks.iter().zip(columns) {
+                fetch(self, block);
+                let x = x[column as usize - from];
+                let own = self.avx._mm256_castps128_ps256(cast(x));
+                let factors = self.avx2._mm256_permutevar8x32_ps(own, coordinates);
+                let products = self.avx._mm256_mul_ps(cast(eight(block)), factors);
+                sums = self.avx._mm256_add_ps(sums, products);
+                last += block[8] * x[2];
+            }
+            let [x, y, z] = added(cast::<_, [f32; 8]>(sums), last);
+            [x, y, z, 0.0]
+        }
+
+        #[inline(always)]
+        fn whole(
+            self,
+            high: &[[f32; BLOCK]],
+            low: &[[f32; BLOCK]],
+            columns: &[u32],
+            x: &[Vec3],
+        ) -> Vec3 {
+            let avx = self.avx;
+            let mut sums: [__m256d; 2] = [avx._mm256_setzero_pd(); 2];
+            let mut last = 0.0;
+            for ((high, low), &column) in high.iter().zip(low).zip(columns) {
+                fetch(self, high);
+                fetch(self, low);
+                let x = x[column as usize];
+                let of: [__m256d; 3] = x.map(|x| avx._mm256_set1_pd(x));
+                let factors = [
+                    avx._mm256_blend_pd::<0b1000>(of[0], of[1]),
+                    avx._mm256_blend_pd::<0b1100>(of[1], of[2]),
+                ];
+                let [high4, low4]: [[__m128; 2]; 2] = [cast(eight(high)), cast(eight(low))];
+                for half in 0..2 {
+                    let numbers = avx._mm256_add_pd(
+                        avx._mm256_cvtps_pd(high4[half]),
+                        avx._mm256_cvtps_pd(low4[half]),
+                    );
+                    let products = avx._mm256_mul_pd(numbers, factors[half]);
+                    sums[half] = avx._mm256_add_pd(sums[half], products);
+                }
+                last += (f64::from(high[8]) + f64::from(low[8])) * x[2];
+            }
+            added(cast::<_, [f64; 8]>(sums), last)
+        }
+    }
+
+    #[inline(always)]
+    fn eight(block: &[f32; BLOCK]) -> [f32; 8] {
+        std::array::from_fn(|lane| block[lane])
+    }
+
+    /// Starts to fetch the block [`AHEAD`]; beyond the end nothing happens.
+    #[inline(always)]
+    fn fetch(simd: V3, block: &[f32; BLOCK]) {
+        let ahead = std::ptr::from_ref(block).wrapping_add(AHEAD);
+        simd.sse._mm_prefetch::<_MM_HINT_T0>(ahead.cast());
+    }
+}
