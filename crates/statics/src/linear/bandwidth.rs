@@ -3,7 +3,9 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use super::multigrid::for_each_large;
+use voxsoft_solid::conformance::numbers::random;
+
+use super::multigrid::{BLOCK, BlockMatrix, for_each_chunk, for_each_large};
 use super::trials;
 
 /// Runs of each kernel, of which the quickest counts: what the processor can do, whoever else is using it.
@@ -39,61 +41,57 @@ fn triad() -> f64 {
     (3 * 8 * TRIAD) as f64 / seconds
 }
 
-/// Prints one figure: its name, seconds, and bytes per s.
+/// Prints one figure, in columns: its name, seconds, and bytes per s.
 fn tell(name: &str, bytes: usize, seconds: f64) {
     println!("{name}\t{seconds:e}\t{:e}", bytes as f64 / seconds);
+}
+
+/// Bytes of a product with the whole matrix: both halves of each number, and the columns.
+fn product_bytes(matrix: &BlockMatrix) -> usize {
+    (2 * size_of::<[f32; BLOCK]>() + size_of::<u32>()) * matrix.blocks()
+}
+
+/// Bytes of a forward and a backward sweep and the residual between them: each off-diagonal block is read twice.
+fn sweep_bytes(matrix: &BlockMatrix) -> usize {
+    2 * (size_of::<[f32; BLOCK]>() + size_of::<u32>()) * (matrix.blocks() - matrix.rows())
 }
 
 #[test]
 #[ignore = "a benchmark"]
 fn speeds_of_kernels() {
-    let across: usize = std::env::var("VOXSOFT_ACROSS").map_or(46, |text| text.parse().unwrap());
+    let across = std::env::var("VOXSOFT_ACROSS").map_or(46, |text| text.parse().unwrap());
     let problem = trials::cube(across);
-    let start = Instant::now();
     let mut system = trials::assembled(&problem, trials::multigrid());
-    println!("new+first assembly {}", start.elapsed().as_secs_f64());
-    let rest = problem.body().rest().to_vec();
+    let rest = problem.body().rest();
     let mut unused = vec![0.0; system.size()];
-    let t = quickest(|| {
-        system.assemble(&problem, &rest, &|_| 1.0, None, None, &mut unused);
+    let seconds = quickest(|| {
+        system.assemble(&problem, rest, &|_| 1.0, None, None, &mut unused);
     });
-    tell("assemble", 0, t);
-    let t = quickest(|| {
+    let bytes = product_bytes(system.parts().0);
+    tell("assembly", bytes, seconds);
+    let seconds = quickest(|| {
         system.factor(true).unwrap();
     });
-    tell("project", 0, t);
+    tell("coarser matrices", bytes, seconds);
     let (matrix, backend) = system.parts();
-    let blocks = matrix.blocks();
-    tell("triad", 1, 1.0 / triad());
-    let operator = backend.operator(matrix);
-    let x = voxsoft_solid::conformance::numbers::random(matrix.rows(), 3);
+    let (operator, mut preconditioner) = (backend.operator(matrix), backend.preconditioner(matrix));
+    let x = random(matrix.rows(), 3);
     let mut y = x.clone();
+    tell("product", bytes, quickest(|| operator.apply(&x, &mut y)));
+    let bytes = sweep_bytes(matrix);
+    let single = vec![[1.0f32; 4]; matrix.rows()];
+    let mut sums = single.clone();
+    let seconds = quickest(|| {
+        for half in [matrix.before(&single), matrix.after(&single, 0)] {
+            for_each_chunk(&mut sums, |first, sums| half.set(first, sums));
+        }
+    });
+    tell("halves of all rows", bytes / 2, seconds);
     tell(
-        "product",
-        76 * blocks,
-        quickest(|| operator.apply(&x, &mut y)),
-    );
-    let mut preconditioner = backend.preconditioner(matrix);
-    tell(
-        "cycle",
-        80 * blocks,
+        "V-cycle",
+        bytes,
         quickest(|| preconditioner.apply(&x, &mut y)),
     );
-    let mut side: Vec<f64> = (problem.body().rest().len() * 3..)
-        .step_by(1)
-        .take(system.size())
-        .map(|_| 0.0)
-        .collect();
-    for (vertex, held) in problem.held().iter().enumerate() {
-        if !held[2] {
-            side[3 * vertex + 2] = -1.0;
-        }
-    }
-    drop((operator, preconditioner));
-    let factor = system.factor(true).unwrap();
-    let t = quickest(|| {
-        let mut s = side.clone();
-        system.solve(&factor, &mut s, 1e-8, &mut || false).unwrap();
-    });
-    tell("solve", 0, t);
+    let bytes = 3 * 8 * TRIAD;
+    tell("triad", bytes, bytes as f64 / triad());
 }

@@ -11,11 +11,11 @@ use voxsoft_solid::{Load, Problem, Term, elastic};
 use crate::linear::backend::{Backend, MakeBackend};
 use crate::linear::conjugate_gradients::{End, Equation, conjugate_gradients};
 use crate::linear::error::FactorError;
-use crate::linear::multigrid::{BlockMatrix, cells_of, color, for_each_large};
+use crate::linear::multigrid::{BlockMatrix, cells_of, color, for_each_large, vectorized};
 use crate::linear::operator::RankUpdated;
 use crate::linear::options::LinearOptions;
-use crate::linear::rank::rank;
 use crate::linear::row_pattern::pattern;
+use crate::linear::scatter::Scatter;
 
 /// Memory per vertex: 27 blocks of 76 bytes, an eighth more for coarser levels, and patterns, strains and vectors. 3.9
 /// kB were measured on a cube of 10⁵ voxels, the mesh included.
@@ -343,43 +343,15 @@ impl Target<'_> {
         };
         // Rows are numbered by colors, each of which occurs once in a voxel: equal parts are equal work.
         let ranges = (0..count).map(|part| rows * part / count..rows * (part + 1) / count);
-        let (mut parts, [before, after]) = matrix.parts(ranges);
-        for_each_large(&mut parts, |_, rows| {
-            for (vertices, entries) in elements.iter() {
-                for (a, &vertex) in vertices.iter().enumerate() {
-                    let row = places[vertex as usize] as usize;
-                    if !rows.rows.contains(&row) {
-                        continue;
-                    }
-                    let fixed = held[vertex as usize];
-                    let width = 3 * vertices.len();
-                    let entries = &entries[3 * a * width..(3 * a + 3) * width];
-                    for (b, &other) in vertices.iter().enumerate() {
-                        let mut block = [0.0; 9];
-                        for i in 0..3 {
-                            let entries = &entries[i * width + 3 * b..][..3];
-                            block[3 * i..3 * i + 3].copy_from_slice(entries);
-                        }
-                        let across = held[other as usize];
-                        if fixed != [false; 3] || across != [false; 3] {
-                            for (k, entry) in block.iter_mut().enumerate() {
-                                if fixed[k / 3] || across[k % 3] {
-                                    *entry = 0.0;
-                                }
-                            }
-                        }
-                        let column = places[other as usize];
-                        let ((starts, columns), values) = if (column as usize) < row {
-                            (before, &mut rows.lower)
-                        } else {
-                            (after, &mut rows.upper)
-                        };
-                        let columns = &columns[starts[row]..starts[row + 1]];
-                        let first = starts[row] - starts[rows.rows.start];
-                        values.add(first + rank(columns, column), &block);
-                    }
-                }
-            }
+        let (mut parts, columns) = matrix.parts(ranges);
+        for_each_large(&mut parts, |_, part| {
+            vectorized(Scatter {
+                elements,
+                places,
+                held,
+                columns,
+                part,
+            });
         });
     }
 }

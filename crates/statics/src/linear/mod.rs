@@ -16,6 +16,7 @@ pub(crate) mod options;
 mod ordering;
 mod rank;
 mod row_pattern;
+mod scatter;
 pub(crate) mod system;
 #[cfg(test)]
 pub(crate) mod trials;

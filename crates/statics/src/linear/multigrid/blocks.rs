@@ -260,12 +260,15 @@ impl BlockMatrix {
             sums.clear();
             sums.resize(before.len() + after.len(), [0.0; 9]);
             for &(fine, weight) in fine_of.row(row) {
-                for (neighbor, block) in self.row(fine as usize) {
-                    let weighted = block.map(|entry| weight * entry);
-                    for &(column, share) in p.row(neighbor as usize) {
-                        let sum = &mut sums[place_of[column as usize] as usize];
-                        for (sum, entry) in sum.iter_mut().zip(&weighted) {
-                            *sum += share * entry;
+                for half in [&self.lower, &self.upper] {
+                    for place in half.places(fine as usize) {
+                        let block = half.values.block(place);
+                        let weighted = block.map(|entry| weight * entry);
+                        for &(column, share) in p.row(half.columns[place] as usize) {
+                            let sum = &mut sums[place_of[column as usize] as usize];
+                            for (sum, entry) in sum.iter_mut().zip(&weighted) {
+                                *sum += share * entry;
+                            }
                         }
                     }
                 }

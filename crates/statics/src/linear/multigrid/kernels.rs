@@ -21,7 +21,6 @@ pub(crate) const BLOCK: usize = 9;
 /// Coordinate of the vector that each of the first eight lanes is multiplied with.
 const COORDINATES: [usize; 8] = [0, 0, 0, 1, 1, 1, 2, 2];
 /// Blocks from one to the one that is fetched meanwhile: two rows of a full grid, or four halves.
-#[cfg(target_arch = "x86_64")]
 const AHEAD: usize = 54;
 
 /// Places of the blocks of each row that are summed: all but the first `skip`.
@@ -175,6 +174,32 @@ trait Lanes: Copy {
     ) -> Vec3;
 }
 
+/// Runs a loop that is compiled for the widest registers of the processor.
+pub(crate) fn vectorized<F: NullaryFnOnce>(run: F) -> F::Output {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(lanes) = pulp::x86::V3::try_new() {
+        return pulp::Simd::vectorize(lanes, run);
+    }
+    run.call()
+}
+
+/// Starts to fetch what lies at an address, which need not exist.
+#[inline(always)]
+pub(super) fn fetch<T>(at: *const T) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(sse) = pulp::core_arch::x86::Sse::try_new() {
+        sse._mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(at.cast());
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = at;
+}
+
+/// Starts to fetch the block [`AHEAD`].
+#[inline(always)]
+fn fetch_ahead(block: &[f32; BLOCK]) {
+    fetch(std::ptr::from_ref(block).wrapping_add(AHEAD));
+}
+
 /// Lanes in a loop.
 #[derive(Clone, Copy)]
 struct Portable;
@@ -190,6 +215,7 @@ impl Lanes for Portable {
     ) -> Single {
         let (mut sums, mut last) = ([0.0; 8], 0.0);
         for (block, &column) in blocks.iter().zip(columns) {
+            fetch_ahead(block);
             let x = x[column as usize - from];
             for lane in 0..8 {
                 sums[lane] += block[lane] * x[COORDINATES[lane]];
@@ -210,6 +236,8 @@ impl Lanes for Portable {
     ) -> Vec3 {
         let (mut sums, mut last) = ([0.0; 8], 0.0);
         for ((high, low), &column) in high.iter().zip(low).zip(columns) {
+            fetch_ahead(high);
+            fetch_ahead(low);
             let x = x[column as usize];
             for lane in 0..8 {
                 let number = f64::from(high[lane]) + f64::from(low[lane]);
@@ -234,12 +262,12 @@ fn added<T: Copy + std::ops::Add<Output = T>>(sums: [T; 8], last: T) -> [T; 3] {
 /// Lanes in registers of AVX2.
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
-    use std::arch::x86_64::{__m128, __m256, __m256d, _MM_HINT_T0};
+    use std::arch::x86_64::{__m128, __m256, __m256d};
 
     use pulp::cast;
     use pulp::x86::V3;
 
-    use super::{AHEAD, BLOCK, COORDINATES, Lanes, Single, Vec3, added};
+    use super::{BLOCK, COORDINATES, Lanes, Single, Vec3, added, fetch_ahead};
 
     impl Lanes for V3 {
         #[inline(always)]
@@ -253,14 +281,24 @@ mod avx2 {
             let coordinates = cast(COORDINATES.map(|coordinate| coordinate as u32));
             let mut sums: __m256 = self.avx._mm256_setzero_ps();
             let mut last = 0.0;
-            for (block, &column) in blocks.iter().zip(columns) {
-                fetch(self, block);
+            let mut add = |block: &[f32; BLOCK], column: u32| {
                 let x = x[column as usize - from];
                 let own = self.avx._mm256_castps128_ps256(cast(x));
                 let factors = self.avx2._mm256_permutevar8x32_ps(own, coordinates);
                 let products = self.avx._mm256_mul_ps(cast(eight(block)), factors);
                 sums = self.avx._mm256_add_ps(sums, products);
                 last += block[8] * x[2];
+            };
+            // Two blocks are little more than a line of the cache.
+            let (pairs, rest) = blocks.as_chunks::<2>();
+            let (pairs_of_columns, last_column) = columns.as_chunks::<2>();
+            for (pair, columns) in pairs.iter().zip(pairs_of_columns) {
+                fetch_ahead(&pair[0]);
+                add(&pair[0], columns[0]);
+                add(&pair[1], columns[1]);
+            }
+            if let ([block], [column]) = (rest, last_column) {
+                add(block, *column);
             }
             let [x, y, z] = added(cast::<_, [f32; 8]>(sums), last);
             [x, y, z, 0.0]
@@ -278,8 +316,8 @@ mod avx2 {
             let mut sums: [__m256d; 2] = [avx._mm256_setzero_pd(); 2];
             let mut last = 0.0;
             for ((high, low), &column) in high.iter().zip(low).zip(columns) {
-                fetch(self, high);
-                fetch(self, low);
+                fetch_ahead(high);
+                fetch_ahead(low);
                 let x = x[column as usize];
                 let of: [__m256d; 3] = x.map(|x| avx._mm256_set1_pd(x));
                 let factors = [
@@ -304,12 +342,5 @@ mod avx2 {
     #[inline(always)]
     fn eight(block: &[f32; BLOCK]) -> [f32; 8] {
         std::array::from_fn(|lane| block[lane])
-    }
-
-    /// Starts to fetch the block [`AHEAD`]; beyond the end nothing happens.
-    #[inline(always)]
-    fn fetch(simd: V3, block: &[f32; BLOCK]) {
-        let ahead = std::ptr::from_ref(block).wrapping_add(AHEAD);
-        simd.sse._mm_prefetch::<_MM_HINT_T0>(ahead.cast());
     }
 }

@@ -4,7 +4,7 @@
 //! bytes are half the time where memory bandwidth is the limit. Both together have 48 binary digits, with which
 //! conjugate gradients work; the rest is 10⁻¹⁵ of each number. So a matrix is stored once, for both.
 
-use super::kernels::BLOCK;
+use super::kernels::{BLOCK, fetch};
 use super::parallel;
 
 /// Block, row-major.
@@ -98,12 +98,21 @@ impl Part<'_> {
     /// Adds to a block.
     #[inline(always)]
     pub fn add(&mut self, place: usize, block: &Block) {
-        let (high, low) = (&mut self.high[place], &mut self.low[place]);
+        let (high, low) = (self.high[place], self.low[place]);
         let block = transposed(block);
-        for k in 0..BLOCK {
-            let sum = f64::from(high[k]) + f64::from(low[k]) + block[k];
-            [high[k], low[k]] = split(sum);
-        }
+        // One step after the other for all numbers, so that they share registers.
+        let sums: Block =
+            std::array::from_fn(|k| f64::from(high[k]) + f64::from(low[k]) + block[k]);
+        let high = sums.map(|sum| sum as f32);
+        self.high[place] = high;
+        self.low[place] = std::array::from_fn(|k| (sums[k] - f64::from(high[k])) as f32);
+    }
+
+    /// Starts to fetch a block.
+    #[inline(always)]
+    pub fn fetch(&self, place: usize) {
+        fetch(&self.high[place]);
+        fetch(&self.low[place]);
     }
 
     /// Sets a block.
