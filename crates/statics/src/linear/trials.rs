@@ -2,7 +2,7 @@
 //! must find.
 
 use rayon::current_num_threads;
-use voxsoft_solid::conformance::numbers::random;
+use voxsoft_solid::conformance::numbers::{on_threads, random};
 use voxsoft_solid::conformance::{Law, Outcome};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
@@ -211,6 +211,14 @@ pub(crate) fn multigrid() -> MakeBackend {
 #[test]
 fn multigrid_keeps_the_laws_of_a_back_end() {
     check_backend(multigrid(), 0.0).unwrap();
+}
+
+#[test]
+fn a_tangent_has_the_same_bits_on_any_number_of_threads() {
+    let problem = cube(12);
+    let matrices = on_threads(|| assembled(&problem, multigrid()).parts().0.clone());
+    assert!(matrices.len() > 1 && matrices[0].are_finite());
+    assert!(matrices.windows(2).all(|pair| pair[0] == pair[1]));
 }
 
 #[test]

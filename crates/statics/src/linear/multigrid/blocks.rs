@@ -374,3 +374,57 @@ pub(crate) fn pseudo_inverse(block: &Block) -> Block {
     }
     inverse
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Columns 0, 3, 7, … before each diagonal and beyond it, as many as rows 0, 1, 2, … have room for.
+    fn pattern(count: usize) -> BlockMatrix {
+        let (mut starts, mut columns) = (vec![0], Vec::new());
+        for row in 0..count {
+            columns.extend((0..count as u32).filter(|&c| {
+                let apart = row.abs_diff(c as usize);
+                apart == 0 || (apart * apart) % 7 == 1 && apart * row % 5 < 3
+            }));
+            starts.push(columns.len());
+        }
+        BlockMatrix::with_pattern(&starts, &columns)
+    }
+
+    #[test]
+    fn halves_hold_the_rows_that_parts_set() {
+        let mut matrix = pattern(40);
+        let block = |row: usize, column: u32| -> Block {
+            std::array::from_fn(|k| (row * 1000 + column as usize * 10 + k) as f64)
+        };
+        let (mut parts, halves) = matrix.parts([0..25, 25..40].into_iter());
+        for part in &mut parts {
+            for row in part.rows.clone() {
+                let first = halves.map(|(starts, _)| starts[row] - starts[part.rows.start]);
+                for (place, &column) in columns_of(halves[0], row).iter().enumerate() {
+                    part.lower.set(first[0] + place, &block(row, column));
+                }
+                for (place, &column) in columns_of(halves[1], row).iter().enumerate() {
+                    part.upper.set(first[1] + place, &block(row, column));
+                }
+            }
+        }
+        for row in 0..matrix.rows() {
+            let columns: Vec<u32> = matrix.columns(row).collect();
+            assert!(columns.is_sorted_by(|a, b| a < b));
+            let expected: Vec<(u32, Block)> = columns
+                .iter()
+                .map(|&column| (column, block(row, column)))
+                .collect();
+            assert_eq!(matrix.row(row).collect::<Vec<_>>(), expected);
+            assert_eq!(matrix.diagonal_block(row), block(row, row as u32));
+        }
+        // Reversed and reversed again.
+        let reversed: Vec<u32> = (0..40).rev().collect();
+        assert_eq!(
+            matrix.renumbered(&reversed).renumbered(&reversed),
+            pattern(40)
+        );
+    }
+}

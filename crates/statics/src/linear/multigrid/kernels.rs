@@ -344,3 +344,143 @@ mod avx2 {
         std::array::from_fn(|lane| block[lane])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use voxsoft_solid::conformance::numbers::random;
+
+    use super::*;
+
+    /// Rows of 0 to 108 blocks, with rising columns among as many vectors.
+    struct Random {
+        starts: Vec<usize>,
+        columns: Vec<u32>,
+        high: Vec<[f32; BLOCK]>,
+        low: Vec<[f32; BLOCK]>,
+        x: Vec<Vec3>,
+    }
+
+    impl Random {
+        fn new() -> Self {
+            let lengths = [27, 0, 1, 2, 13, 14, 108, 8, 3, 26];
+            let (mut starts, mut columns) = (vec![0], Vec::new());
+            for (row, &length) in lengths.iter().enumerate() {
+                columns.extend((0..length).map(|place| 10 + (2 * place + row as u32) % 300));
+                starts.push(columns.len());
+            }
+            let numbers: Vec<f64> = random(3 * columns.len(), 5).into_flattened();
+            let high = |number: f64| number as f32;
+            let low = |number: f64| (number - f64::from(number as f32)) as f32;
+            let (blocks, _) = numbers.as_chunks::<BLOCK>();
+            Self {
+                high: blocks.iter().map(|block| block.map(high)).collect(),
+                low: blocks.iter().map(|block| block.map(low)).collect(),
+                starts,
+                columns,
+                x: random(310, 6),
+            }
+        }
+
+        fn rounded_x(&self) -> Vec<Single> {
+            let rounded = |x: &Vec3| [x[0] as f32, x[1] as f32, x[2] as f32, f32::NAN];
+            self.x.iter().map(rounded).collect()
+        }
+
+        /// Sums in double precision of `number(place, entry)` times `x`, and of their absolute values.
+        fn plain(
+            &self,
+            places: Range<usize>,
+            number: impl Fn(usize, usize) -> f64,
+            x: impl Fn(usize) -> Vec3,
+        ) -> [(f64, f64); 3] {
+            std::array::from_fn(|i| {
+                let terms = places.clone().flat_map(|place| {
+                    let x = x(self.columns[place] as usize);
+                    let number = &number;
+                    (0..3).map(move |j| number(place, 3 * j + i) * x[j])
+                });
+                let terms: Vec<f64> = terms.collect();
+                (
+                    terms.iter().sum(),
+                    terms.iter().map(|term| term.abs()).sum(),
+                )
+            })
+        }
+    }
+
+    /// Error of a sum of `count` products in any order, relative to the sum of absolute values (Higham 2002, section
+    /// 3.1), for a unit roundoff `u`.
+    fn allowed(count: usize, u: f64) -> f64 {
+        let n = count as f64 + 2.0;
+        n * u / (1.0 - n * u)
+    }
+
+    #[test]
+    fn rounded_sums_are_plain_ones_on_every_processor() {
+        let random = Random::new();
+        let x = random.rounded_x();
+        for (skip, from) in [(0, 0), (0, 10), (1, 10)] {
+            // A row without blocks has no diagonal to leave out.
+            let starts = if skip == 0 {
+                &random.starts[..]
+            } else {
+                &random.starts[2..]
+            };
+            let of = Rounded {
+                blocks: &random.high,
+                columns: &random.columns,
+                span: Span { starts, skip },
+                x: &x[from..],
+                from,
+            };
+            let mut sums = vec![[9.0; 4]; starts.len() - 1];
+            of.set(0, &mut sums);
+            for (row, sum) in sums.iter().enumerate() {
+                let places = of.span.places(row);
+                assert_eq!(*sum, of.sum(Portable, places.clone()));
+                let wide = |column: usize| x[column].map(f64::from)[..3].try_into().unwrap();
+                let number = |place: usize, k: usize| f64::from(random.high[place][k]);
+                let plain = random.plain(places.clone(), number, wide);
+                for (i, (exact, size)) in plain.into_iter().enumerate() {
+                    let off = (f64::from(sum[i]) - exact).abs();
+                    assert!(off <= allowed(3 * places.len(), f64::powi(2.0, -24)) * size);
+                }
+                assert_eq!(sum[3], 0.0);
+            }
+            // Rows further on are the same.
+            let mut rest = vec![[9.0; 4]; 3];
+            of.set(4, &mut rest);
+            assert_eq!(rest, sums[4..7]);
+        }
+    }
+
+    #[test]
+    fn whole_sums_are_plain_ones_on_every_processor() {
+        let random = Random::new();
+        let of = Whole {
+            high: &random.high,
+            low: &random.low,
+            columns: &random.columns,
+            span: Span {
+                starts: &random.starts,
+                skip: 0,
+            },
+            x: &random.x,
+        };
+        let mut sums = vec![[9.0; 3]; random.starts.len() - 1];
+        of.set(0, &mut sums);
+        for (row, sum) in sums.iter().enumerate() {
+            let places = of.span.places(row);
+            assert_eq!(*sum, of.sum(Portable, places.clone()));
+            let number = |place: usize, k: usize| {
+                f64::from(random.high[place][k]) + f64::from(random.low[place][k])
+            };
+            let plain = random.plain(places.clone(), number, |column| random.x[column]);
+            for (i, (exact, size)) in plain.into_iter().enumerate() {
+                // Twice: the plain sum is rounded too.
+                let off = (sum[i] - exact).abs();
+                assert!(off <= 2.0 * allowed(3 * places.len(), f64::powi(2.0, -53)) * size);
+            }
+        }
+    }
+}
