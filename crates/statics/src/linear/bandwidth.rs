@@ -8,7 +8,7 @@ use voxsoft_solid::conformance::numbers::random;
 use super::multigrid::{BLOCK, BlockMatrix, for_each_chunk, for_each_large};
 use super::trials;
 
-/// Runs of each kernel, of which the quickest counts: what the processor can do, whoever else is using it.
+/// Runs of each kernel, of which the quickest counts: other programs on the machine slow down the rest.
 const RUNS: usize = 15;
 /// Numbers of each array of the triad: 160 MB, more than any cache holds.
 const TRIAD: usize = 20_000_000;

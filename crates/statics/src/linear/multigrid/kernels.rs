@@ -183,7 +183,7 @@ pub(crate) fn vectorized<F: NullaryFnOnce>(run: F) -> F::Output {
     run.call()
 }
 
-/// Starts to fetch what lies at an address, which need not exist.
+/// Starts to fetch the memory at an address, which need not exist.
 #[inline(always)]
 pub(super) fn fetch<T>(at: *const T) {
     #[cfg(target_arch = "x86_64")]
