@@ -99,14 +99,12 @@ impl IterativeSystem {
         3 * self.places.len()
     }
 
-    /// The assembled matrix and the back end, for its trials.
-    #[cfg(test)]
+    /// The assembled matrix and the back end.
     pub fn parts(&self) -> (&BlockMatrix, &dyn Backend) {
         (&self.matrix, &*self.backend)
     }
 
     /// Row of each vertex.
-    #[cfg(test)]
     pub fn places(&self) -> &[u32] {
         &self.places
     }
@@ -240,7 +238,7 @@ impl IterativeSystem {
     }
 
     /// Converts a vector of free coordinates into rows.
-    fn by_rows(&self, side: &[f64]) -> Vec<Vec3> {
+    pub fn by_rows(&self, side: &[f64]) -> Vec<Vec3> {
         let mut rows = vec![[0.0; 3]; self.places.len()];
         for (vertex, &place) in self.places.iter().enumerate() {
             rows[place as usize].copy_from_slice(&side[3 * vertex..3 * vertex + 3]);

@@ -14,6 +14,8 @@ pub(crate) mod options;
 mod ordering;
 mod rank;
 mod row_pattern;
+mod sparse_cholesky;
+pub(crate) mod stiffness;
 pub(crate) mod system;
 #[cfg(test)]
 pub(crate) mod trials;

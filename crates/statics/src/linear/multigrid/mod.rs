@@ -2,6 +2,7 @@
 
 mod blocks;
 mod cells;
+mod coarsest;
 mod color;
 mod hierarchy;
 mod parallel;

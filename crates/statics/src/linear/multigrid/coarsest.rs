@@ -1,0 +1,175 @@
+//! Coarsest level, solved by a sparse Cholesky factor.
+//!
+//! A level whose cells are larger than the walls and chambers of a body knows little of how it bends, and such a level
+//! is where conjugate gradients lose most iterations. The first level that a factor can afford is fine enough: its
+//! cells are as many as the body's shape needs, not its voxels, so that a finer grid does not make the factor larger.
+
+use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use voxsoft_solid::vector::Vec3;
+
+use super::blocks::BlockMatrix;
+use super::cells::{Cell, places_of};
+use crate::linear::ordering::nested_dissection;
+use crate::linear::sparse_cholesky;
+
+/// Size of a factor: numbers, and multiplications to find them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Budget {
+    pub entries: usize,
+    pub products: f64,
+}
+
+impl Budget {
+    /// A factor that costs little beside the sweeps on the finest level of `nodes` nodes: for an iteration a tenth of
+    /// their memory, and once the work of some of them.
+    pub fn beside(nodes: usize) -> Self {
+        Self {
+            entries: (30 * nodes).max(100_000),
+            products: (6_000.0 * nodes as f64).max(2e7),
+        }
+    }
+
+    /// A factor of 0.3 GB, for a level that cannot be coarsened.
+    pub const LARGEST: Self = Self {
+        entries: 40_000_000,
+        products: 1e11,
+    };
+}
+
+/// Least entries of a factor for each entry of the lower triangle of a matrix; what is beyond the budget by this
+/// measure is not analyzed.
+const FILL: usize = 3;
+
+/// Pattern of the factor, and the factor of the matrix that was last taken.
+pub(crate) struct Coarsest {
+    symbolic: SymbolicCholesky<usize>,
+    column_starts: Vec<usize>,
+    row_indices: Vec<usize>,
+    /// Place of each node in the order of elimination, and the nodes in that order.
+    places: Vec<u32>,
+    order: Vec<u32>,
+    entries: Option<Vec<f64>>,
+}
+
+impl Coarsest {
+    /// Analyzes a level with these cells; `None` if its factor is beyond the budget.
+    pub fn new(cells: &[Cell], matrix: &BlockMatrix, budget: Budget) -> Option<Self> {
+        if FILL * 9 * matrix.columns.len() / 2 > budget.entries {
+            return None;
+        }
+        let count = matrix.rows();
+        let points: Vec<Vec3> = places_of(cells, count);
+        let neighbors: Vec<Vec<u32>> = (0..count).map(|row| matrix.row(row).1.to_vec()).collect();
+        let order = nested_dissection(&points, &neighbors, &vec![false; count]);
+        let mut places = vec![0u32; count];
+        for (place, &node) in order.iter().enumerate() {
+            places[node as usize] = place as u32;
+        }
+        let mut column_starts = vec![0];
+        let mut row_indices = Vec::with_capacity(9 * matrix.columns.len());
+        for &node in &order {
+            let mut row: Vec<u32> = (matrix.row(node as usize).1.iter())
+                .map(|&column| places[column as usize])
+                .collect();
+            row.sort_unstable();
+            for _ in 0..3 {
+                row_indices
+                    .extend((row.iter()).flat_map(|&p| (0..3).map(move |i| 3 * p as usize + i)));
+                column_starts.push(row_indices.len());
+            }
+        }
+        let size = 3 * count;
+        let pattern =
+            SymbolicSparseColMatRef::new_checked(size, size, &column_starts, None, &row_indices);
+        let symbolic = sparse_cholesky::analyze(pattern).ok()?;
+        let affordable =
+            symbolic.len_val() <= budget.entries && products(&symbolic) <= budget.products;
+        affordable.then_some(Self {
+            symbolic,
+            column_starts,
+            row_indices,
+            places,
+            order,
+            entries: None,
+        })
+    }
+
+    /// Factorizes a matrix, with its diagonal shifted as far as necessary.
+    pub fn take(&mut self, matrix: &BlockMatrix) {
+        let mut values = vec![0.0; self.row_indices.len()];
+        let mut diagonal = Vec::with_capacity(3 * self.order.len());
+        for (place, &node) in self.order.iter().enumerate() {
+            let (start, columns) = matrix.row(node as usize);
+            // Symmetric: the column of a node is its row. Neighbors by their places, which order the rows.
+            let mut row: Vec<(u32, usize)> = (columns.iter().enumerate())
+                .map(|(offset, &column)| (self.places[column as usize], start + offset))
+                .collect();
+            row.sort_unstable();
+            for (rank, &(neighbor, index)) in row.iter().enumerate() {
+                let block = matrix.values.block(index);
+                for j in 0..3 {
+                    let first = self.column_starts[3 * place + j] + 3 * rank;
+                    for i in 0..3 {
+                        values[first + i] = block[3 * j + i];
+                    }
+                    if neighbor as usize == place {
+                        diagonal.push(first + j);
+                        // Coordinates without stiffness stay in place.
+                        if !(values[first + j] > 0.0) {
+                            values[first + j] = 1.0;
+                        }
+                    }
+                }
+            }
+        }
+        let pattern = SymbolicSparseColMatRef::new_checked(
+            3 * self.order.len(),
+            3 * self.order.len(),
+            &self.column_starts,
+            None,
+            &self.row_indices,
+        );
+        // Corners with few fine nodes can be linearly dependent; rounding decides their sign.
+        let factor = |lift: f64| {
+            let mut lifted = values.clone();
+            diagonal.iter().for_each(|&at| lifted[at] *= 1.0 + lift);
+            sparse_cholesky::factorize(&self.symbolic, SparseColMatRef::new(pattern, &lifted)).ok()
+        };
+        let lifts = [1e-13, 1e-10, 1e-7, 1e-4, 1e-2, 1.0];
+        self.entries = lifts.into_iter().find_map(factor);
+    }
+
+    /// Solves in place; false if the matrix has no factor. `flat` is a buffer.
+    pub fn solve(&self, x: &mut [Vec3], flat: &mut Vec<f64>) -> bool {
+        let Some(entries) = &self.entries else {
+            return false;
+        };
+        flat.clear();
+        flat.extend(self.order.iter().flat_map(|&node| x[node as usize]));
+        sparse_cholesky::solve(&self.symbolic, entries, flat);
+        let (vectors, _) = flat.as_chunks::<3>();
+        for (&node, vector) in self.order.iter().zip(vectors) {
+            x[node as usize] = *vector;
+        }
+        true
+    }
+}
+
+/// Multiplications of a factorization: the squares of the entries of its columns.
+fn products(symbolic: &SymbolicCholesky<usize>) -> f64 {
+    let square = |entries: usize| (entries as f64).powi(2);
+    match symbolic.raw() {
+        SymbolicCholeskyRaw::Simplicial(symbolic) => {
+            let columns = symbolic.col_ptr().windows(2);
+            columns.map(|ends| square(ends[1] - ends[0])).sum()
+        }
+        SymbolicCholeskyRaw::Supernodal(symbolic) => (0..symbolic.n_supernodes())
+            .map(|block| {
+                let columns = symbolic.supernode_end()[block] - symbolic.supernode_begin()[block];
+                let below = symbolic.supernode(block).pattern().len();
+                (1..=columns).map(|k| square(k + below)).sum::<f64>()
+            })
+            .sum(),
+    }
+}
