@@ -18,8 +18,8 @@ use crate::linear::rank::rank;
 use crate::linear::row_pattern::pattern;
 
 /// Memory per vertex: 27 blocks of 76 bytes, an eighth more for coarser levels, and patterns, strains and vectors. 3.9
-/// kB were measured on a cube of 10⁵ voxels, the mesh included.
-const BYTES_PER_VERTEX: u64 = 4_000;
+/// kB were measured on a cube of 10⁵ voxels, the mesh included; the factor of the coarsest level adds 240 bytes at most.
+const BYTES_PER_VERTEX: u64 = 4_300;
 /// Factor on the smallest sufficient rank-one stiffness that is added across a direction.
 const BEYOND: f64 = 10.0;
 /// Number of elements from which parts of the rows are worth a task each, and number of these parts.

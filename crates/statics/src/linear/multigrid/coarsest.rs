@@ -37,7 +37,7 @@ impl Budget {
     };
 }
 
-/// Least entries of a factor for each entry of the lower triangle of a matrix; what is beyond the budget by this
+/// Least entries of a factor for each entry of the lower triangle of a matrix: one beyond the budget by this
 /// measure is not analyzed.
 const FILL: usize = 3;
 
@@ -171,5 +171,103 @@ fn products(symbolic: &SymbolicCholesky<usize>) -> f64 {
                 (1..=columns).map(|k| square(k + below)).sum::<f64>()
             })
             .sum(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Chain of nodes with springs of blocks between neighbors, held at its first; the z of its last has no stiffness.
+    fn chain(count: usize) -> (Vec<Cell>, BlockMatrix) {
+        let cell = |k: usize| Cell {
+            at: [k as i32, 0, 0],
+            nodes: std::array::from_fn(|corner| (k + (corner >> 2)) as u32),
+        };
+        let cells = (0..count - 1).map(cell).collect();
+        let (mut starts, mut columns) = (vec![0], Vec::new());
+        for row in 0..count {
+            columns.extend((row.saturating_sub(1)..(row + 2).min(count)).map(|c| c as u32));
+            starts.push(columns.len());
+        }
+        let mut matrix = BlockMatrix::with_pattern(starts.clone(), columns);
+        let spring = [2.0, 0.5, 0.1, 0.5, 1.0, 0.2, 0.1, 0.2, 3.0];
+        let columns = matrix.columns.clone();
+        for part in &mut matrix.values.parts(std::iter::once(columns.len())) {
+            for row in 0..count {
+                for place in starts[row]..starts[row + 1] {
+                    let column = columns[place] as usize;
+                    let ends = if row == count - 1 { 1.0 } else { 2.0 };
+                    let factor = if column == row { ends } else { -1.0 };
+                    let mut block = spring.map(|k| factor * k);
+                    let loose = |node: usize, axis: usize| node == count - 1 && axis == 2;
+                    for k in 0..9 {
+                        if loose(row, k / 3) || loose(column, k % 3) {
+                            block[k] = 0.0;
+                        }
+                    }
+                    part.set(place, &block);
+                }
+            }
+        }
+        (cells, matrix)
+    }
+
+    #[test]
+    fn solves_and_keeps_loose_coordinates_apart() {
+        let (cells, matrix) = chain(40);
+        let mut coarsest = Coarsest::new(&cells, &matrix, Budget::beside(0)).expect("small");
+        coarsest.take(&matrix);
+        let x: Vec<Vec3> = (0..40)
+            .map(|k| [1.0, -0.5, if k == 39 { 0.0 } else { 0.1 * k as f64 }])
+            .collect();
+        let mut y = vec![[0.0; 3]; 40];
+        matrix.multiply(&x, &mut y);
+        assert!(coarsest.solve(&mut y, &mut Vec::new()));
+        for (x, y) in x.iter().zip(&y) {
+            for axis in 0..3 {
+                // The condition number of the chain, some thousand, times the first shift of the diagonal.
+                assert!((x[axis] - y[axis]).abs() < 1e-8, "{x:?} {y:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_indefinite_matrix_is_shifted_to_a_positive_one() {
+        let (cells, mut matrix) = chain(40);
+        let place = matrix.diagonals[20];
+        // Below half of the stiffness of the two springs.
+        matrix.values.scale(place, 0, 0, 0.4);
+        let mut coarsest = Coarsest::new(&cells, &matrix, Budget::beside(0)).expect("small");
+        coarsest.take(&matrix);
+        let side: Vec<Vec3> = (0..40).map(|k| [f64::from(k == 20), 0.0, 0.0]).collect();
+        let mut answer = side.clone();
+        assert!(coarsest.solve(&mut answer, &mut Vec::new()));
+        assert!(answer[20][0] > 0.0);
+    }
+
+    #[test]
+    fn a_budget_is_kept() {
+        let (cells, matrix) = chain(40);
+        let symbolic = Coarsest::new(&cells, &matrix, Budget::LARGEST)
+            .expect("small")
+            .symbolic;
+        let exact = Budget {
+            entries: symbolic.len_val().max(FILL * 9 * matrix.columns.len() / 2),
+            products: products(&symbolic),
+        };
+        assert!(Coarsest::new(&cells, &matrix, exact).is_some());
+        for less in [
+            Budget {
+                entries: symbolic.len_val() - 1,
+                ..exact
+            },
+            Budget {
+                products: 0.99 * exact.products,
+                ..exact
+            },
+        ] {
+            assert!(Coarsest::new(&cells, &matrix, less).is_none(), "{less:?}");
+        }
     }
 }
