@@ -50,6 +50,8 @@ TIGHT = 1e-10
 #: Weight in units of g, along no axis: thin walls bend.
 WEIGHT = np.array([0.3, 1.0, -0.7])
 GRAVITY = 9.81
+#: Connections that count in aggregates: with 0.05 the chambers take 61 iterations, with 0 102.
+STRENGTH = 0.05
 PEERS = ("pyamg", "petsc4py", "pypardiso")
 
 
@@ -194,6 +196,7 @@ def pyamg(system: System) -> tuple[int, Task]:
         levels = smoothed_aggregation_solver(
             matrix,
             B=modes,
+            strength=("symmetric", {"theta": STRENGTH}),
             presmoother=("block_gauss_seidel", {"sweep": "forward"}),
             postsmoother=("block_gauss_seidel", {"sweep": "backward"}),
             improve_candidates=None,
