@@ -800,6 +800,29 @@ class Fields:
         self, positions: NDArray[np.float64], element: int
     ) -> NDArray[np.float64]: ...
 
+@final
+class Stiffness:
+    """Tangent of a body of equal voxels under its whole load, without contact, and its solver."""
+
+    def __new__(
+        cls, problem: Problem, positions: NDArray[np.float64], *, memory: int = ...
+    ) -> Stiffness: ...
+    def block_rows(
+        self,
+    ) -> tuple[NDArray[np.uint64], NDArray[np.uint32], NDArray[np.float64]]:
+        """Starts (n + 1,), vertices (m,) and blocks (m, 3, 3) in N/m, zero where held.
+
+        They are `scipy.sparse.bsr_array((blocks, vertices, starts))`.
+        """
+
+    def precondition(self) -> None:
+        """Derive the preconditioner, which the first solution does otherwise."""
+
+    def solve(
+        self, forces: NDArray[np.float64], tolerance: float
+    ) -> tuple[NDArray[np.float64], int]:
+        """Displacements (n, 3) in m under forces (n, 3) in N, and the number of iterations."""
+
 #: Marks of messages, and what players share with the page.
 MAGIC: int
 HEADER: int

@@ -26,6 +26,7 @@ mod sensitivity;
 mod shapes;
 mod simulate;
 mod skin;
+mod stiffness;
 mod surface_contact;
 mod tendon;
 mod transient;
@@ -56,6 +57,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<problem_parts::PyProblemParts>()?;
     module.add_class::<ensemble::PyEnsemble>()?;
     module.add_class::<fields::PyFields>()?;
+    module.add_class::<stiffness::PyStiffness>()?;
     module.add_class::<display::PyOutline>()?;
     module.add_class::<display::PyDisplay>()?;
     module.add_function(wrap_pyfunction!(display::pack_smooth, module)?)?;

@@ -50,6 +50,7 @@ pub use linear::conjugate_gradients::{End, Equation, conjugate_gradients};
 pub use linear::lattice_product::LatticeProduct;
 pub use linear::operator::{Jacobi, LinearOperator, Preconditioner, RankUpdated};
 pub use linear::options::LinearSolver;
+pub use linear::stiffness::{BlockRows, LinearSolution, Stiffness};
 pub use motion::integrator::Integrator;
 pub use motion::modes::{Mode, modes};
 pub use motion::newton::{Motion, Transient};

@@ -1,14 +1,8 @@
 //! Direct sparse solver: numbering of free coordinates, assembly of the tangent, Cholesky or LU factors.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
-use faer::perm::PermRef;
 use faer::prelude::*;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LdltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw,
-    SymmetricOrdering, factorize_symbolic_cholesky,
-};
+use faer::sparse::linalg::cholesky::{LdltRef, SymbolicCholesky, SymbolicCholeskyRaw};
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
@@ -20,6 +14,7 @@ use crate::linear::error::FactorError;
 use crate::linear::options::LinearOptions;
 use crate::linear::ordering::nested_dissection;
 use crate::linear::rank::rank;
+use crate::linear::sparse_cholesky;
 
 /// Row of a held coordinate.
 const HELD: u32 = u32::MAX;
@@ -136,21 +131,7 @@ impl DirectSystem {
             symmetric,
         };
         if system.symmetric {
-            // Rows are numbered in the order of elimination already. `SymmetricOrdering::Identity` would require one
-            // triangle only; a permutation makes faer select it.
-            let identity: Vec<usize> = (0..size).collect();
-            let symbolic = factorize_symbolic_cholesky(
-                system.pattern(),
-                Side::Lower,
-                SymmetricOrdering::Custom(PermRef::new_checked(&identity, &identity, size)),
-                // Dense blocks pay off for voxels even where faer would go column by column: a third less time for a
-                // beam of 80.
-                CholeskySymbolicParams {
-                    supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-                    ..Default::default()
-                },
-            )
-            .map_err(|_| FactorError::Memory(0))?;
+            let symbolic = sparse_cholesky::analyze(system.pattern())?;
             options.allow(symbolic.len_val() as u64 * size_of::<f64>() as u64)?;
             system.symbolic = Some(symbolic);
         } else {
@@ -296,21 +277,7 @@ impl DirectSystem {
         symbolic: &SymbolicCholesky<usize>,
         values: &[f64],
     ) -> Result<DirectFactor, FactorError> {
-        let mut entries = vec![0.0; symbolic.len_val()];
-        let par = Par::Seq;
-        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default());
-        let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Memory(0))?;
-        symbolic
-            .factorize_numeric_llt::<f64>(
-                &mut entries,
-                self.matrix(values),
-                Side::Lower,
-                LltRegularization::default(),
-                par,
-                MemStack::new(&mut buffer),
-                Default::default(),
-            )
-            .map_err(|_| FactorError::NotPositive)?;
+        let entries = sparse_cholesky::factorize(symbolic, self.matrix(values))?;
         Ok(DirectFactor::Cholesky(entries))
     }
 
@@ -409,27 +376,34 @@ impl DirectSystem {
 
     /// Solves for a right-hand side in place, with the transposed tangent if `transposed`.
     pub fn solve(&self, factor: &DirectFactor, side: &mut [f64], transposed: bool) {
-        let par = Par::Seq;
-        let mut rhs = MatMut::from_column_major_slice_mut(side, self.size, 1);
-        if let DirectFactor::General(lu) = factor {
-            if transposed {
-                lu.solve_transpose_in_place(rhs.as_mut());
-            } else {
-                lu.solve_in_place(rhs.as_mut());
-            }
-            return;
-        }
-        let Some(symbolic) = &self.symbolic else {
-            return;
-        };
-        let mut buffer = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, par));
-        let stack = MemStack::new(&mut buffer);
         match factor {
-            DirectFactor::Cholesky(entries) => LltRef::<usize, f64>::new(symbolic, entries)
-                .solve_in_place_with_conj(Conj::No, rhs, par, stack),
-            DirectFactor::Indefinite(entries) => LdltRef::<usize, f64>::new(symbolic, entries)
-                .solve_in_place_with_conj(Conj::No, rhs, par, stack),
-            DirectFactor::General(_) => {}
+            DirectFactor::General(lu) => {
+                let rhs = MatMut::from_column_major_slice_mut(side, self.size, 1);
+                if transposed {
+                    lu.solve_transpose_in_place(rhs);
+                } else {
+                    lu.solve_in_place(rhs);
+                }
+            }
+            DirectFactor::Cholesky(entries) => {
+                if let Some(symbolic) = &self.symbolic {
+                    sparse_cholesky::solve(symbolic, entries, side);
+                }
+            }
+            DirectFactor::Indefinite(entries) => {
+                let Some(symbolic) = &self.symbolic else {
+                    return;
+                };
+                let par = Par::Seq;
+                let rhs = MatMut::from_column_major_slice_mut(side, self.size, 1);
+                let mut buffer = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, par));
+                LdltRef::<usize, f64>::new(symbolic, entries).solve_in_place_with_conj(
+                    Conj::No,
+                    rhs,
+                    par,
+                    MemStack::new(&mut buffer),
+                );
+            }
         }
     }
 

@@ -17,6 +17,8 @@ mod ordering;
 mod rank;
 mod row_pattern;
 mod scatter;
+mod sparse_cholesky;
+pub(crate) mod stiffness;
 pub(crate) mod system;
 #[cfg(test)]
 pub(crate) mod trials;

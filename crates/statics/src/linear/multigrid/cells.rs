@@ -89,6 +89,18 @@ impl Lattice {
     }
 }
 
+/// Places of `nodes` nodes on the grid of their cells.
+pub(crate) fn places_of(cells: &[Cell], nodes: usize) -> Vec<Vec3> {
+    let mut places = vec![[0.0; 3]; nodes];
+    for cell in cells {
+        for (corner, &node) in cell.nodes.iter().enumerate() {
+            places[node as usize] =
+                std::array::from_fn(|axis| f64::from(cell.at[axis] + bit(corner, axis) as i32));
+        }
+    }
+    places
+}
+
 /// Cells of the next level, the number of its nodes, and the interpolation of `nodes` nodes.
 pub(crate) fn coarsen(cells: &[Cell], nodes: usize) -> (Vec<Cell>, usize, Interpolation) {
     let (mut coarse, member_of) = group(cells);

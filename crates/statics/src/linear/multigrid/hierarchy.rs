@@ -5,24 +5,19 @@
 //! matrix (clamps, cut voxels, layers, pressure). A forward sweep before and a backward one after the coarse correction
 //! make the cycle symmetric, as conjugate gradients require.
 
-use faer::linalg::solvers::{Llt, Solve};
-use faer::{Mat, MatMut, Side};
 use voxsoft_solid::vector::Vec3;
 
 use super::blocks::{BlockMatrix, pseudo_inverse, transposed};
 use super::cells::{Cell, Interpolation, coarsen};
+use super::coarsest::{Budget, Coarsest};
 use super::color::{Coloring, color};
 use super::kernels::Single;
 use super::parallel::{self, CHUNK};
 use crate::linear::backend::Backend;
 use crate::linear::operator::{LinearOperator, Preconditioner};
 
-/// Largest level, in nodes, that is solved directly, by a dense factor.
-const COARSEST: usize = 250;
 /// Largest ratio of the nodes of a level to those of the level before; beyond it coarsening has stalled.
 const STALLED: f64 = 0.7;
-/// Most nodes of a coarsest level: a dense factor of 0.3 GB.
-const LARGEST_DENSE: usize = 2000;
 
 /// Levels of a body, and their numbers for the matrix that was last projected.
 pub(crate) struct Hierarchy {
@@ -34,8 +29,8 @@ pub(crate) struct Hierarchy {
     patterns: Vec<BlockMatrix>,
     /// Inverses of the diagonals of all levels.
     inverses: Vec<Vec<Inverse>>,
-    /// Factor of the coarsest matrix, if it has one.
-    coarsest: Option<Llt<f64>>,
+    /// Factor of the coarsest matrix, if there is room for one.
+    coarsest: Option<Coarsest>,
 }
 
 /// Inverse of a block on the diagonal, by columns; three places more fill a register.
@@ -60,6 +55,7 @@ struct Workspace {
     residuals: Vec<Vec<Single>>,
     /// Vector of the coarsest level, which is solved in double precision.
     last: Vec<Vec3>,
+    flat: Vec<f64>,
 }
 
 impl Hierarchy {
@@ -77,11 +73,13 @@ impl Hierarchy {
         loop {
             let finer = hierarchy.patterns.last().unwrap_or(matrix);
             let nodes = finer.rows();
-            if nodes <= COARSEST {
+            hierarchy.coarsest = Coarsest::new(&cells, finer, Budget::beside(matrix.rows()));
+            if hierarchy.coarsest.is_some() {
                 break;
             }
             let (mut coarse, count, mut down) = coarsen(&cells, nodes);
             if count as f64 > STALLED * nodes as f64 {
+                hierarchy.coarsest = Coarsest::new(&cells, finer, Budget::LARGEST);
                 break;
             }
             let draft = finer.coarse_pattern(&down, &transposed(&down, count));
@@ -108,7 +106,6 @@ impl Hierarchy {
 
     /// Fills the matrices of all levels, and factorizes the coarsest.
     pub fn project(&mut self, finest: &BlockMatrix) {
-        self.coarsest = None;
         for level in 0..self.patterns.len() {
             let (finer, coarser) = self.patterns.split_at_mut(level);
             let fine = finer.last().unwrap_or(finest);
@@ -125,8 +122,9 @@ impl Hierarchy {
             });
         }
         let last = self.patterns.last().unwrap_or(finest);
-        let small = last.rows() <= LARGEST_DENSE;
-        self.coarsest = small.then(|| dense_factor(last)).flatten();
+        if let Some(coarsest) = &mut self.coarsest {
+            coarsest.take(last);
+        }
     }
 
     /// Preconditioner of the matrix that was last passed to [`Hierarchy::project`].
@@ -153,6 +151,7 @@ impl Hierarchy {
             answers: vectors(),
             residuals: vectors(),
             last: vec![[0.0; 3]; last.rows()],
+            flat: Vec::new(),
         }
     }
 }
@@ -201,13 +200,11 @@ impl Cycle<'_> {
         let own = self.level(level);
         if level == self.hierarchy.down.len() {
             let (side, x) = (&work.sides[level], &mut work.answers[level]);
-            if let Some(factor) = &self.hierarchy.coarsest {
-                for (wide, side) in work.last.iter_mut().zip(side) {
-                    *wide = widened(*side);
-                }
-                let flat = work.last.as_flattened_mut();
-                let size = flat.len();
-                factor.solve_in_place(MatMut::from_column_major_slice_mut(flat, size, 1));
+            for (wide, single) in work.last.iter_mut().zip(side) {
+                *wide = widened(*single);
+            }
+            let coarsest = self.hierarchy.coarsest.as_ref();
+            if coarsest.is_some_and(|own| own.solve(&mut work.last, &mut work.flat)) {
                 for (x, wide) in x.iter_mut().zip(&work.last) {
                     *x = rounded(*wide);
                 }
@@ -319,35 +316,4 @@ fn minus(a: Single, b: Single) -> Single {
 #[inline(always)]
 fn plus(a: Single, factor: f32, b: Single) -> Single {
     std::array::from_fn(|i| a[i] + factor * b[i])
-}
-
-/// Dense Cholesky factor of the coarsest matrix, with its diagonal shifted as far as necessary.
-fn dense_factor(matrix: &BlockMatrix) -> Option<Llt<f64>> {
-    let size = 3 * matrix.rows();
-    let mut dense = Mat::<f64>::zeros(size, size);
-    for row in 0..matrix.rows() {
-        for (column, block) in matrix.row(row) {
-            for i in 0..3 {
-                for j in 0..3 {
-                    dense[(3 * row + i, 3 * column as usize + j)] = block[3 * i + j];
-                }
-            }
-        }
-    }
-    for i in 0..size {
-        if !(dense[(i, i)] > 0.0) {
-            dense[(i, i)] = 1.0;
-        }
-    }
-    // Corners with few fine nodes can be linearly dependent; rounding decides their sign.
-    for lift in [1e-13, 1e-10, 1e-7, 1e-4, 1e-2, 1.0] {
-        let mut lifted = dense.clone();
-        for i in 0..size {
-            lifted[(i, i)] *= 1.0 + lift;
-        }
-        if let Ok(factor) = Llt::new(lifted.as_ref(), Side::Lower) {
-            return Some(factor);
-        }
-    }
-    None
 }

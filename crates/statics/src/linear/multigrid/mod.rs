@@ -2,6 +2,7 @@
 
 mod blocks;
 mod cells;
+mod coarsest;
 mod color;
 mod hierarchy;
 mod kernels;
@@ -18,3 +19,4 @@ pub(crate) use kernels::vectorized;
 #[cfg(test)]
 pub(crate) use parallel::for_each_chunk;
 pub(crate) use parallel::{for_each, for_each_large, sum};
+pub(crate) use values::Block;
