@@ -42,6 +42,12 @@ impl Bounds {
         along(0) & along(1) & along(2)
     }
 
+    /// Smallest scalar product of a point in the box with a vector.
+    pub(crate) fn least_product(&self, vector: Point) -> f64 {
+        let along = |a: usize| f64::min(self.low[a] * vector[a], self.high[a] * vector[a]);
+        along(0) + along(1) + along(2)
+    }
+
     /// Tests whether the interiors of the boxes intersect.
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
         (0..3).all(|a| self.low[a] < other.high[a] && other.low[a] < self.high[a])

@@ -160,23 +160,49 @@ impl Tree {
 
     /// Calls `each` with the number of every box that contains the point.
     pub(crate) fn around(&self, point: Point, each: impl FnMut(u32)) {
-        self.visit(|bounds| bounds.holds(point), each);
+        self.visit(|bounds| bounds.holds(point), |_| true, each);
     }
 
     /// Calls `each` with the number of every box that meets these bounds.
     pub(crate) fn meeting(&self, bounds: &Bounds, each: impl FnMut(u32)) {
-        self.visit(|other| other.meets(bounds), each);
+        self.meeting_within(bounds, |_| true, each);
+    }
+
+    /// Calls `each` with the number of every box that meets these bounds, in nodes whose number passes `may`.
+    pub(crate) fn meeting_within(
+        &self,
+        bounds: &Bounds,
+        may: impl Fn(usize) -> bool,
+        each: impl FnMut(u32),
+    ) {
+        self.visit(|other| other.meets(bounds), may, each);
+    }
+
+    /// Boxes of all nodes around other boxes of the items, such as those of their normals.
+    pub(crate) fn fitted(&self, others: &[Bounds]) -> Vec<Bounds> {
+        let of = |item: &u32| others[*item as usize];
+        let sorted: Vec<Bounds> = self.order.iter().map(of).collect();
+        let mut nodes = vec![Bounds::EMPTY; self.nodes.len()];
+        if let Some(root) = self.root() {
+            fit(&sorted, &mut nodes, 0, root.count);
+        }
+        nodes
     }
 
     /// Calls `each` with the number of every box that a ray from the point along +x meets.
     pub(crate) fn ahead_of(&self, point: Point, each: impl FnMut(u32)) {
-        self.visit(|bounds| bounds.is_ahead_of(point), each);
+        self.visit(|bounds| bounds.is_ahead_of(point), |_| true, each);
     }
 
-    fn visit(&self, wanted: impl Fn(&Bounds) -> bool, mut each: impl FnMut(u32)) {
+    fn visit(
+        &self,
+        wanted: impl Fn(&Bounds) -> bool,
+        may: impl Fn(usize) -> bool,
+        mut each: impl FnMut(u32),
+    ) {
         let mut open: Vec<Node> = self.root().into_iter().collect();
         while let Some(node) = open.pop() {
-            if !wanted(&self.nodes[node.place]) {
+            if !(wanted(&self.nodes[node.place]) && may(node.place)) {
                 continue;
             }
             if node.count > 1 {
@@ -298,6 +324,30 @@ mod tests {
             ahead.sort_unstable();
             prop_assert_eq!(around, listed(&|b| b.holds(point)));
             prop_assert_eq!(ahead, listed(&|b| b.is_ahead_of(point)));
+        }
+    }
+
+    proptest! {
+        /// Nodes are left out by the smallest product of their normals with a direction, and no item that passes is.
+        #[test]
+        fn nodes_are_left_out_by_their_normals(
+            boxes in boxes(),
+            normals in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 60),
+            own in prop::array::uniform3(-1.0..1.0_f64),
+        ) {
+            let normals: Vec<Bounds> = normals[..boxes.len()].iter().map(|n| Bounds::of([*n])).collect();
+            let tree = Tree::new(&boxes);
+            let nodes = tree.fitted(&normals);
+            let around = Bounds::of([[0.2; 3], [0.8; 3]]);
+            let mut found = Vec::new();
+            tree.meeting_within(&around, |node| nodes[node].least_product(own) < 0.0, |i| found.push(i));
+            for i in 0..boxes.len() {
+                let meets = boxes[i].meets(&around);
+                let looks = normals[i].least_product(own) < 0.0;
+                let listed = found.contains(&(i as u32));
+                prop_assert!(meets || !listed);
+                prop_assert!(listed || !(meets && looks));
+            }
         }
     }
 

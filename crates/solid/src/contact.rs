@@ -92,6 +92,18 @@ pub trait Contact: Term + Any {
     /// default tolerance, at most 1.
     fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool;
 
+    /// Prepares iterations with predicted multipliers: until the first [prediction](Contact::take_prediction), contact
+    /// that sticks does so whatever its bound. Returns `false` if it cannot, as while the load path is recorded.
+    fn begin_prediction(&mut self) -> bool {
+        false
+    }
+
+    /// Ends iterations with predicted multipliers; all is as before if they did not converge.
+    fn end_prediction(&mut self, _converged: bool) {}
+
+    /// Updates the multipliers to those that a linear step of `moves` (m) from `positions` predicts.
+    fn take_prediction(&mut self, _positions: &[Vec3], _moves: &[Vec3]) {}
+
     /// Visits the vertices by which surfaces are bonded: faces between them do not warp freely.
     fn visit_bonded(&self, _visit: &mut dyn FnMut(u32)) {}
 
@@ -104,6 +116,13 @@ pub trait Contact: Term + Any {
 
     /// Tests whether the solution depends on the load path, as with friction and with bonds that may break.
     fn depends_on_way(&self) -> bool;
+
+    /// Deviation of friction at `positions`, an equilibrium, from a straight path, along which it would change since the
+    /// last accepted state by `ratio` times its change in the step to that state, as a part of all its bounds; `None` if
+    /// the way matters for more than friction, as for bonds that may break.
+    fn deviation(&self, _positions: &[Vec3], _ratio: f64) -> Option<f64> {
+        None
+    }
 
     /// Accepts `positions` as the state from which the load path continues.
     fn accept(&mut self, positions: &[Vec3]);

@@ -169,6 +169,16 @@ fn friction_sticks_below_its_bound_and_slips_at_it() {
     assert!(sticking.force[0] > 0.0);
 }
 
+/// Friction under a plate that presses straight on changes linearly along the path: steps of a quarter, a quarter and a
+/// half say the same as twenty of a twentieth, which took some 150 iterations.
+#[test]
+fn friction_that_grows_with_the_load_takes_few_steps() {
+    let (pair, _, answer) = plate(3, [0.0, 0.0, -GAP - 1e-3], 0.5);
+    assert!(pair.slipping > 0.0 && pair.slipping < 1.0, "{pair:?}");
+    assert!(answer.path.len() <= 5, "{:?}", answer.path);
+    assert!(answer.iterations <= 60, "{}", answer.iterations);
+}
+
 /// Slit of one voxel between two lips that is pressed shut.
 #[test]
 fn lips_of_a_slit_meet() {

@@ -77,13 +77,18 @@ impl Friction {
         for (weight, corner) in anchor.1.iter().zip(corners_of(anchor.0)) {
             axpy(&mut slip, -weight, corner);
         }
+        let bound = if memory.unbounded {
+            f64::INFINITY
+        } else {
+            memory.bound
+        };
         let found = law_of(anchor.0).tangential(Along {
             multiplier: along(memory.friction),
             penalty: k,
             slip: along(slip),
             normal: n,
             free,
-            bound: memory.bound,
+            bound,
         });
         Some(Self {
             found,

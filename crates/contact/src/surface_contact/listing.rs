@@ -1,5 +1,7 @@
 //! Broad phase of the contact search: candidate triangles of each sample.
 
+use std::ops::Range;
+
 use voxsoft_solid::vector::{Vec3, dot};
 
 use super::SurfaceContact;
@@ -42,22 +44,33 @@ impl SurfaceContact {
             grown(Bounds::of(ends), reach)
         };
         let boxes: Vec<Bounds> = self.triangles.iter().map(swept).collect();
-        let tree = Tree::new(&boxes);
         let accepted = &state.accepted_points;
         let all = 0..self.triangles.len() as u32;
         let normals: Vec<Vec3> = all.map(|t| normal(self.corners(t, accepted))).collect();
+        let trees: Vec<SurfaceTree> = self
+            .triangles_of_surfaces()
+            .map(|triangles| SurfaceTree::new(triangles, &boxes, &normals))
+            .collect();
         let meets = |index: usize| {
-            if self.weight(index as u32) == 0.0 {
-                return Vec::new();
-            }
-            let ends = self.samples[index].ends.map(|p| p as usize);
-            let bounds = Bounds::of(ends.into_iter().flat_map(|p| [accepted[p], points[p]]));
+            let sample = &self.samples[index];
             let mut found = Vec::new();
-            tree.meeting(&bounds, |triangle| {
-                if self.may_meet(index, triangle, &normals, state) {
-                    found.push(triangle);
+            if self.weight(index as u32) == 0.0 {
+                return found;
+            }
+            let ends = sample.ends.map(|p| p as usize);
+            let bounds = Bounds::of(ends.into_iter().flat_map(|p| [accepted[p], points[p]]));
+            let own = || sample.triangles.iter().map(|t| normals[*t as usize]);
+            for tree in &trees {
+                // Objects do not touch themselves.
+                if self.coefficient(index as u32, tree.first).is_nan() {
+                    continue;
                 }
-            });
+                tree.facing(&bounds, own, |triangle| {
+                    if self.may_meet(index, triangle, &normals, state) {
+                        found.push(triangle);
+                    }
+                });
+            }
             found.sort_unstable();
             found
         };
@@ -66,6 +79,16 @@ impl SurfaceContact {
         state.facing.resize(self.samples.len(), None);
         state.looks = state.looks.max(1);
         state.listed_points = points;
+    }
+
+    /// Triangles of each surface that has some.
+    fn triangles_of_surfaces(&self) -> impl Iterator<Item = Range<usize>> {
+        let mut first = 0;
+        self.surface_of.chunk_by(|a, b| a == b).map(move |own| {
+            let range = first..first + own.len();
+            first = range.end;
+            range
+        })
     }
 
     /// Tests whether a sample may meet a triangle; `normals` are those of all triangles at the accepted state.
@@ -77,9 +100,6 @@ impl SurfaceContact {
         state: &ContactState,
     ) -> bool {
         let sample = &self.samples[index];
-        if self.coefficient(index as u32, triangle).is_nan() {
-            return false;
-        }
         let n = normals[triangle as usize];
         let faces = |own: &u32| dot(normals[*own as usize], n) < FACING;
         if !sample.triangles.iter().any(faces) {
@@ -152,6 +172,42 @@ impl SurfaceContact {
             (false, _) if distance <= PATCH && least > SAME_WAY => None,
             (false, _) => Some(BESIDE),
         }
+    }
+}
+
+/// Triangles of a surface by place and direction.
+struct SurfaceTree {
+    /// Number of the first triangle.
+    first: u32,
+    tree: Tree,
+    /// Box of the normals in each node of the tree.
+    directions: Vec<Bounds>,
+}
+
+impl SurfaceTree {
+    /// Builds the tree of a range of all triangles, which have these boxes and normals.
+    fn new(triangles: Range<usize>, boxes: &[Bounds], normals: &[Vec3]) -> Self {
+        let tree = Tree::new(&boxes[triangles.clone()]);
+        let of_normal = |normal: &Vec3| Bounds::of([*normal]);
+        let directions: Vec<Bounds> = normals[triangles.clone()].iter().map(of_normal).collect();
+        Self {
+            first: triangles.start as u32,
+            directions: tree.fitted(&directions),
+            tree,
+        }
+    }
+
+    /// Calls `each` with the triangles in boxes that meet `bounds`, except those of nodes in which none looks at one of
+    /// the directions `own`: most triangles near a sample are those around it, which look its own way.
+    fn facing<D: Iterator<Item = Vec3>>(
+        &self,
+        bounds: &Bounds,
+        own: impl Fn() -> D,
+        mut each: impl FnMut(u32),
+    ) {
+        let faces = |node: usize| own().any(|n| self.directions[node].least_product(n) < FACING);
+        self.tree
+            .meeting_within(bounds, faces, |triangle| each(self.first + triangle));
     }
 }
 

@@ -85,6 +85,8 @@ const CREEP: f64 = 1e-4;
 /// Tolerance of friction bounds, relative to the largest one of a vertex: at first, and after [`PATIENCE`] corrections,
 /// as long as the sum of the bounds on each pair of surfaces keeps the first one.
 const BOUND: [f64; 2] = [3e-3, 0.05];
+/// Tolerance of the friction of samples that have lost contact, relative to all bounds: it ends when a state is accepted.
+const LOST: f64 = 1e-5;
 /// Fraction of its bound from which friction counts as slipping: bounds of light pressures are right to a few percent.
 const NEARLY: f64 = 0.95;
 /// Corrections at one load factor after which samples keep the faces that they meet, and the tolerance of bounds is

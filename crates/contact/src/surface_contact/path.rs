@@ -6,10 +6,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 use voxsoft_solid::{Contact, ContactMemory};
 
-use super::state::{ContactState, Facing, Hold, Recording, SampleMemory};
+use super::state::{BeforePrediction, ContactState, Facing, Hold, Recording, SampleMemory};
 use super::{
-    APART, BOUND, CREEP, ContactPair, DEEPEST, LOOKS, PATIENCE, PRECISE, STICK, STIFFER, STRAYED,
-    Spot, SurfaceContact, listing,
+    APART, BOUND, CREEP, ContactPair, DEEPEST, LOOKS, LOST, PATIENCE, PRECISE, STICK, STIFFER,
+    STRAYED, Spot, SurfaceContact, listing,
 };
 use crate::gap::{self, normal};
 use crate::surface::Carried;
@@ -19,6 +19,8 @@ use crate::threads;
 /// many triangles, and a diverging iteration any.
 const WASTE: usize = 2;
 const MANY: usize = 100;
+/// Smallest cosine between the normals of a triangle and of the plane of friction for which the place across is used.
+const LEAST_LEAN: f64 = 0.5;
 /// Largest extrapolation of multipliers, in steps.
 const LONGEST_EXTRAPOLATION: f64 = 2.0;
 
@@ -101,12 +103,17 @@ impl Contact for SurfaceContact {
     fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
         self.change(|contact, state| {
             state.keep_moment(positions);
-            let now = contact.corrected(state, positions);
+            let (now, beyond) = contact.corrected(state, positions);
+            for memory in &mut state.now {
+                memory.unbounded = false;
+            }
             state.corrections += 1;
             let patient = state.corrections <= PATIENCE;
             let mut largest =
                 contact.off_bounds(&state.now, &now, BOUND[usize::from(!patient)], negligible);
             let mut farthest = 0.0f64;
+            let (mut lost, mut bounds) = (0.0, negligible);
+            let points = contact.points_at(positions);
             for (sample, (old, new)) in state.now.iter().zip(&now).enumerate() {
                 if old == new {
                     continue;
@@ -115,10 +122,18 @@ impl Contact for SurfaceContact {
                 let pressed = (new.normal - old.normal) / unit;
                 let crept = norm(sub(new.friction, old.friction)) / (state.stick * unit);
                 largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
+                bounds += new.bound;
+                if old.bound > 0.0 && new.bound == 0.0 {
+                    let friction = contact.friction(state, sample as u32, &points);
+                    lost += friction.map_or(0.0, |friction| norm(friction.found.force));
+                }
                 farthest = farthest.max(crept / CREEP);
             }
             let (holds, off) = contact.corrected_ties(state, positions);
-            largest = largest.max(farthest).max(off);
+            largest = largest.max(farthest).max(off).max(beyond / BOUND[0]);
+            if lost > 0.0 {
+                largest = largest.max(lost / (LOST * bounds));
+            }
             let enough = if state.corrections <= PRECISE {
                 precision
             } else {
@@ -140,6 +155,38 @@ impl Contact for SurfaceContact {
             }
             settled
         })
+    }
+
+    fn begin_prediction(&mut self) -> bool {
+        // Derivatives retrace equilibria, each with the multipliers of the one before.
+        let state = &mut self.state;
+        let may = state.recording.is_none();
+        if may {
+            state.before_prediction = Some(BeforePrediction {
+                now: state.now.clone(),
+                facing: state.facing.clone(),
+                stick: state.stick,
+                looks: state.looks,
+            });
+            Self::let_stick(state);
+        }
+        may
+    }
+
+    fn end_prediction(&mut self, converged: bool) {
+        let state = &mut self.state;
+        if let Some(before) = state.before_prediction.take()
+            && !converged
+        {
+            (state.now, state.facing) = (before.now, before.facing);
+            (state.stick, state.looks) = (before.stick, before.looks);
+        }
+    }
+
+    fn take_prediction(&mut self, positions: &[Vec3], moves: &[Vec3]) {
+        self.change(|contact, state| {
+            state.now = contact.predicted_multipliers(state, positions, moves);
+        });
     }
 
     fn length(&self) -> f64 {
@@ -171,8 +218,35 @@ impl Contact for SurfaceContact {
                 .any(|bond| bond.strength.is_finite())
     }
 
+    fn deviation(&self, positions: &[Vec3], ratio: f64) -> Option<f64> {
+        let mut bonds = self.description.bonds.iter();
+        if bonds.any(|bond| bond.strength.is_finite()) {
+            return None;
+        }
+        let rubs = self.friction_on_vertices(&self.state, positions);
+        let [last, before] = &self.state.accepted_friction;
+        let mut deviation = 0.0;
+        for (vertex, force) in rubs.iter().enumerate() {
+            let at = |forces: &[Vec3]| forces.get(vertex).copied().unwrap_or_default();
+            let (last, before) = (at(last), at(before));
+            let mut off = sub(*force, last);
+            axpy(&mut off, -ratio, sub(last, before));
+            deviation += norm(off);
+        }
+        let size = |forces: &[Vec3]| -> f64 { forces.iter().map(|force| norm(*force)).sum() };
+        let rubbed = size(last);
+        if rubbed == 0.0 && size(&rubs) > 0.0 {
+            return None;
+        }
+        let bound: f64 = self.state.now.iter().map(|memory| memory.bound).sum();
+        Some(if bound > 0.0 { deviation / bound } else { 0.0 })
+    }
+
     fn accept(&mut self, positions: &[Vec3]) {
         self.change(|contact, state| {
+            let rubs = contact.friction_on_vertices(state, positions);
+            state.accepted_friction.rotate_right(1);
+            state.accepted_friction[0] = rubs;
             let moved = contact.carried_on(state, positions);
             state.keep_step();
             let pairs = contact.pairs_of_stiffness(state, positions);
@@ -245,16 +319,16 @@ impl Contact for SurfaceContact {
 }
 
 impl SurfaceContact {
-    /// Multipliers and anchors of samples after a correction with the forces at `positions`.
-    pub(super) fn corrected(&self, state: &ContactState, positions: &[Vec3]) -> Vec<SampleMemory> {
+    /// Multipliers and anchors of samples after a correction with the forces at `positions`, and the largest part by
+    /// which friction without a bound exceeds it.
+    pub(super) fn corrected(
+        &self,
+        state: &ContactState,
+        positions: &[Vec3],
+    ) -> (Vec<SampleMemory>, f64) {
+        let mut beyond = 0.0f64;
         // A sample that loses contact for now keeps its anchor: it may come back before the state is accepted.
-        let anchor_of = |memory: &SampleMemory| SampleMemory {
-            anchor: memory.anchor,
-            along: memory.along,
-            since: memory.since,
-            ..SampleMemory::default()
-        };
-        let mut now: Vec<SampleMemory> = state.now.iter().map(anchor_of).collect();
+        let mut now: Vec<SampleMemory> = state.now.iter().map(SampleMemory::anchor_only).collect();
         self.each_contact(state, positions, |meeting, normal, points| {
             let pressure = normal.pressure;
             if !(pressure > 0.0) {
@@ -265,21 +339,29 @@ impl SurfaceContact {
             let friction = self.friction(state, meeting.sample, points);
             let law = self.law(meeting.sample, meeting.triangle);
             let coefficient = self.coefficient(meeting.sample, meeting.triangle);
+            let bound = law.bound(coefficient, pressure);
+            let mut force = friction.map_or([0.0; 3], |friction| friction.found.force);
+            let size = norm(force);
+            if memory.unbounded && size > bound {
+                force = scale(bound / size, force);
+                beyond = beyond.max(size / bound - 1.0);
+            }
             let (anchor, along, since) = memory.anchor.map_or_else(
                 || self.first_anchor(state, meeting, points),
                 |anchor| (anchor, memory.along, memory.since),
             );
             now[sample] = SampleMemory {
                 normal: pressure,
-                friction: friction.map_or([0.0; 3], |friction| friction.found.force),
+                friction: force,
                 plane: meeting.normal,
-                bound: law.bound(coefficient, pressure),
+                bound,
                 anchor: Some(anchor),
                 along,
                 since,
+                unbounded: false,
             };
         });
-        now
+        (now, beyond)
     }
 
     /// Multipliers and anchors of samples from an accepted state on: the anchors of slipping samples move along.
@@ -294,7 +376,8 @@ impl SurfaceContact {
             let friction = self.friction(state, meeting.sample, points);
             if friction.is_none_or(|friction| friction.found.slips) {
                 memory.friction = friction.map_or([0.0; 3], |friction| friction.found.force);
-                (memory.anchor, memory.along) = (Some(self.foot(meeting, points)), meeting.along);
+                let anchor = self.foot_across(meeting, memory.plane, points);
+                (memory.anchor, memory.along) = (Some(anchor), meeting.along);
             }
         });
         moved
@@ -394,6 +477,15 @@ impl SurfaceContact {
         of_vertices.chain(of_pairs).fold(0.0, f64::max)
     }
 
+    /// Friction on each vertex in N: samples share it in many ways, between which multipliers may change without motion.
+    fn friction_on_vertices(&self, state: &ContactState, positions: &[Vec3]) -> Vec<Vec3> {
+        let mut forces = vec![[0.0; 3]; positions.len()];
+        self.each_friction(state, positions, |sample, friction| {
+            self.add_force(friction.found.force, friction.spot(sample), &mut forces);
+        });
+        forces
+    }
+
     /// Foot of a sample on the triangle that it faces.
     fn foot(&self, meeting: &ContactPair, points: &[Vec3]) -> (u32, [f64; 3]) {
         let weights = match meeting.facing {
@@ -406,10 +498,25 @@ impl SurfaceContact {
         (meeting.triangle, weights)
     }
 
+    /// Place on the triangle that a sample faces from which it has not slipped in the `plane` of friction of this normal,
+    /// so that an anchor there leaves friction as it is: the sides of a gap lean from each other.
+    fn foot_across(&self, meeting: &ContactPair, plane: Vec3, points: &[Vec3]) -> (u32, [f64; 3]) {
+        let corners = self.corners(meeting.triangle, points);
+        let outward = normal(corners);
+        let lean = dot(plane, outward);
+        if matches!(meeting.facing, Facing::Across(..)) || lean <= LEAST_LEAN {
+            return self.foot(meeting, points);
+        }
+        let mut point = self.place(meeting.sample, meeting.along, points);
+        let height = dot(sub(point, corners[0]), outward);
+        axpy(&mut point, -height / lean, plane);
+        (meeting.triangle, gap::affine(point, corners))
+    }
+
     /// First anchor of a sample that has come into contact since the last accepted state: the place where it met the
     /// surface, back along its way by the ratio of the gaps. An edge sticks where it first presses at an equilibrium.
     /// Returns the place on the triangle, the place on the edge, and the part of the step that remained.
-    fn first_anchor(
+    pub(super) fn first_anchor(
         &self,
         state: &ContactState,
         meeting: &ContactPair,

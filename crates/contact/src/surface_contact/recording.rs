@@ -165,7 +165,7 @@ impl SurfaceContact {
     /// Corrects the multipliers, or accepts the state if contact has `settled`.
     fn follow_to(&mut self, positions: &[Vec3], settled: bool) {
         if !settled {
-            self.state.now = self.corrected(&self.state, positions);
+            (self.state.now, _) = self.corrected(&self.state, positions);
             return;
         }
         let points = self.points_at(positions);

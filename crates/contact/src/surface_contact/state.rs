@@ -22,6 +22,20 @@ pub struct SampleMemory {
     pub along: f64,
     /// Part of its step that remained when it came into contact there.
     pub since: f64,
+    /// True while it sticks whatever its bound, for one iteration.
+    pub unbounded: bool,
+}
+
+impl SampleMemory {
+    /// The anchor without any force.
+    pub fn anchor_only(&self) -> Self {
+        Self {
+            anchor: self.anchor,
+            along: self.along,
+            since: self.since,
+            ..Self::default()
+        }
+    }
 }
 
 /// Face that a sample meets, fixed for some steps of Newton's method, so that the minimized energy has no kinks where a
@@ -66,6 +80,15 @@ pub struct Held {
     pub(super) precise: bool,
 }
 
+/// State to which contact returns from iterations with predicted multipliers that did not converge.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct BeforePrediction {
+    pub(super) now: Vec<SampleMemory>,
+    pub(super) facing: Vec<Option<Facing>>,
+    pub(super) stick: f64,
+    pub(super) looks: u32,
+}
+
 /// Recorded part of a path.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Recording {
@@ -85,6 +108,8 @@ pub(super) struct ContactState {
     pub accepted: Vec<SampleMemory>,
     /// Multipliers and anchors at the accepted state before that.
     pub before: Vec<SampleMemory>,
+    /// Friction on each vertex in N at the last accepted state and at the one before.
+    pub accepted_friction: [Vec<Vec3>; 2],
     /// Steps by which the multipliers are extrapolated, until a correction.
     pub extrapolated: Option<f64>,
     /// Current multipliers and anchors.
@@ -112,6 +137,8 @@ pub(super) struct ContactState {
     pub pattern: BTreeSet<(u32, u32)>,
     /// True if the pattern has shrunk since [`follow`](voxsoft_solid::Contact::follow) last reported a change.
     pub pattern_shrank: bool,
+    /// State before iterations with predicted multipliers, while these go on.
+    pub before_prediction: Option<BeforePrediction>,
     /// True while a path is retraced, for which the stiffness has to be exact.
     pub retraces: bool,
     /// Values of [`SampleMemory::since`] of all samples, prescribed while a path is retraced: for a sample that was

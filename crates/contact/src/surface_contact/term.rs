@@ -121,6 +121,23 @@ impl SurfaceContact {
         self.each_tie(state, positions, |_, tie, _| self.visit_tie(tie, visit));
     }
 
+    /// Vertices that carry points, and for each point the places of its own among them.
+    fn carriers_of(&self, points: &[u32]) -> (Vec<u32>, Vec<Vec<usize>>) {
+        let mut vertices: Vec<u32> = Vec::with_capacity(4 * points.len());
+        let mut place_of = |vertex: &u32| {
+            let known = vertices.iter().position(|other| other == vertex);
+            known.unwrap_or_else(|| {
+                vertices.push(*vertex);
+                vertices.len() - 1
+            })
+        };
+        let parts = points.iter().map(|point| &self.points[*point as usize]);
+        let places = parts
+            .map(|part| part.vertices.iter().map(&mut place_of).collect())
+            .collect();
+        (vertices, places)
+    }
+
     /// Assembles a matrix on points, block by block, into one on the vertices that carry them.
     fn visit_points(
         &self,
@@ -128,24 +145,16 @@ impl SurfaceContact {
         block: impl Fn(usize, usize) -> Mat3,
         visit: Visitor<'_>,
     ) {
-        let parts = || points.iter().map(|point| &self.points[*point as usize]);
-        let mut vertices: Vec<u32> = Vec::with_capacity(4 * points.len());
-        for part in parts() {
-            for vertex in &part.vertices {
-                if !vertices.contains(vertex) {
-                    vertices.push(*vertex);
-                }
-            }
-        }
+        let (vertices, places) = self.carriers_of(points);
         let size = 3 * vertices.len();
         let mut matrix = vec![0.0; size * size];
-        let place = |vertex: u32| vertices.iter().position(|v| *v == vertex).unwrap_or(0);
-        for (a, first) in parts().enumerate() {
-            for (b, second) in parts().enumerate() {
+        let weights = |point: usize| &self.points[points[point] as usize].weights;
+        for (a, first) in places.iter().enumerate() {
+            for (b, second) in places.iter().enumerate() {
                 let block = block(a, b);
-                for (v, wv) in first.vertices.iter().zip(&first.weights) {
-                    for (u, wu) in second.vertices.iter().zip(&second.weights) {
-                        let start = 3 * (place(*v) * size + place(*u));
+                for (v, wv) in first.iter().zip(weights(a)) {
+                    for (u, wu) in second.iter().zip(weights(b)) {
+                        let start = 3 * (v * size + u);
                         for (i, row) in block.iter().enumerate() {
                             for (j, entry) in row.iter().enumerate() {
                                 matrix[start + i * size + j] += wv * wu * entry;
@@ -167,8 +176,7 @@ impl SurfaceContact {
             weights: [0.0; 3],
         };
         let points: Vec<u32> = self.relative(spot).map(|(_, point)| point).collect();
-        let nothing = |_, _| [[0.0; 3]; 3];
-        self.visit_points(&points, nothing, &mut |vertices, _| visit(vertices));
+        visit(&self.carriers_of(&points).0);
     }
 
     /// Tangent stiffness of friction.

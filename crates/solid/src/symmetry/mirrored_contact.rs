@@ -152,6 +152,20 @@ impl<C: Contact + Clone> Contact for MirroredContact<C> {
         self.contact.correct(&seen, negligible, precision)
     }
 
+    fn begin_prediction(&mut self) -> bool {
+        self.contact.begin_prediction()
+    }
+
+    fn end_prediction(&mut self, converged: bool) {
+        self.contact.end_prediction(converged);
+    }
+
+    fn take_prediction(&mut self, positions: &[Vec3], moves: &[Vec3]) {
+        let images = &self.images;
+        let (positions, moves) = (images.seen(positions), images.seen(moves));
+        self.contact.take_prediction(&positions, &moves);
+    }
+
     fn visit_bonded(&self, visit: &mut dyn FnMut(u32)) {
         let of = &self.images.of;
         self.contact
@@ -168,6 +182,10 @@ impl<C: Contact + Clone> Contact for MirroredContact<C> {
 
     fn depends_on_way(&self) -> bool {
         self.contact.depends_on_way()
+    }
+
+    fn deviation(&self, positions: &[Vec3], ratio: f64) -> Option<f64> {
+        self.contact.deviation(&self.images.seen(positions), ratio)
     }
 
     fn accept(&mut self, positions: &[Vec3]) {

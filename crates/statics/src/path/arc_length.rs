@@ -12,8 +12,9 @@ use crate::path::bordered::{
 use crate::path::contact_loop::AtLoad;
 use crate::path::equilibrium::{Equilibrium, Failure};
 use crate::path::load_parameter::LoadParameter;
-use crate::path::load_path::{Ending, Path, longest_step, status_of};
+use crate::path::load_path::{Ending, Path, status_of};
 use crate::path::settings::Settings;
+use crate::path::way::longest_step;
 
 /// Steps of the search for a limit, and its first arc length.
 const LOOK_STEPS: u32 = 60;

@@ -18,7 +18,7 @@ use voxsoft_solid::{Observer, Problem};
 
 use crate::linear::system::Factor;
 use crate::linear::vectors::product;
-use crate::path::contact_loop::Search;
+use crate::path::contact_loop::{Round, Search};
 use crate::path::equilibrium::{Equilibrium, Failure, Forces, Found};
 use crate::path::load_parameter::LoadParameter;
 use crate::path::settings::Settings;
@@ -126,7 +126,7 @@ impl<C: Constraint> Search for Bordered<C> {
         equilibrium: &mut Equilibrium,
         positions: &mut Vec<Vec3>,
         settings: &Settings,
-        round: usize,
+        round: Round,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let start = Iterate {
@@ -144,11 +144,11 @@ impl<C: Constraint> Search for Bordered<C> {
             observer,
         };
         let mut now = start.clone();
-        let mut seen = newton.find(&mut now, touches && round > 0, searches);
+        let mut seen = newton.find(&mut now, touches && !round.first, searches);
         if let Err(Failure::Stalled) = seen {
             newton.equilibrium.go_on_directly()?;
             now = start;
-            seen = newton.find(&mut now, touches && round > 0, searches);
+            seen = newton.find(&mut now, touches && !round.first, searches);
         }
         let seen = seen?;
         if !equilibrium.is_sound(&now.positions) {

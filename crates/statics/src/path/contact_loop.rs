@@ -17,9 +17,10 @@ const STALE: usize = 20;
 /// that may remain; at the end corrections are checked at the requested tolerance.
 const LOOSE: f64 = 1e-3;
 const LEFT: f64 = 0.05;
-/// Precision of contact under the whole load, where forces are read: on the path, bounds of friction may be off by 0.3
-/// % of the largest one at each vertex, which adds up, and missing reactions to the loads are reported from 0.1 % on.
-const AT_THE_END: f64 = 0.1;
+/// Precision of contact under the whole load, where forces are read, and along a path with friction: bounds of friction
+/// are off by 0.3 % of the largest one at each vertex otherwise, which adds up, and missing reactions to the loads are
+/// reported from 0.1 % on.
+const PRECISE: f64 = 0.1;
 
 /// Search for an equilibrium with fixed multipliers of contact.
 pub(crate) trait Search: Clone {
@@ -31,16 +32,24 @@ pub(crate) trait Search: Clone {
         false
     }
 
-    /// Finds the equilibrium from `positions`, which it changes. In a `round` after the first it begins at one with the
-    /// multipliers before a correction.
+    /// Finds the equilibrium from `positions`, which it changes.
     fn find(
         &mut self,
         equilibrium: &mut Equilibrium,
         positions: &mut Vec<Vec3>,
         settings: &Settings,
-        round: usize,
+        round: Round,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure>;
+}
+
+/// Place of a search among those with corrected multipliers.
+#[derive(Clone, Copy)]
+pub(crate) struct Round {
+    /// True for the first one; later ones begin at an equilibrium with the multipliers before a correction.
+    pub first: bool,
+    /// True unless it only confirms that contact has settled, to the requested tolerance.
+    pub loose: bool,
 }
 
 /// Search for the equilibrium under given loads.
@@ -67,9 +76,15 @@ impl Search for AtLoad {
         equilibrium: &mut Equilibrium,
         positions: &mut Vec<Vec3>,
         settings: &Settings,
-        round: usize,
+        round: Round,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
+        if round.first || round.loose {
+            let found = equilibrium.newton_predicted(positions, self.point, settings, observer)?;
+            if let Some(found) = found {
+                return Ok(found);
+            }
+        }
         let strategy = strategy_of(round, &equilibrium.problem, self.safe);
         equilibrium.newton(positions, self.point, settings, strategy, observer)
     }
@@ -109,7 +124,10 @@ impl Equilibrium {
             let changed = self.forces(positions, search.point()).relative();
             stale = if changed < least { 0 } else { stale + 1 };
             least = least.min(changed);
-            let tolerance = if loose {
+            // Clamps that have yet to move do not show in the residual.
+            let tolerance = if loose && round == 0 {
+                settings.tolerance.max(LOOSE)
+            } else if loose {
                 settings.tolerance.max(LOOSE.min(LEFT * changed))
             } else {
                 settings.tolerance
@@ -118,7 +136,11 @@ impl Equilibrium {
                 tolerance,
                 ..*settings
             };
-            let found = search.find(self, positions, &settings, round, observer)?;
+            let place = Round {
+                first: round == 0,
+                loose,
+            };
+            let found = search.find(self, positions, &settings, place, observer)?;
             iterations += found.iterations;
             round += 1;
             let floor_changed = self.update_floor(positions, search.point())?;
@@ -147,8 +169,10 @@ impl Equilibrium {
 
     /// Corrects the multipliers of contact by an equilibrium; returns true if they have settled.
     fn is_contact_settled(&mut self, positions: &[Vec3], point: LoadParameter) -> bool {
-        let precision = if (point.dead, point.pressure) == (1.0, 1.0) {
-            self.precision.min(AT_THE_END)
+        let contact = self.problem.contact();
+        let adds_up = contact.is_some_and(|contact| contact.depends_on_way());
+        let precision = if adds_up || (point.dead, point.pressure) == (1.0, 1.0) {
+            self.precision.min(PRECISE)
         } else {
             self.precision
         };
@@ -158,12 +182,12 @@ impl Equilibrium {
     }
 }
 
-/// Variant of Newton's method in a round, the first of which has number 0.
-fn strategy_of(round: usize, problem: &Problem, safe: bool) -> Strategy {
+/// Variant of Newton's method in a round.
+fn strategy_of(round: Round, problem: &Problem, safe: bool) -> Strategy {
     let is_stiff = problem.fluid().is_some_and(Fluid::is_stiff);
     match (problem.contact(), safe) {
         // A line search with a liquid advances by steps that hardly change its volume.
-        (Some(_), _) if round > 0 && !is_stiff => Strategy::LineSearch,
+        (Some(_), _) if !round.first && !is_stiff => Strategy::LineSearch,
         (_, true) => Strategy::NewtonThenLineSearch,
         (_, false) => Strategy::Newton,
     }

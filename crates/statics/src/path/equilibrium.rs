@@ -109,6 +109,8 @@ pub(crate) struct Equilibrium {
     /// True if rigid objects move freely: the distance of their motion then gives no measure of rounding in their stiff
     /// springs.
     pub has_loose: bool,
+    /// True while iterations predict the multipliers of contact ([`Equilibrium::newton_predicted`]).
+    pub predicts: bool,
 }
 
 /// Most mixed iterations: most steps take less than ten.
@@ -172,6 +174,7 @@ impl Equilibrium {
             precision: 1.0,
             by_load: None,
             has_loose: false,
+            predicts: false,
         })
     }
 
@@ -271,6 +274,35 @@ impl Equilibrium {
             *positions = start;
         }
         outcome
+    }
+
+    /// Finds the equilibrium at `point` from `positions`, which it changes, with multipliers of contact that each
+    /// iteration predicts; `None`, and all as before, where contact cannot, or iterations do not converge.
+    pub fn newton_predicted(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        point: LoadParameter,
+        settings: &Settings,
+        observer: &mut Observer<'_>,
+    ) -> Result<Option<Found>, Failure> {
+        let Some(contact) = self.problem.contact_mut() else {
+            return Ok(None);
+        };
+        if !contact.begin_prediction() {
+            return Ok(None);
+        }
+        let opening = self.opening.clone();
+        self.predicts = true;
+        let outcome = self.newton(positions, point, settings, Strategy::Newton, observer);
+        self.predicts = false;
+        if let Some(contact) = self.problem.contact_mut() {
+            contact.end_prediction(outcome.is_ok());
+        }
+        if !matches!(outcome, Err(Failure::Lost | Failure::Singular)) {
+            return outcome.map(Some);
+        }
+        self.opening = opening;
+        Ok(None)
     }
 
     /// Switches to the direct solver, if that fits in memory.
@@ -373,7 +405,9 @@ impl Equilibrium {
                     (lowest, since_lowest) = (relative, 0);
                 }
             }
-            if since_lowest > TO_AND_FRO && lowest < NEARBY && self.problem.contact().is_some() {
+            // Predicted multipliers may raise the residual on their way.
+            let fixed = self.problem.contact().is_some() && !self.predicts;
+            if since_lowest > TO_AND_FRO && lowest < NEARBY && fixed {
                 let found = self.newton_searched(positions, point, settings, observer)?;
                 return Ok(Found {
                     iterations: iteration + found.iterations,
@@ -426,6 +460,11 @@ impl Equilibrium {
                 fluid.carried_on(positions, fluid.instant(&point.factor_of()), &moves)
             });
             self.carry(None);
+            if self.predicts
+                && let Some(contact) = self.problem.contact_mut()
+            {
+                contact.take_prediction(positions, &moves);
+            }
             for (x, m) in positions.iter_mut().zip(&moves) {
                 *x = add(*x, *m);
             }

@@ -6,11 +6,12 @@ use voxsoft_solid::Status;
 use crate::path::arc_length;
 use crate::path::contact_loop::AtLoad;
 use crate::path::equilibrium::Failure;
-use crate::path::load_path::{EASY, Ending, Path, SNAP, UNSTABLE_CUTS, longest_step, status_of};
+use crate::path::load_path::{EASY, Ending, Path, SNAP, UNSTABLE_CUTS, status_of};
 use crate::path::parametrization::Parametrization;
 use crate::path::pseudo_transient::PseudoTransient;
 use crate::path::settings::{Control, Settings};
 use crate::path::step_length::StepLength;
+use crate::path::way::{Way, longest_step};
 
 /// Most iterations of an easy step with contact, every correction of which takes some of them.
 const EASY_WITH_CONTACT: u32 = 15;
@@ -26,7 +27,7 @@ const GOOD_TURN: f64 = 0.5;
 /// thousand.
 pub(crate) const LONGEST_OF_WORK: f64 = 0.125;
 /// Largest remaining path, in steps, that is taken as one last step.
-const LAST: f64 = 1.1;
+pub(crate) const LAST: f64 = 1.1;
 
 impl Path<'_, '_> {
     /// Limit just ahead, if there is one. Beyond it the tangent is indefinite, which takes a direct factor.
@@ -57,10 +58,15 @@ impl Path<'_, '_> {
             Control::Time { longest, .. } => longest,
             _ => longest_step(&self.equilibrium.problem),
         };
-        let longest = match self.equilibrium.problem.fluid() {
-            Some(_) => f64::min(longest, LONGEST_OF_WORK),
-            None => longest,
+        let mut way = match settings.control {
+            Control::Time { .. } | Control::Creep { .. } => Way::given(),
+            _ => Way::new(&self.equilibrium.problem),
         };
+        let ceiling = match self.equilibrium.problem.fluid() {
+            Some(_) => LONGEST_OF_WORK,
+            None => 1.0,
+        };
+        let longest = way.longest().unwrap_or(longest).min(ceiling);
         let easy = if self.touches() {
             EASY_WITH_CONTACT
         } else {
@@ -96,6 +102,19 @@ impl Path<'_, '_> {
             let failure = match found {
                 Ok(found) => {
                     let stable = self.equilibrium.is_stable(&trial, point);
+                    let ratio = (next - now) / last;
+                    let contact = self.equilibrium.problem.contact();
+                    let deviation = contact.and_then(|contact| contact.deviation(&trial, ratio));
+                    let is_straight = way.judge(next - now, deviation);
+                    if !is_straight {
+                        self.with_contact(|contact| contact.rollback());
+                        self.equilibrium.back_offs += 1;
+                        if let Err(error) = self.equilibrium.hold(held) {
+                            return Ending::new(status_of(error.into()), None, now);
+                        }
+                        length.set(way.longest().unwrap_or(step));
+                        continue;
+                    }
                     if stable || cuts == UNSTABLE_CUTS {
                         // Under dead loads alone only the end is a point of the path.
                         self.looking = match along {
@@ -115,6 +134,9 @@ impl Path<'_, '_> {
                             return self.end(along, loose, limit, settings);
                         }
                         length.succeeded(found.iterations <= easy);
+                        if let Some(longest) = way.longest() {
+                            length.limit(longest.min(ceiling));
+                        }
                         continue;
                     }
                     // A long step may reach a branch that the path does not lead to.

@@ -1,7 +1,7 @@
 //! Load path in progress: its state, its accepted points, and its end.
 
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Contact, Observer, Problem, Progress, Status};
+use voxsoft_solid::{Contact, Observer, Progress, Status};
 
 use crate::linear::error::FactorError;
 use crate::path::equilibrium::{Equilibrium, Failure};
@@ -10,20 +10,6 @@ use crate::path::settings::{Answer, Control, PathPoint, Settings};
 
 /// Most iterations of a step after which the next one may grow.
 pub(crate) const EASY: u32 = 6;
-/// Longest step of a path-dependent problem: with friction, or bonds that may break.
-const LONGEST_OF_WAY: f64 = 0.05;
-/// Longest step if only loads are path-dependent: the contact of a tendon is found from one state to the next, and
-/// slides on in the same sense under loads that grow together.
-const LONGEST_OF_LOADS: f64 = 0.25;
-
-/// Longest step along the path of a problem, as a part of all of it.
-pub(crate) fn longest_step(problem: &Problem) -> f64 {
-    match problem.contact() {
-        Some(contact) if contact.depends_on_way() => LONGEST_OF_WAY,
-        _ if problem.depends_on_way() => LONGEST_OF_LOADS,
-        _ => 1.0,
-    }
-}
 /// Step of the load, or of the growth of a volume, across a snap.
 pub(crate) const SNAP: f64 = 0.0125;
 

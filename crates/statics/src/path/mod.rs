@@ -15,3 +15,4 @@ pub(crate) mod settings;
 mod snap;
 mod step_length;
 mod volume;
+mod way;

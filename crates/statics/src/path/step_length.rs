@@ -38,6 +38,12 @@ impl StepLength {
         self.now = length;
     }
 
+    /// Sets the longest step, which is also the next one unless a longer one has failed.
+    pub fn limit(&mut self, longest: f64) {
+        self.longest = longest;
+        self.now = longest.min(self.ceiling);
+    }
+
     /// Updates after a step that succeeded; only easy ones lead to longer ones.
     pub fn succeeded(&mut self, easy: bool) {
         if !easy {

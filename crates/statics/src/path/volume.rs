@@ -13,10 +13,11 @@ use crate::path::bordered::{
 };
 use crate::path::equilibrium::{Equilibrium, Failure};
 use crate::path::load_parameter::LoadParameter;
-use crate::path::load_path::{Ending, Path, SNAP, UNSTABLE_CUTS, longest_step, status_of};
+use crate::path::load_path::{Ending, Path, SNAP, UNSTABLE_CUTS, status_of};
 use crate::path::parametrization::Parametrization;
 use crate::path::pseudo_transient::PseudoTransient;
 use crate::path::settings::Settings;
+use crate::path::way::longest_step;
 
 /// Most iterations of a step after which the next one may grow.
 const EASY: u32 = 10;
