@@ -44,6 +44,7 @@ class Record(BaseModel, metaclass=RecordType):
         validate_by_alias=True,
         ser_json_inf_nan="constants",
         allow_inf_nan=False,
+        defer_build=True,  # most commands use a few of the classes, and building all takes long
     )
 
     error_type: ClassVar[type[VoxSoftError]] = DesignError

@@ -57,6 +57,6 @@ else:
     #: Any shape, discriminated by its ``kind``.
     AnyShape = Annotated[reduce(or_, KINDS.values()), Field(discriminator="kind")]
 
-# Operands may be any shape, a type that exists only now.
-for _shape in KINDS.values():
-    _shape.model_rebuild(_types_namespace={"AnyShape": AnyShape})
+# Fields of operands name this type, which exists only now; each class is built on its first use.
+for _file in FILES:
+    vars(_file)["AnyShape"] = AnyShape
