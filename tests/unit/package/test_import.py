@@ -46,7 +46,7 @@ def test_a_run_loads_no_library_that_only_plots_studies_and_fits_need():
     ("command", "unneeded"),
     [
         ("check", {"scipy", "matplotlib", "meshio", "optuna", "pandas"}),
-        ("run", {"scipy", "optuna", "pandas"}),
+        ("run", {"scipy", "matplotlib", "PIL", "optuna", "pandas"}),
     ],
 )
 def test_a_command_loads_no_library_that_it_does_not_need(command, unneeded, tmp_path):
