@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterable, Mapping
+from threading import RLock
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -13,6 +14,10 @@ from voxsoft.records.complaints import plain_error
 from voxsoft.records.places import closest
 from voxsoft.records.plain import plain_values
 from voxsoft.records.signature import RecordType
+
+
+#: Lock while a class is built of parts that others share; pydantic 2.14 has one of its own.
+_BUILDING = RLock()
 
 
 class Record(BaseModel, metaclass=RecordType):
@@ -62,6 +67,14 @@ class Record(BaseModel, metaclass=RecordType):
     # Tells pydantic that tables nested in tables may skip this constructor, so that the
     # outermost one sees all problems with their full place and the validation context.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    @classmethod
+    def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
+        """Build the class, which its first use asks for, in one thread at a time."""
+        with _BUILDING:
+            return super().model_rebuild(
+                _parent_namespace_depth=_parent_namespace_depth + 1, **options
+            )
 
     @classmethod
     def _positional(cls) -> tuple[str, ...]:

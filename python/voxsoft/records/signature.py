@@ -32,6 +32,15 @@ class _Words(str):
 class RecordType(_ModelType):
     """The type of record classes: pydantic's, with a signature and a directory for readers."""
 
+    if not TYPE_CHECKING:  # pydantic's own is a method of the class
+
+        @property
+        def model_fields(cls) -> Mapping[str, FieldInfo]:
+            """Fields by name; types that were not there yet with the class are known now."""
+            if not cls.__pydantic_fields_complete__:
+                cls.model_rebuild()
+            return cls.__pydantic_fields__
+
     @property
     def __signature__(cls) -> inspect.Signature:
         """The constructor in short words."""

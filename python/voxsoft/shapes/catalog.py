@@ -41,14 +41,15 @@ def _shapes_of(file: ModuleType) -> Iterator[type[Shape]]:
     """Yield the shapes that a file defines, in its order: the models whose kind has a name."""
     for model in vars(file).values():
         if isinstance(model, type) and issubclass(model, Shape):
-            kind = model.model_fields.get("kind")
+            # Read without the fields of operands, whose type is not there yet.
+            kind = model.__pydantic_fields__.get("kind")
             if model.__module__ == file.__name__ and kind and not kind.is_required():
                 yield model
 
 
 #: Class of each kind.
 KINDS: dict[str, type[Shape]] = {
-    shape.model_fields["kind"].default: shape for file in FILES for shape in _shapes_of(file)
+    shape.__pydantic_fields__["kind"].default: shape for file in FILES for shape in _shapes_of(file)
 }
 
 if TYPE_CHECKING:
