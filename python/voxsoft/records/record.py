@@ -15,7 +15,6 @@ from voxsoft.records.places import closest
 from voxsoft.records.plain import plain_values
 from voxsoft.records.signature import RecordType
 
-
 #: Lock while a class is built of parts that others share; pydantic 2.14 has one of its own.
 _BUILDING = RLock()
 
@@ -69,7 +68,7 @@ class Record(BaseModel, metaclass=RecordType):
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     @classmethod
-    def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
+    def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:  # noqa: ANN401
         """Build the class, which its first use asks for, in one thread at a time."""
         with _BUILDING:
             return super().model_rebuild(
