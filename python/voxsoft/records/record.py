@@ -97,12 +97,14 @@ class Record(BaseModel, metaclass=RecordType):
 
     def _entries(self) -> dict[str, Any]:
         """Values of all entries by the name that a user writes."""
-        fields = type(self).model_fields
+        fields = type(self).__pydantic_fields__
         return {info.alias or name: getattr(self, name) for name, info in fields.items()}
 
     def _known(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """Changes by the name that a user writes; an error if a name is none."""
-        written = {name: info.alias or name for name, info in type(self).model_fields.items()}
+        written = {
+            name: info.alias or name for name, info in type(self).__pydantic_fields__.items()
+        }
         known = {**written, **{name: name for name in written.values()}}
         wrong = [
             ErrorDetail(name, "is not known here", closest(name, written.values()))
