@@ -53,7 +53,7 @@ from voxsoft.design.object import Object
 from voxsoft.design.operands import MaterialName, Name, ParameterName
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
-from voxsoft.design.references import Included, dangling_references
+from voxsoft.design.references import Included, dangling_references, dangling_shapes
 from voxsoft.design.refinement import Refinement
 from voxsoft.design.region import Probe
 from voxsoft.design.solver import Solver
@@ -294,8 +294,10 @@ class Design(Record):
                 included = Included(design.body_names, *tables)
         problems, only_formulas = [*problems, *wrong], only_formulas and not wrong
         dangling: list[ErrorDetail] = []
-        if like is None or not kept or empty != like.empty_shapes:  # names depend on nothing else
+        if like is None or not kept:
             dangling = list(dangling_references(document, empty, included))
+        elif empty != like.empty_shapes:  # of all names only those of shapes can be lost
+            dangling = list(dangling_shapes(document, empty))
         if problems or dangling:
             error_type = FormulaError if only_formulas and not dangling else DesignError
             raise error_type.listing(dict.fromkeys([*problems, *dangling]))
