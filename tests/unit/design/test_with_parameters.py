@@ -55,7 +55,7 @@ def test_a_family_follows_each_parameter(name, factor):
 @pytest.mark.parametrize("b", ["5 mm", "7 mm", "0 mm", "31 mm", "2 kPa"])
 @pytest.mark.parametrize("before", ["5 mm", "0 mm"])
 @pytest.mark.parametrize("end", ["= a / (1 mm/s)", "= (a + b) / (1 mm/s)", "3 s"])
-def test_what_vanishes_and_what_has_a_history_follows(end, before, b):
+def test_vanished_shapes_and_histories_follow(end, before, b):
     # From a design with the inner shape, and from one without it, to both.
     histories = {"up": {"time": ["0 s", end], "factor": [0, 1]}}
     design = Design.from_document({**HOLLOW, "histories": histories}, {"b": before})

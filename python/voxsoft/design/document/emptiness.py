@@ -67,7 +67,7 @@ def without_empty_shapes(document: Mapping[str, Any]) -> tuple[Document, tuple[s
 
 
 def holds_difference(value: object) -> bool:
-    """Check if a difference is in part of a document: what it subtracts may vanish.
+    """Check if a difference is in part of a document, and so a shape that may vanish.
 
     Examples
     --------
