@@ -58,6 +58,8 @@ def commands(file: str, folder: str) -> dict[str, Sequence[str]]:
 def seconds(arguments: Sequence[str], path: str) -> float:
     """Wall time of a process of Python, with a folder of packages before all others."""
     environment = {**os.environ, "PYTHONPATH": path}
+    # Bytecode is kept as in a shell of anyone's; the round that is left out writes it.
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
     started = time.perf_counter()
     done = subprocess.run(
         [sys.executable, *arguments], env=environment, capture_output=True, text=True, check=False

@@ -9,7 +9,7 @@ import pytest
 
 PACKAGES = [
     "voxsoft",
-    *(f"voxsoft.{each}" for each in ("comparison", "files", "jobs", "plot", "study")),
+    *(f"voxsoft.{each}" for each in ("comparison", "files", "jobs", "plot", "simulation", "study")),
 ]
 
 

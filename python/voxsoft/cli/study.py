@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from voxsoft._folders import folder_name
+from voxsoft._worker_server import start_early
 from voxsoft.cli.exits import errors_in_words
 from voxsoft.cli.options import DesignFile, Json, Seed, Sets, Workers
 from voxsoft.cli.output import plain, print_json, quantity, say, show_table
@@ -134,6 +135,8 @@ def _study(
     storage: str | None,
     json: bool,
 ) -> None:
+    if scheduler is None and path.is_file():
+        start_early()
     from voxsoft import files
     from voxsoft.cli.progress import JobBar
     from voxsoft.jobs import DesignSource, StudySpec, run_job

@@ -8,6 +8,7 @@ from __future__ import annotations
 import copy
 import os
 from collections.abc import Iterable, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, Self
 
@@ -35,7 +36,11 @@ from voxsoft.design.clamp import Clamp
 from voxsoft.design.contact import BODY, Contact, contact_problems
 from voxsoft.design.document.assignment import set_values
 from voxsoft.design.document.documents import plain_document, with_absolute_paths, written_path
-from voxsoft.design.document.emptiness import with_stand_ins, without_empty_shapes
+from voxsoft.design.document.emptiness import (
+    holds_difference,
+    with_stand_ins,
+    without_empty_shapes,
+)
 from voxsoft.design.document.identity import NOT_PHYSICS, hash_of, with_fill
 from voxsoft.design.document.kept_formulas import with_kept_formulas
 from voxsoft.design.document.resolution import Document, Resolution, formulas, with_parameter_values
@@ -48,7 +53,7 @@ from voxsoft.design.object import Object
 from voxsoft.design.operands import MaterialName, Name, ParameterName
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
-from voxsoft.design.references import Included, dangling_references
+from voxsoft.design.references import Included, dangling_references, dangling_shapes
 from voxsoft.design.refinement import Refinement
 from voxsoft.design.region import Probe
 from voxsoft.design.solver import Solver
@@ -67,6 +72,8 @@ if TYPE_CHECKING:
     from voxsoft.studio.outputs.html import LivePage
 
 SCHEMA: Final = "voxsoft/1"
+#: Types of entries that are records or hold them.
+_OF_RECORDS: Final = (Record, tuple, Mapping)
 
 
 class Design(Record):
@@ -238,9 +245,13 @@ class Design(Record):
         document: Mapping[str, Any],
         overrides: Mapping[str, object],
         typed: frozenset[str] | None,
+        like: Self | None = None,
     ) -> Self:
-        """Read a document; `typed` are its keys that were typed in Python, None for a file."""
-        context: dict[str, Any] = {"overrides": dict(overrides), "ready": True}
+        """Read a document; `typed` are its keys that were typed in Python, None for a file.
+
+        `like` is a design of the same document with other values of its parameters.
+        """
+        context: dict[str, Any] = {"overrides": dict(overrides), "ready": True, "like": like}
         context |= {"typed": typed} if typed else FILE_CONTEXT
         try:
             return cls.model_validate(document, context=context)
@@ -258,11 +269,14 @@ class Design(Record):
         context = info.context or {}
         source = data if context.get("ready") else with_absolute_paths(plain_values(data), Path())
         source = with_parameter_values(source, context.get("overrides", {}))
-        found = Resolution.of(source)
+        like: Self | None = context.get("like")
+        kept = {} if like is None else like._same_at_all_parameters
+        found = Resolution.of({key: each for key, each in source.items() if key not in kept})
         if context.get("whole"):
             return handler(with_element_size(with_stand_ins(found.document))[0])
         document, empty = without_empty_shapes(found.document)
         document, unnamed = with_named(document)
+        document |= kept
         document, unsized = with_element_size(document)
         problems = [*found.problems, *unnamed, *unsized]
         only_formulas = bool(found.problems) and not unnamed and not unsized
@@ -273,13 +287,17 @@ class Design(Record):
             wrong = [*problems_of(error, cls, document, found.reported), *nothing_built(document)]
         else:
             wrong = [*nothing_built(document), *design._assemble(empty)]
-            wrong += [] if unsized or wrong else mesh_problems(design)
+            wrong += [] if unsized or wrong or kept else mesh_problems(design)
             if not wrong:
                 whole = design.assembled
                 tables = frozenset(whole.chambers), frozenset(whole.probes)
                 included = Included(design.body_names, *tables)
         problems, only_formulas = [*problems, *wrong], only_formulas and not wrong
-        dangling = list(dangling_references(document, empty, included))
+        dangling: list[ErrorDetail] = []
+        if like is None or not kept:
+            dangling = list(dangling_references(document, empty, included))
+        elif empty != like.empty_shapes:  # of all names only those of shapes can be lost
+            dangling = list(dangling_shapes(document, empty))
         if problems or dangling:
             error_type = FormulaError if only_formulas and not dangling else DesignError
             raise error_type.listing(dict.fromkeys([*problems, *dangling]))
@@ -517,7 +535,24 @@ class Design(Record):
         DesignError
             An unknown name, a value outside its range, or a design that is no longer valid.
         """
-        return self._read(self._source, values, self._typed or None)
+        return self._read(self._source, values, self._typed or None, self)
+
+    @cached_property
+    def _same_at_all_parameters(self) -> dict[str, Any]:
+        """Records without formulas, by their keys; none of several bodies, or on a file's mesh.
+
+        Nothing where a history has formulas: loads and motions hold a copy, not its name.
+        """
+        moved = {path[0] for path, _ in formulas(self._source)}
+        if self.bodies or self.mesh is not None or "histories" in moved:
+            return {}
+        moved |= {"parameters", "shapes", "histories"}  # others use them by name
+        moved |= {key for key, each in self._source.items() if holds_difference(each)}
+        return {
+            key: each
+            for key, each in self._entries().items()
+            if key in self._source and key not in moved and isinstance(each, _OF_RECORDS)
+        }
 
     def replace(self, **changes: Any) -> Self:  # noqa: ANN401 - the fields declare the types
         """Return the design with other values of some of its entries, checked like new.

@@ -45,11 +45,7 @@ def dangling_references(
         The place of the name, the name, and the closest one that exists.
     """
     shapes = _table(document, "shapes")
-    for path, name in _shape_names(document):
-        if name in empty:
-            yield ErrorDetail(place(path), f'the shape "{name}" is empty at these parameters')
-        elif name not in shapes:
-            yield _unknown(path, "shape", name, shapes)
+    yield from dangling_shapes(document, empty)
     yield from _circles(shapes)
     yield from _materials(document)
     known = included or Included()
@@ -70,6 +66,16 @@ def dangling_references(
         yield from _activations(document)
     if included is not None:
         yield from _bodies(document, included)
+
+
+def dangling_shapes(document: Mapping[str, Any], empty: Collection[str]) -> Iterator[ErrorDetail]:
+    """Find every name of a shape that there is not; see :func:`dangling_references`."""
+    shapes = _table(document, "shapes")
+    for path, name in _shape_names(document):
+        if name in empty:
+            yield ErrorDetail(place(path), f'the shape "{name}" is empty at these parameters')
+        elif name not in shapes:
+            yield _unknown(path, "shape", name, shapes)
 
 
 def entry_of(table: object, key: str) -> Any:  # noqa: ANN401 - a document holds anything

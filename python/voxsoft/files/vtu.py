@@ -11,9 +11,9 @@ from __future__ import annotations
 import mmap
 import os
 from dataclasses import replace
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import escape
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +83,7 @@ def write(path: Path, content: MeshFile) -> None:
 
 def _attribute(name: str) -> str:
     """Escape a name for XML, in ASCII: meshio writes names unchanged."""
-    escaped = escape(name, {'"': "&quot;"})
+    escaped = escape(name, quote=False).replace('"', "&quot;")
     return escaped.encode("ascii", "xmlcharrefreplace").decode("ascii")
 
 

@@ -17,6 +17,7 @@ from voxsoft.plot import shading
 from voxsoft.plot.boundary import Axis, Boundary, beyond, boundary_of
 from voxsoft.plot.camera import Camera
 from voxsoft.plot.color_range import CLIP, ColorRange, color_range
+from voxsoft.plot.colors import mapped, rgb
 from voxsoft.plot.frames import at_frame
 from voxsoft.plot.objects import Surroundings
 from voxsoft.plot.quantities import Scale, scale_for
@@ -29,7 +30,6 @@ from voxsoft.simulation.setup.places import on_the_surface
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
 Floats = NDArray[np.float64]
@@ -218,10 +218,9 @@ class _Colors:
 
     flat: Floats  # (t, 3) red, green, blue
     values: Floats | None = None  # (t, 3) at the corners
-    norm: Normalize | None = None
+    range: ColorRange | None = None
     label: str = ""
     colored: NDArray[np.bool_] | None = None  # (t,) where the values count
-    extend: str = "neither"
     clipped: str = ""  # extremes outside the color range
 
 
@@ -271,16 +270,14 @@ def _colors(
     field: str | ArrayLike | None,
     label: str,
 ) -> _Colors:
-    from matplotlib.colors import Normalize, to_rgb
-
     if field is None:
         field = "displacement" if isinstance(body, Result) else "plain"
-    flat = np.tile(to_rgb(_PLAIN_COLOR), (len(surface.triangles), 1))
+    flat = np.tile(rgb(_PLAIN_COLOR), (len(surface.triangles), 1))
     lined = surface.cavity >= 0
     if _is(field, "part"):
-        palette = np.array([to_rgb(color) for color in (_PLAIN_COLOR, *SERIES[1:])])
+        palette = np.array([rgb(color) for color in (_PLAIN_COLOR, *SERIES[1:])])
         return _Colors(palette[(surface.part - 1) % len(palette)])
-    walls = np.array([to_rgb(color) for color in SERIES[1:]])
+    walls = np.array([rgb(color) for color in SERIES[1:]])
     flat[lined] = walls[surface.cavity[lined] % len(walls)]
     if _is(field, "plain"):
         return _Colors(flat)
@@ -291,9 +288,7 @@ def _colors(
     # Most of a body has no contact, so that 99 % of its area say little.
     whole = _is(field, "displacement") or _is(field, "contact_pressure")
     shown = color_range(values, outside, mesh.vertices, clip=not whole)
-    norm = Normalize(shown.low, shown.high)
-    clipped = _clipped(shown, values, mesh)
-    return _Colors(flat, of_corners, norm, label, ~lined, shown.extend, clipped)
+    return _Colors(flat, of_corners, shown, label, ~lined, _clipped(shown, values, mesh))
 
 
 def _clipped(shown: ColorRange, values: Floats, mesh: Mesh) -> str:
@@ -350,11 +345,10 @@ def _paint(
 ) -> Floats:
     """Compute color and light for every pixel, (h, w, 3), white where there is no body."""
     shown = colors.flat[seen.triangle]
-    if colors.values is not None and colors.norm is not None and colors.colored is not None:
-        from matplotlib import colormaps
-
-        mapped = colormaps[COLOR_MAP](colors.norm(seen.interpolate(colors.values)))[:, :3]
-        shown = np.where(colors.colored[seen.triangle][:, None], mapped, shown)
+    if colors.values is not None and colors.range is not None and colors.colored is not None:
+        values = seen.interpolate(colors.values)
+        of_values = mapped(values, colors.range.low, colors.range.high)
+        shown = np.where(colors.colored[seen.triangle][:, None], of_values, shown)
     normals = shading.normals_of(positions[surface.triangles])
     brightness = shading.lit(normals, camera)[seen.triangle]
     brightness *= shading.depth_contrast(seen) * shading.outlines(seen)
@@ -390,26 +384,27 @@ def _averaged(picture: Floats) -> Floats:
 def _figure(picture: Floats, camera: Camera, colors: _Colors, title: str) -> Figure:
     averaged = _averaged(picture)
     height, width = averaged.shape[:2]
-    bar = 1.1 if colors.norm is not None else 0.0
+    bar = 1.1 if colors.range is not None else 0.0
     figure = empty_figure(max(width / 150, 3.0) + bar, max(height / 150, 1.6) + 0.9)
     axes = figure.add_subplot(label="body")
     axes.imshow(np.clip(averaged, 0.0, 1.0), interpolation="antialiased")
     axes.set_axis_off()
     if title:
         axes.set_title(title, fontsize=11, loc="left")
-    if colors.norm is not None:
-        _color_bar(figure, axes, colors)
+    if colors.range is not None:
+        _color_bar(figure, axes, colors, colors.range)
     _scale_bar(axes, camera, width, height)
     _directions(axes, camera, width, height)
     return figure
 
 
-def _color_bar(figure: Figure, axes: Axes, colors: _Colors) -> None:
+def _color_bar(figure: Figure, axes: Axes, colors: _Colors, shown: ColorRange) -> None:
     from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
 
-    mappable = ScalarMappable(norm=colors.norm, cmap=COLOR_MAP)
+    mappable = ScalarMappable(norm=Normalize(shown.low, shown.high), cmap=COLOR_MAP)
     bar: Any = figure.colorbar(
-        mappable, ax=axes, shrink=0.75, aspect=24, pad=0.03, extend=colors.extend
+        mappable, ax=axes, shrink=0.75, aspect=24, pad=0.03, extend=shown.extend
     )
     bar.set_label(colors.label + colors.clipped, fontsize=10)
     bar.outline.set_visible(False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterable, Mapping
+from threading import RLock
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -13,6 +14,9 @@ from voxsoft.records.complaints import plain_error
 from voxsoft.records.places import closest
 from voxsoft.records.plain import plain_values
 from voxsoft.records.signature import RecordType
+
+#: Lock while a class is built of parts that others share; pydantic 2.14 has one of its own.
+_BUILDING = RLock()
 
 
 class Record(BaseModel, metaclass=RecordType):
@@ -44,6 +48,7 @@ class Record(BaseModel, metaclass=RecordType):
         validate_by_alias=True,
         ser_json_inf_nan="constants",
         allow_inf_nan=False,
+        defer_build=True,  # most commands use a few of the classes, and building all takes long
     )
 
     error_type: ClassVar[type[VoxSoftError]] = DesignError
@@ -61,6 +66,14 @@ class Record(BaseModel, metaclass=RecordType):
     # Tells pydantic that tables nested in tables may skip this constructor, so that the
     # outermost one sees all problems with their full place and the validation context.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    @classmethod
+    def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:  # noqa: ANN401
+        """Build the class, which its first use asks for, in one thread at a time."""
+        with _BUILDING:
+            return super().model_rebuild(
+                _parent_namespace_depth=_parent_namespace_depth + 1, **options
+            )
 
     @classmethod
     def _positional(cls) -> tuple[str, ...]:
@@ -84,12 +97,14 @@ class Record(BaseModel, metaclass=RecordType):
 
     def _entries(self) -> dict[str, Any]:
         """Values of all entries by the name that a user writes."""
-        fields = type(self).model_fields
+        fields = type(self).__pydantic_fields__
         return {info.alias or name: getattr(self, name) for name, info in fields.items()}
 
     def _known(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """Changes by the name that a user writes; an error if a name is none."""
-        written = {name: info.alias or name for name, info in type(self).model_fields.items()}
+        written = {
+            name: info.alias or name for name, info in type(self).__pydantic_fields__.items()
+        }
         known = {**written, **{name: name for name in written.values()}}
         wrong = [
             ErrorDetail(name, "is not known here", closest(name, written.values()))

@@ -32,6 +32,15 @@ class _Words(str):
 class RecordType(_ModelType):
     """The type of record classes: pydantic's, with a signature and a directory for readers."""
 
+    if not TYPE_CHECKING:  # pydantic's own is a method of the class
+
+        @property
+        def model_fields(cls) -> Mapping[str, FieldInfo]:
+            """Fields by name; types that were not there yet with the class are known now."""
+            if not cls.__pydantic_fields_complete__:
+                cls.model_rebuild()
+            return cls.__pydantic_fields__
+
     @property
     def __signature__(cls) -> inspect.Signature:
         """The constructor in short words."""
@@ -44,12 +53,15 @@ class RecordType(_ModelType):
     def __dir__(cls) -> list[str]:
         fields: Mapping[str, FieldInfo] = getattr(cls, "model_fields", {})
         own = {name for base in cls.__mro__ if _is_ours(base) for name in vars(base)}
-        public = {name for name in own if not name.startswith("_") and name not in _REFUSED}
+        public = {name for name in own if not name.startswith("_") and name not in _HIDDEN}
         return sorted({*dir(object), *public, *fields, "__init__"})
 
 
-#: Methods of pydantic that are here only to be refused.
-_REFUSED = {"copy", "construct", "model_construct", "model_copy", "model_config", "error_type"}
+#: Methods of pydantic that are refused, or are not for readers.
+_HIDDEN = {
+    *("copy", "construct", "model_construct", "model_copy"),
+    *("model_config", "model_rebuild", "error_type"),
+}
 
 
 def _is_ours(base: type) -> bool:

@@ -41,14 +41,15 @@ def _shapes_of(file: ModuleType) -> Iterator[type[Shape]]:
     """Yield the shapes that a file defines, in its order: the models whose kind has a name."""
     for model in vars(file).values():
         if isinstance(model, type) and issubclass(model, Shape):
-            kind = model.model_fields.get("kind")
+            # Read without the fields of operands, whose type is not there yet.
+            kind = model.__pydantic_fields__.get("kind")
             if model.__module__ == file.__name__ and kind and not kind.is_required():
                 yield model
 
 
 #: Class of each kind.
 KINDS: dict[str, type[Shape]] = {
-    shape.model_fields["kind"].default: shape for file in FILES for shape in _shapes_of(file)
+    shape.__pydantic_fields__["kind"].default: shape for file in FILES for shape in _shapes_of(file)
 }
 
 if TYPE_CHECKING:
@@ -57,6 +58,6 @@ else:
     #: Any shape, discriminated by its ``kind``.
     AnyShape = Annotated[reduce(or_, KINDS.values()), Field(discriminator="kind")]
 
-# Operands may be any shape, a type that exists only now.
-for _shape in KINDS.values():
-    _shape.model_rebuild(_types_namespace={"AnyShape": AnyShape})
+# Fields of operands name this type, which exists only now; each class is built on its first use.
+for _file in FILES:
+    vars(_file)["AnyShape"] = AnyShape

@@ -14,6 +14,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any, Final, Protocol, TypeVar
 
 from voxsoft._memory import memory_limit
+from voxsoft._worker_server import worker_context
 from voxsoft.errors import MissingPackageError, StudyError
 from voxsoft.metrics.own import OwnMetric, missing_metrics
 from voxsoft.study.gate import Gate, SharedGate, keep_gate, through_gate
@@ -97,11 +98,7 @@ def make_workers(
 
 
 class LocalProcesses:
-    """Worker processes on this machine, which stay warm between trials.
-
-    Processes start afresh (`forkserver`, or `spawn` where there is none): a forked copy of a
-    process that has run threads, as the solver does, can hang.
-    """
+    """Worker processes on this machine, which stay warm between trials."""
 
     def __init__(self, count: int, gate: Gate | None = None) -> None:
         self.slots, self._gate = count, gate
@@ -144,11 +141,7 @@ class LocalProcesses:
         ending.join(_MANAGER_PATIENCE)
 
     def _start(self) -> None:
-        methods = multiprocessing.get_all_start_methods()
-        context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-        if context.get_start_method() == "forkserver":
-            # Imported once by the server; every worker starts as a copy of it.
-            context.set_forkserver_preload(["voxsoft.study.outcome"])
+        context = worker_context()
         self._context = _RememberingContext(context)
         as_context: Any = self._context
         self._pool = ProcessPoolExecutor(

@@ -116,14 +116,16 @@ class UnitOf:
         return value.value
 
     def _within_bounds(self, number: float, value: object) -> float:
-        shown = _shown(value) if isinstance(value, str) else format_quantity(number, self.kind)
         if math.isnan(number) or (math.isinf(number) and not self.infinite):
-            raise UnitError(self.kind, f"{shown} is not a finite number")
-        if self.positive and number <= 0:
-            raise UnitError(self.kind, f"{shown} is not positive", f"give {self._due} above zero")
-        if self.non_negative and number < 0:
-            raise UnitError(self.kind, f"{shown} is negative", f"give {self._due} of zero or more")
-        return number
+            what, hint = "is not a finite number", ""
+        elif self.positive and number <= 0:
+            what, hint = "is not positive", f"give {self._due} above zero"
+        elif self.non_negative and number < 0:
+            what, hint = "is negative", f"give {self._due} of zero or more"
+        else:
+            return number
+        shown = _shown(value) if isinstance(value, str) else format_quantity(number, self.kind)
+        raise UnitError(self.kind, f"{shown} {what}", hint)
 
     @property
     def _due(self) -> str:

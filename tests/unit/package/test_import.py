@@ -12,6 +12,9 @@ from voxsoft.units import mm
 #: Modules that take long to load, and are loaded by the names that need them.
 HEAVY = {"numpy", "scipy", "pydantic", "optuna", "matplotlib", "pandas", "voxsoft._core"}
 
+#: Modules of which a run and a check need nothing.
+PLOTS_AND_FITS = {"scipy", "matplotlib", "PIL", "optuna", "pandas"}
+
 
 def loaded_by(line):
     code = f"import sys; {line}; print(*sys.modules)"
@@ -45,8 +48,9 @@ def test_a_run_loads_no_library_that_only_plots_studies_and_fits_need():
 @pytest.mark.parametrize(
     ("command", "unneeded"),
     [
-        ("check", {"scipy", "matplotlib", "meshio", "optuna", "pandas"}),
-        ("run", {"scipy", "optuna", "pandas"}),
+        ("check", {*PLOTS_AND_FITS, "meshio", "voxsoft.simulation.runs.run"}),
+        ("check", {"voxsoft.simulation.derivatives", "voxsoft.simulation.runs.simulator"}),
+        ("run", {*PLOTS_AND_FITS, "urllib.request", "voxsoft.simulation.runs.simulator"}),
     ],
 )
 def test_a_command_loads_no_library_that_it_does_not_need(command, unneeded, tmp_path):

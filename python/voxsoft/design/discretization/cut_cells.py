@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 from typing import Any, Final
 
@@ -20,6 +20,8 @@ from voxsoft.shapes.sampling import Body, refuse_too_many
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+#: Filled part, (k, n³), and normal, (k, n³, 3), of each small cube of some cells.
+Cubes = tuple[Floats, Floats]
 
 #: Sampled at once: small cubes of a slab, and cells that are cut into small cubes.
 _SLAB = 2**26
@@ -61,6 +63,9 @@ class CutCells:
         Array indices of the cells that the surface may touch, (k, 3), in C order.
     voids
         For each of these the small cubes that are less than half full, as bits in C order, (k,).
+    cubes
+        For each of these the filled part and the normal of each small cube, as :func:`filled_parts`
+        gives them; None where they would take much memory.
     """
 
     low: Ints
@@ -70,6 +75,7 @@ class CutCells:
     part: NDArray[np.uint8]
     near: Ints
     voids: NDArray[np.uint64]
+    cubes: Cubes | None = field(default=None, repr=False)
 
     @property
     def origin(self) -> tuple[float, float, float]:
@@ -124,11 +130,12 @@ def cut_cells(design: Design, size: float) -> CutCells:
     voids = np.zeros(len(cells), dtype=np.uint64)
     for start in range(0, len(cells), _CHUNK):
         chunk = cells[start : start + _CHUNK]
-        found, _, shares = filled_parts(design, chunk + low, size, phase)
+        found, normals, shares = filled_parts(design, chunk + low, size, phase)
         filled[tuple(chunk.T)] = _whole(found.mean(axis=1))
         voids[start : start + _CHUNK] = (found < 0.5) @ _BITS
         part[tuple(chunk.T)] = np.argmax(shares > shares.max(axis=1, keepdims=True) - 1e-9, axis=1)
-    return CutCells(low, phase, size, filled, part, cells, voids)
+    cubes = (found, normals) if 0 < len(cells) <= _CHUNK else None
+    return CutCells(low, phase, size, filled, part, cells, voids, cubes)
 
 
 def cuts_cells(design: Design, size: float) -> bool:

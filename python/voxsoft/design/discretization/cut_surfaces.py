@@ -9,8 +9,9 @@ of a plane and of a right-angled edge or corner, and in a curved surface their m
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import permutations, product
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,8 +45,8 @@ def surfaces(sums: Floats) -> Floats:
             continue
         cubic, quartic = _tensor(sums[rows, :_CUBIC], 3), _tensor(sums[rows, _CUBIC:], 4)
         frame = _frame(quartic)
-        fourth = np.einsum("vabcd,vai,vbi,vci,vdi->vi", quartic, *4 * [frame], optimize=True)
-        third = np.einsum("vabc,vai,vbi,vci->vi", cubic, *3 * [frame], optimize=True)
+        fourth = _summed("vabcd,vai,vbi,vci,vdi->vi", quartic, *4 * [frame])
+        third = _summed("vabc,vai,vbi,vci->vi", cubic, *3 * [frame])
         third = np.clip(third, -fourth, fourth)
         areas = np.stack([(fourth - third) / 2.0, (fourth + third) / 2.0], axis=-1)
         turns = rotation_vectors(frame)
@@ -123,10 +124,10 @@ def _frame(quartic: Floats) -> Floats:
     raises its sum in each step, as fourth powers are convex. Then pairs are turned in their planes
     in turn. Where nothing else tells, axes lie near those of the cell.
     """
-    values = np.einsum("vabcd,ia,ib,ic,id->vi", quartic, *4 * [_STARTS], optimize=True)
+    values = _summed("vabcd,ia,ib,ic,id->vi", quartic, *4 * [_STARTS])
     first = _STARTS[values.argmax(axis=1)]
     for _ in range(_ITERATIONS):
-        first = _unit(np.einsum("vabcd,vb,vc,vd->va", quartic, *3 * [first], optimize=True))
+        first = _unit(_summed("vabcd,vb,vc,vd->va", quartic, *3 * [first]))
     far = np.eye(3)[np.abs(first).round(9).argmin(axis=1)]
     second = _unit(far - first * (first * far).sum(axis=1, keepdims=True))
     frame = np.stack([first, second, np.cross(first, second)], axis=-1)
@@ -146,7 +147,7 @@ def _turn(frame: Floats, pair: tuple[int, int], quartic: Floats) -> None:
     With n = ρ (cos φ, sin φ) there, n₁⁴ + n₂⁴ is ρ⁴ (3 + cos 4φ)/4.
     """
     plane = frame[:, :, pair]
-    t = np.einsum("vabcd,vai,vbj,vck,vdl->vijkl", quartic, *4 * [plane], optimize=True)
+    t = _summed("vabcd,vai,vbj,vck,vdl->vijkl", quartic, *4 * [plane])
     cosine = t[:, 0, 0, 0, 0] - 6.0 * t[:, 0, 0, 1, 1] + t[:, 1, 1, 1, 1]
     sine = 4.0 * (t[:, 0, 0, 0, 1] - t[:, 0, 1, 1, 1])
     total = np.einsum("vaabb->v", quartic)
@@ -154,6 +155,20 @@ def _turn(frame: Floats, pair: tuple[int, int], quartic: Floats) -> None:
     angle = np.where(clear, np.arctan2(sine, cosine) / 4.0, 0.0)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     frame[:, :, pair] = np.einsum("vai,ijv->vaj", plane, turn)
+
+
+def _summed(indices: str, *operands: Floats) -> Floats:
+    """Sum products by Einstein's convention, two operands at a time."""
+    found: Floats = np.einsum(
+        indices, *operands, optimize=_order(indices, *(each.shape for each in operands))
+    )
+    return found
+
+
+@lru_cache(maxsize=64)
+def _order(indices: str, *shapes: tuple[int, ...]) -> list[Any]:
+    """Find the order of the sums, which takes longer than those of a small body."""
+    return np.einsum_path(indices, *map(np.empty, shapes), optimize=True)[0]
 
 
 def _unit(vectors: Floats) -> Floats:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from voxsoft.design.discretization.cut_cells import (
     SIDES,
     WHOLE,
+    Cubes,
     CutCells,
     Floats,
     Ints,
@@ -126,7 +127,7 @@ class CutVoxels:
         numbers = np.where(active, cells.part + 1, 0).astype(np.uint8)
         voxels = Voxels.from_array(numbers, cells.size, cells.origin)
         topology = _topology(cells, active, voxels)
-        return cls(voxels, *_spread(design, topology), topology)
+        return cls(voxels, *_spread(design, topology, cells.cubes), topology)
 
     def resampled(self, design: Design) -> Self:
         """Return the same voxels with the fractions of another design: its parameters changed.
@@ -271,8 +272,13 @@ def _own_neighbors(cells: CutCells, active: NDArray[np.bool_], voxel: Ints) -> I
     return np.where(parts[places] == own[:, None, None], numbers[places], -1)
 
 
-def _spread(design: Design, t: _Topology) -> tuple[Floats, Floats, Floats, tuple[Void, ...], float]:
-    """Fractions, moments, surfaces of the voxels, voids of the cavities, lost volume [m³]."""
+def _spread(
+    design: Design, t: _Topology, cubes: Cubes | None = None
+) -> tuple[Floats, Floats, Floats, tuple[Void, ...], float]:
+    """Fractions, moments, surfaces of the voxels, voids of the cavities, lost volume [m³].
+
+    `cubes` are those of the cells near the surface, where they are known.
+    """
     spread, around, lost = _material(design, t)
     own = t.voxel >= 0
     held = np.tile(WHOLE, (t.whole, 1))
@@ -285,7 +291,7 @@ def _spread(design: Design, t: _Topology) -> tuple[Floats, Floats, Floats, tuple
     variance = held[:, 4:7] / fractions[:, None] - center**2
     products = held[:, 7:] / fractions[:, None]
     moments = np.hstack([center, np.sqrt(3.0 * variance), products])
-    return fractions, moments, surfaces(around), voids(design, spread, t.zones), lost
+    return fractions, moments, surfaces(around), voids(design, spread, t.zones, cubes), lost
 
 
 def _material(design: Design, t: _Topology) -> tuple[Spread, Floats, float]:

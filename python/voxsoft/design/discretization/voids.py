@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
-from voxsoft.design.discretization.cut_cells import WHOLE, Floats, Ints, filled_parts
+from voxsoft.design.discretization.cut_cells import WHOLE, Cubes, Floats, Ints, filled_parts
 from voxsoft.design.discretization.rooms import room_parts
 from voxsoft.design.model import Design
 from voxsoft.shapes.base import Triple
@@ -257,7 +257,9 @@ class Spread:
     moved_to: Floats
 
 
-def voids(design: Design, spread: Spread, zones: Zones) -> tuple[Void, ...]:
+def voids(
+    design: Design, spread: Spread, zones: Zones, cubes: Cubes | None = None
+) -> tuple[Void, ...]:
     """Return the void of every cavity.
 
     Parameters
@@ -268,11 +270,18 @@ def voids(design: Design, spread: Spread, zones: Zones) -> tuple[Void, ...]:
         Its material.
     zones
         Regions of the empty parts of these cells.
+    cubes
+        Small cubes of these cells, where they are known.
     """
     own = spread.voxel >= 0
     torn = zones.torn
     if len(torn):
-        filled, normals, _ = filled_parts(design, spread.places[torn], spread.size, spread.phase)
+        if cubes is None:
+            filled, normals, _ = filled_parts(
+                design, spread.places[torn], spread.size, spread.phase
+            )
+        else:
+            filled, normals = (each[torn] for each in cubes)
         room_torn = np.maximum(1.0 - filled - zones.beyond, 0.0)
         every = np.maximum((1.0 - filled).sum(axis=1), 1e-300)
     found = []

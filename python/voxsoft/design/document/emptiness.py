@@ -19,8 +19,8 @@ from typing import Annotated, Any, Final, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from voxsoft.design.document.resolution import Document
-from voxsoft.records import Record, records_in
-from voxsoft.shapes import AnyShape
+from voxsoft.records import Record
+from voxsoft.shapes import KINDS, Difference, Shape
 from voxsoft.units import Quantity, UnitOf
 
 _OPERANDS: Final = "of"
@@ -64,6 +64,23 @@ def without_empty_shapes(document: Mapping[str, Any]) -> tuple[Document, tuple[s
             cleaned[key] = pruning.differences(value)
     empty = tuple(name for name, table in pruning.subtracted.items() if table is None)
     return cleaned, empty
+
+
+def holds_difference(value: object) -> bool:
+    """Check if a difference is in part of a document, and so a shape that may vanish.
+
+    Examples
+    --------
+    >>> holds_difference([{"shape": {"kind": "difference", "of": ["outer", "inner"]}}])
+    True
+    """
+    if isinstance(value, Shape):
+        return any(isinstance(each, Difference) for each in value.every())
+    if isinstance(value, Mapping):
+        return value.get("kind") == "difference" or any(map(holds_difference, value.values()))
+    if isinstance(value, Record):
+        return any(holds_difference(each) for _, each in value)
+    return isinstance(value, (list, tuple)) and any(map(holds_difference, value))
 
 
 def with_stand_ins(document: Mapping[str, Any]) -> Document:
@@ -163,13 +180,8 @@ def _has_vanished(table: Mapping[str, Any]) -> bool:
 @cache
 def _sizes(kind: str) -> frozenset[str]:
     """The fields of a kind of shape that must be positive."""
-    models = (model for model in records_in(AnyShape) if _is_of_kind(model, kind))
-    fields = (field for model in models for field in model.model_fields.items())
-    return frozenset(name for name, field in fields if _must_be_positive(field))
-
-
-def _is_of_kind(model: type[Record], kind: object) -> bool:
-    return "kind" in model.model_fields and model.model_fields["kind"].default == kind
+    fields = KINDS[kind].model_fields if kind in KINDS else {}
+    return frozenset(name for name, field in fields.items() if _must_be_positive(field))
 
 
 def _any_not_positive(value: object) -> bool:

@@ -94,7 +94,7 @@ def is_inner_design(path: Path) -> bool:
     >>> is_inner_design(("bodies", 0, "design")), is_inner_design(("bodies", 0, "set"))
     (True, False)
     """
-    return path[-3:-2] == ("bodies",) and path[-1] == "design"
+    return len(path) > 2 and path[-1] == "design" and path[-3] == "bodies"
 
 
 class _Unread:

@@ -32,6 +32,8 @@ _MOST_VOXELS: Final = 6
 _ROWS, _ROWS_OF_A_FILE, _POINTS = 200, 40, 16
 #: Factor on the points in a voxel for the thickness that is printed.
 _FINER: Final = 32
+#: Points by which a thickness of so few may be off: one for each of two layers in a wall.
+_OFF: Final = 2
 #: Offsets of parallel lines, in voxels: a wall is flat where it is as thick on all, to one point.
 _ASIDE: Final = ((0.0, 0.0), (0.45, 0.45), (0.45, -0.45), (-0.45, 0.45), (-0.45, -0.45))
 #: Smallest share of rows along an axis for a thickness to be judged.
@@ -104,13 +106,18 @@ def _of_body(design: Design, mesh: Mesh, size: float) -> list[_Measured]:
     cells = GridRegions.of(mesh, size)
     shapes = built_parts(design)
     slow = any(isinstance(each, TriangleMesh) for each in shapes_of(design))
-    found: list[_Measured] = []
+    found: list[tuple[_Rows, Floats]] = []
     for axis in range(3):
         for rows in _rows(cells.rooms, axis):
             some = _some(rows, _ROWS_OF_A_FILE if slow else _ROWS)
             if len(some.number):
-                found += _flat(some, shapes, cells)
-    return found
+                found.append(_flat(some, shapes, cells))
+    # Finer points take most of the time: first for those that may be doubtful, then for all.
+    doubted = (_picked(rows, _may_differ(rows, points)) for rows, points in found)
+    finer = (each for rows in doubted for each in _measured(rows, shapes, cells))
+    if not any(each.difference >= LARGE for each in finer):
+        return []
+    return [each for rows, _ in found for each in _measured(rows, shapes, cells)]
 
 
 def _rows(rooms: NDArray[np.int16], axis: int) -> Iterator[_Rows]:
@@ -133,8 +140,11 @@ def _rows(rooms: NDArray[np.int16], axis: int) -> Iterator[_Rows]:
 
 
 def _some(rows: _Rows, most: int) -> _Rows:
-    every = slice(None, None, max(1, -(-len(rows.number) // most)))
-    return rows._replace(first=rows.first[every], number=rows.number[every])
+    return _picked(rows, slice(None, None, max(1, -(-len(rows.number) // most))))
+
+
+def _picked(rows: _Rows, which: slice | Ints | NDArray[np.bool_]) -> _Rows:
+    return rows._replace(first=rows.first[which], number=rows.number[which])
 
 
 def _described(
@@ -145,7 +155,8 @@ def _described(
     Half a voxel at both ends belongs to a row: no flat face is farther from the ends of its voxels.
     """
     points = finer * _POINTS
-    steps = (np.arange((_MOST_VOXELS + 1) * points) + 0.5) / points - 0.5
+    longest = int(rows.number.max(initial=0))
+    steps = (np.arange((longest + 1) * points) + 0.5) / points - 0.5
     places = np.tile((rows.first + 0.5)[None, :, None, :], (len(_ASIDE), 1, len(steps), 1))
     places[..., rows.axis] += steps - 0.5
     places[..., np.arange(3) != rows.axis] += np.array(_ASIDE)[:, None, None, :]
@@ -160,15 +171,29 @@ def _described(
     return np.where(np.ptp(within, axis=0) <= finer, lengths, 0.0)
 
 
-def _flat(rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions) -> Iterator[_Measured]:
-    """Yield the thicknesses that many rows share."""
+def _flat(rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions) -> tuple[_Rows, Floats]:
+    """Return one row of each thickness that many rows share, and that thickness in points."""
     measured = np.rint(_described(rows, shapes, cells) * (_POINTS / cells.size))
     pairs = np.stack([measured, rows.number], axis=1)
     kinds, first, count = np.unique(pairs, axis=0, return_index=True, return_counts=True)
     kept = (count >= _SHARE * len(pairs)) & (kinds[:, 0] > 0.0)
-    few = rows._replace(first=rows.first[first[kept]], number=rows.number[first[kept]])
-    described = _described(few, shapes, cells, _FINER)
-    for cell, number, length in zip(few.first, few.number, described.tolist(), strict=True):
+    return _picked(rows, first[kept]), kinds[kept, 0]
+
+
+def _may_differ(rows: _Rows, points: Floats) -> NDArray[np.bool_]:
+    """Mark rows whose thickness, so many points, may be a doubtful one, (n,)."""
+    simulated = rows.number * _POINTS
+    least = np.maximum(points - _OFF, 1e-300)
+    off: NDArray[np.bool_] = simulated / least - 1.0 >= LARGE
+    return off | (1.0 - simulated / (points + _OFF) >= LARGE)
+
+
+def _measured(
+    rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions
+) -> Iterator[_Measured]:
+    """Yield the thickness of each row, with finer points."""
+    described = _described(rows, shapes, cells, _FINER)
+    for cell, number, length in zip(rows.first, rows.number, described.tolist(), strict=True):
         middle = cell + 0.5
         middle[rows.axis] += 0.5 * (number - 1)
         at = cells.origin + cells.size * middle
