@@ -61,14 +61,16 @@ def peak_bytes() -> int:
 class Report:
     """Rows of a benchmark, printed as text or, with ``--json``, as one object.
 
-    `flags` are further switches of the command line, each with its help, and `values` those that
-    take a whole number, each with its default and its help; `options` has what was given.
+    `flags` are further switches of the command line, each with its help, `values` those that take
+    a whole number, each with its default and its help, and `texts` those that take a text;
+    `options` has what was given.
     """
 
     def __init__(
         self,
         description: str,
         values: Mapping[str, tuple[int | None, str]] | None = None,
+        texts: Mapping[str, str] | None = None,
         **flags: str,
     ) -> None:
         parser = argparse.ArgumentParser(description=description)
@@ -78,6 +80,8 @@ class Report:
             parser.add_argument(f"--{flag}", action="store_true", help=meaning)
         for name, (default, meaning) in (values or {}).items():
             parser.add_argument(f"--{name}", type=int, default=default, help=meaning)
+        for name, meaning in (texts or {}).items():
+            parser.add_argument(f"--{name}", help=meaning)
         self.options = vars(parser.parse_args())
         self._json = self.options["json"]
         self._title = description
