@@ -15,7 +15,8 @@ from voxsoft.errors import DisconnectedError, NoCavityError, StudyError, VoxSoft
 from voxsoft.search.gradient_sampler import Answer
 from voxsoft.search.optuna_bridge import FrozenTrial
 from voxsoft.simulation import gradient, simulate
-from voxsoft.simulation.derivatives.path_gradient import LARGEST_WITH_FRICTION, has_friction
+from voxsoft.simulation.derivatives.path_gradient import LARGEST_WITH_FRICTION
+from voxsoft.simulation.setup.contact import has_friction
 from voxsoft.study.outcome import Outcome, outcome_of_result
 from voxsoft.study.trial import OUTCOME_KEY
 

@@ -4,6 +4,7 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.cli.check import _show_body
+from voxsoft.design import Contact, Object
 from voxsoft.simulation import Setup, simulate
 from voxsoft.simulation.solving.cost import Cost, cost_of, newton_iterations
 from voxsoft.units import kPa, mm
@@ -62,6 +63,19 @@ def test_newton_iterations_lie_in_the_range_that_was_reported(name):
     reported = newton_iterations(design, setup.mesh, WALL, setup.problem.mass)
     taken = simulate(setup).steps
     assert reported.low <= taken <= (reported.high or 3 * reported.seconds), reported
+
+
+def test_friction_is_counted():
+    shape = vs.Box(size=(30 * mm, 30 * mm, 4 * mm), center=(10 * mm, 10 * mm, 22 * mm))
+    motion = vs.Motion(displacement=(0, 0, -1 * mm))
+    plate = Object(name="plate", shape=shape, motion=motion)
+    foot = vs.Clamp(region=vs.Region(z=(0, 0)))
+    design = made("a block under its weight").replace(
+        clamps=[foot], loads=[], objects=[plate], contact=Contact(friction=0.5)
+    )
+    setup = Setup.of(design)
+    reported = newton_iterations(design, setup.mesh, None, setup.problem.mass)
+    assert reported.low <= simulate(setup).steps <= reported.high
 
 
 def test_a_run_costs_more_the_farther_it_goes_and_the_finer_it_is():

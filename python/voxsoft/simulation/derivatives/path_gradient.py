@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft._memory import memory_limit
-from voxsoft.design import Design
-from voxsoft.design.contact import BODY, Contact
+from voxsoft.design.contact import BODY
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.metrics import Target, metric_named
 from voxsoft.simulation.derivatives.loaded_state import LoadedState
 from voxsoft.simulation.results.result import Result
+from voxsoft.simulation.setup.contact import has_friction
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.simulation.solving.equilibrium import LoadControl, find_equilibrium, path_of
 from voxsoft.units import format_percent
@@ -161,12 +161,6 @@ def _recorded_path(setup: Setup, result: Result) -> tuple[_core.Problem, list[fl
         )
     factors: list[float] = points[:, 0].tolist()
     return report.answer.problem, factors
-
-
-def has_friction(design: Design) -> bool:
-    """Return True if any contact of a design has friction."""
-    contact = design.contact or Contact()
-    return contact.friction > 0.0 or any(pair.friction for pair in contact.pairs)
 
 
 def check_residual(residual: float) -> None:

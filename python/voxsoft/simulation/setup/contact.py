@@ -134,6 +134,14 @@ def has_contact(design: Design) -> bool:
     return design.contact is not None or bool(design.objects) or len(design.body_names) > 1
 
 
+def has_friction(design: Design) -> bool:
+    """Return True if any contact of a design has friction."""
+    contact = design.contact or Contact()
+    return has_contact(design) and (
+        contact.friction > 0.0 or any(pair.friction for pair in contact.pairs)
+    )
+
+
 def keeps_apart(design: Design) -> bool:
     """Return True if contact keeps bodies out of themselves and each other."""
     contact, bodies = design.contact or Contact(), design.body_names

@@ -17,7 +17,7 @@ from voxsoft.design import Design
 from voxsoft.materials import Hyperelastic, Material, Rigid
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.loads import readings
-from voxsoft.simulation.setup.contact import has_contact
+from voxsoft.simulation.setup.contact import has_contact, has_friction
 from voxsoft.simulation.solving.choice import method_of
 from voxsoft.simulation.solving.dynamics import DEFAULT_TIME_STEP, Dynamics, DynamicsToEnd
 from voxsoft.simulation.solving.equilibrium import ArcLengthControl, Statics, VolumeControl
@@ -37,6 +37,8 @@ _OF_A_LATTICE: Final = 0.2
 _FEWEST: Final = 4.0
 _MORE: Final = 40.0
 _OF_A_STEP: Final = 6.0
+#: Least iterations of a load path with friction: three steps of ten, in which bounds settle.
+_WITH_FRICTION: Final = 30.0
 #: Iterations of a time step with contact: a capsule that is held takes 3, fingers that close 15.
 _OF_A_STEP_IN_CONTACT: Final = 7.0
 #: Steps of an arc-length path that is not longer than it must be.
@@ -188,6 +190,8 @@ def newton_iterations(design: Design, mesh: Mesh, wall: float | None, mass: floa
     method = method_of(design, design.solver)
     motion = _motion(design, mesh, wall, mass)
     expected = _FEWEST + _MORE * motion / (1.0 + motion)
+    if has_friction(design):
+        expected = max(expected, _WITH_FRICTION)
     if isinstance(method, VolumeControl):
         expected = _OF_A_STEP * method.steps
     elif isinstance(method, ArcLengthControl):
