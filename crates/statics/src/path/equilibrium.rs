@@ -109,6 +109,8 @@ pub(crate) struct Equilibrium {
     /// True if rigid objects move freely: the distance of their motion then gives no measure of rounding in their stiff
     /// springs.
     pub has_loose: bool,
+    /// True if surfaces press on each other at the positions of an iteration.
+    pub presses: bool,
     /// True while iterations predict the multipliers of contact ([`Equilibrium::newton_predicted`]).
     pub predicts: bool,
 }
@@ -174,6 +176,7 @@ impl Equilibrium {
             precision: 1.0,
             by_load: None,
             has_loose: false,
+            presses: false,
             predicts: false,
         })
     }
@@ -184,6 +187,8 @@ impl Equilibrium {
         if contact.is_some_and(|contact| contact.follow(positions)) {
             self.system = System::new(&self.problem, &self.held, self.options)?;
         }
+        let contact = self.problem.contact();
+        self.presses = contact.is_some_and(|contact| contact.is_touching(positions));
         Ok(())
     }
 
@@ -621,16 +626,16 @@ impl Equilibrium {
     pub fn linear_tolerance(&self, relative: f64, settings: &Settings) -> f64 {
         let enough = LAST_PART * settings.tolerance / relative;
         match self.problem.contact() {
-            Some(_) => LINEAR_TOLERANCE_WITH_CONTACT,
-            None if enough >= AT_ONCE => enough.min(LOOSEST),
-            None => LINEAR_TOLERANCE,
+            Some(_) if self.presses => LINEAR_TOLERANCE_WITH_CONTACT,
+            _ if enough >= AT_ONCE => enough.min(LOOSEST),
+            _ => LINEAR_TOLERANCE,
         }
     }
 
     /// Factorizes the tangent for a mixed iteration. Far from equilibrium the tangent may be indefinite, and mixed
-    /// iterations are no descent method anyway; but with contact they diverge from there.
+    /// iterations are no descent method anyway; but with surfaces that press they diverge from there.
     fn carried(&mut self) -> Result<Factor, Failure> {
-        if self.problem.contact().is_none() || !self.problem.is_conservative() {
+        if !self.presses || !self.problem.is_conservative() {
             return Ok(self.system.factor(0.0)?);
         }
         match self.system.factor_positive(0.0) {
