@@ -56,6 +56,17 @@ fn large_bodies_are_solved_iteratively_and_agree_with_a_factor() {
 }
 
 #[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let problem = cantilever([24, 13, 13], 0.002, rubber());
+    let [one, two] = [1, 2].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let moved = || moved(&problem, with(LinearSolver::Iterative), 3);
+        pool.build().unwrap().install(moved)
+    });
+    assert_eq!(one, two);
+}
+
+#[test]
 fn small_bodies_keep_the_factor() {
     let problem = cantilever([8, 4, 4], 0.005, rubber());
     let [auto, direct] =
