@@ -1002,8 +1002,13 @@ class Live:
         tolerance: float = 1e-4,
         deterministic: bool = False,
         converged: bool = False,
+        memory: int = ...,
     ) -> Live:
-        """Steps converge, with contact and fluids settled, if ``converged``."""
+        """Steps converge, with contact and fluids settled, if ``converged``.
+
+        Implicit steps take no more ``memory`` [bytes] for their tangent: a `MemoryError` of
+        `advance` tells how much they would.
+        """
 
     @property
     def method(self) -> Literal["explicit", "implicit"]: ...
@@ -1074,7 +1079,10 @@ class Scene:
         tolerance: float = 1e-4,
         surfaces: Sequence[str] = ...,
         middles: Sequence[tuple[float, float, float]] = ...,
-    ) -> Scene: ...
+        memory: int = ...,
+    ) -> Scene:
+        """Take no more ``memory`` [bytes] for the tangent of implicit steps when played here."""
+
     def pack(self, notes: str = "", positions: NDArray[np.float64] | None = None) -> bytes:
         """The bytes that a page opens; it shows positions first where they are given."""
 

@@ -8,7 +8,7 @@ use voxsoft_solid::{Ask, LiveStatus, Look, Method, ProblemError, State};
 use crate::clock::Clock;
 use crate::event::{Event, Mode, finite};
 use crate::player::{Numbers, Player};
-use crate::sentences::{at_rest, diverged};
+use crate::sentences::{at_rest, diverged, out_of_memory};
 
 /// Time between two frames in s, which is also the longest implicit step.
 pub const FRAME_TIME: f64 = 1.0 / 60.0;
@@ -125,6 +125,10 @@ impl Player {
                 let place = look.breakdown.map(|breakdown| breakdown.rest);
                 self.wants_play = false;
                 self.stand(Mode::Diverged, diverged(look.time, place));
+            }
+            LiveStatus::OutOfMemory(bytes) => {
+                self.wants_play = false;
+                self.stand(Mode::Diverged, out_of_memory(bytes));
             }
         }
         if let Some(left) = &mut self.steps_left {

@@ -55,6 +55,17 @@ pub fn diverged(seconds: f64, place: Option<Vec3>) -> String {
     )
 }
 
+/// Sentence on steps that take more memory than there is.
+pub fn out_of_memory(bytes: u64) -> String {
+    let size = if bytes == 0 {
+        "more memory than there is".to_owned()
+    } else {
+        let size = significant(1e-9 * bytes as f64, 2);
+        format!("about {size} GB of memory, more than there is")
+    };
+    format!("Steps of this body take {size}. Try larger voxels, or press Solve.")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,6 +83,14 @@ mod tests {
             "0.1 s",
         ];
         assert_eq!(times, expected);
+    }
+
+    #[test]
+    fn lack_of_memory_is_told_with_its_size() {
+        let sentence = "Steps of this body take about 24 GB of memory, more than there is. Try larger voxels, or \
+                        press Solve.";
+        assert_eq!(out_of_memory(24_300_000_000), sentence);
+        assert!(out_of_memory(0).starts_with("Steps of this body take more memory than there is."));
     }
 
     #[test]

@@ -18,6 +18,7 @@ pub fn stepper(problem: Problem, settings: Dynamics) -> Box<dyn Stepper> {
         damping: settings.damping,
         retardation: settings.retardation,
         tolerance: settings.tolerance,
+        memory: settings.memory,
         ..ImplicitSettings::default()
     };
     Box::new(Implicit::new(problem, settings))
@@ -34,6 +35,7 @@ pub fn converging(problem: Problem, settings: Dynamics) -> Result<Box<dyn Steppe
         damping: settings.damping,
         retardation: settings.retardation,
         tolerance: settings.tolerance,
+        memory: settings.memory,
         ..Transient::default()
     };
     Ok(Box::new(Motion::new(problem, settings)?))

@@ -1,5 +1,6 @@
 //! Results of the solvers for Python: frozen classes with typed attributes, and the status of a solution.
 use numpy::{PyArray1, PyArray2, PyArray3};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{LiveStatus, Look, Status};
@@ -135,12 +136,17 @@ pub enum PyLiveStatus {
     Diverged,
 }
 
-impl From<LiveStatus> for PyLiveStatus {
-    fn from(status: LiveStatus) -> Self {
+impl TryFrom<LiveStatus> for PyLiveStatus {
+    type Error = PyErr;
+
+    fn try_from(status: LiveStatus) -> PyResult<Self> {
         match status {
-            LiveStatus::Moving => Self::Moving,
-            LiveStatus::AtRest => Self::AtRest,
-            LiveStatus::Diverged => Self::Diverged,
+            LiveStatus::Moving => Ok(Self::Moving),
+            LiveStatus::AtRest => Ok(Self::AtRest),
+            LiveStatus::Diverged => Ok(Self::Diverged),
+            LiveStatus::OutOfMemory(bytes) => Err(PyMemoryError::new_err(format!(
+                "a step takes about {bytes} bytes for its tangent, more than the limit of memory"
+            ))),
         }
     }
 }
@@ -165,9 +171,10 @@ pub struct PyAdvance {
 }
 
 impl PyAdvance {
-    pub(crate) fn of(look: &Look, taken: u32, seconds: f64) -> Self {
-        Self {
-            status: look.status.into(),
+    /// A run that has ended for want of memory raises a `MemoryError`.
+    pub(crate) fn of(look: &Look, taken: u32, seconds: f64) -> PyResult<Self> {
+        Ok(Self {
+            status: look.status.try_into()?,
             time: look.time,
             substep: look.substep,
             substeps: look.substeps,
@@ -178,6 +185,6 @@ impl PyAdvance {
             kinetic: look.kinetic,
             breakdown: look.breakdown.map(|b| (b.vertex, b.rest, b.when)),
             seconds,
-        }
+        })
     }
 }

@@ -73,7 +73,7 @@ impl PyLive {
             (look, taken)
         })?;
         drop(guard);
-        Ok(PyAdvance::of(&look, taken, started.elapsed().as_secs_f64()))
+        PyAdvance::of(&look, taken, started.elapsed().as_secs_f64())
     }
 }
 
@@ -84,7 +84,7 @@ type PyGrab = (u32, u32, Vec3, Vec3, f64);
 impl PyLive {
     #[new]
     #[pyo3(signature = (problem, triangles, tags, voxel_size, *, time_step=0.01, substeps=None, iterations=1,
-        damping=None, retardation=0.0, tolerance=1e-4, deterministic=false, converged=false))]
+        damping=None, retardation=0.0, tolerance=1e-4, deterministic=false, converged=false, memory=u64::MAX))]
     #[expect(
         clippy::too_many_arguments,
         reason = "keyword arguments of one Python call"
@@ -103,11 +103,13 @@ impl PyLive {
         tolerance: f64,
         deterministic: bool,
         converged: bool,
+        memory: u64,
     ) -> PyResult<Self> {
         let settings = Dynamics {
             time_step,
             iterations,
             deterministic,
+            memory,
             ..dynamics(substeps, damping, retardation, tolerance)
         };
         let surface = PyDisplay::surface(problem, triangles, tags, voxel_size)?;

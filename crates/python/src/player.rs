@@ -77,7 +77,7 @@ impl PyScene {
     /// (m) of the boxes of the drawn objects.
     #[new]
     #[pyo3(signature = (problem, triangles, tags, voxel_size, *, topology=1, controls=vec![], probes=vec![],
-        substeps=None, damping=None, retardation=0.0, tolerance=1e-4, surfaces=vec![], middles=vec![]))]
+        substeps=None, damping=None, retardation=0.0, tolerance=1e-4, surfaces=vec![], middles=vec![], memory=u64::MAX))]
     #[expect(
         clippy::too_many_arguments,
         reason = "keyword arguments of one Python call"
@@ -96,6 +96,7 @@ impl PyScene {
         tolerance: f64,
         surfaces: Vec<String>,
         middles: Vec<Vec3>,
+        memory: u64,
     ) -> PyResult<Self> {
         let control = |(value, loads)| Control { value, loads };
         let probe = |(name, vertices, weights)| Probe {
@@ -117,7 +118,10 @@ impl PyScene {
             triangles: rows("triangles", &triangles)?,
             tags: tags.as_array().to_vec(),
             voxel_size,
-            settings: dynamics(substeps, damping, retardation, tolerance),
+            settings: Dynamics {
+                memory,
+                ..dynamics(substeps, damping, retardation, tolerance)
+            },
             cast: Cast {
                 topology,
                 controls: controls.into_iter().map(control).collect(),

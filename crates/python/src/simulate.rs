@@ -354,8 +354,8 @@ impl PyProblem {
             end_time,
             max_time,
             tolerance,
-            deterministic: false,
             record_interval,
+            ..Dynamics::default()
         };
         let problem = self.now();
         let state = State::at_rest(problem.body());

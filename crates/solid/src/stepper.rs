@@ -25,6 +25,9 @@ pub enum LiveStatus {
     /// The step was reduced as far as allowed and the body still blew up. The state is the last good one and stays
     /// until loads or grabs change.
     Diverged,
+    /// A step takes about this many bytes, which is more memory than there is. The state stays until loads or grabs
+    /// change.
+    OutOfMemory(u64),
 }
 
 /// Summary of a run after an advance.

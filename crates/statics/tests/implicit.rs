@@ -13,7 +13,7 @@ use voxsoft_solid::{
     Ask, Body, Clamp, Damping, Floor, HyperelasticMaterial, LatticeMaterial, LiveStatus, Load,
     Look, Material, Model, PointForces, Pressure, Problem, Stepper,
 };
-use voxsoft_statics::{Implicit, ImplicitSettings, Settings};
+use voxsoft_statics::{Implicit, ImplicitSettings, LinearSolver, Settings};
 use voxsoft_voxel::Grid;
 
 /// Relative tolerance of positions. At rest the residual is below 1e-4 of the load; slender bodies turn that into about
@@ -25,6 +25,8 @@ const SWING: ImplicitSettings = ImplicitSettings {
     damping: Damping::Rate(0.0),
     retardation: 0.0,
     tolerance: 1e-30,
+    linear: LinearSolver::Auto,
+    memory: u64::MAX,
 };
 
 fn run_of(problem: &Problem) -> Implicit {

@@ -57,12 +57,25 @@ impl IterativeSystem {
         options: LinearOptions,
         make: MakeBackend,
     ) -> Result<Option<Self>, FactorError> {
+        if !problem.is_conservative() {
+            return Ok(None);
+        }
+        Self::of_symmetric(problem, held, options, make)
+    }
+
+    /// The same for a tangent from which the caller leaves out loads without a potential, so that it is symmetric.
+    pub fn of_symmetric(
+        problem: &Problem,
+        held: &[[bool; 3]],
+        options: LinearOptions,
+        make: MakeBackend,
+    ) -> Result<Option<Self>, FactorError> {
         let body = problem.body();
         let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.small_hex8s().len();
         let loads = problem.loads().iter();
         let local = body.attached().all(Term::is_local)
             && loads.map(|load| &load.kind).all(|kind| kind.is_local());
-        if !whole || !local || !problem.is_conservative() {
+        if !whole || !local {
             return Ok(None);
         }
         let Some(mut cells) = cells_of(body) else {
@@ -144,6 +157,48 @@ impl IterativeSystem {
                 matrices,
             });
         });
+    }
+
+    /// Assembles element matrices that `visit` passes on, many at a time.
+    pub fn assemble_batches(&mut self, visit: impl FnOnce(&mut dyn FnMut(Elements<'_>))) {
+        self.lifted = 0.0;
+        self.matrix.clear();
+        let mut target = Target {
+            places: &self.places,
+            held: &self.held,
+            matrix: &mut self.matrix,
+        };
+        visit(&mut |elements| target.add(elements));
+    }
+
+    /// Diagonal of the assembled tangent on free coordinates.
+    pub fn diagonal(&self) -> Vec<f64> {
+        let block = |&place: &u32| self.matrix.diagonal_block(place as usize);
+        let blocks = self.places.iter().map(block);
+        blocks
+            .flat_map(|block| [block[0], block[4], block[8]])
+            .collect()
+    }
+
+    /// Sets that diagonal; held coordinates stay as they are.
+    pub fn set_diagonal(&mut self, diagonal: &[f64]) {
+        let (vectors, _) = diagonal.as_chunks::<3>();
+        for ((&row, held), vector) in self.places.iter().zip(&self.held).zip(vectors) {
+            let place = self.matrix.diagonal_place(row as usize);
+            for axis in 0..3 {
+                if !held[axis] {
+                    self.matrix
+                        .upper
+                        .values
+                        .set(place, axis, axis, vector[axis]);
+                }
+            }
+        }
+    }
+
+    /// Row of a coordinate, if it is free.
+    pub fn row_of(&self, vertex: usize, axis: usize) -> Option<usize> {
+        (!self.held[vertex][axis]).then_some(3 * vertex + axis)
     }
 
     /// Adds the outer products of vectors of free coordinates to the assembled tangent.

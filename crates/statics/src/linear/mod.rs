@@ -7,7 +7,7 @@ pub mod conformance;
 pub(crate) mod conjugate_gradients;
 pub(crate) mod direct;
 pub(crate) mod error;
-mod iterative;
+pub(crate) mod iterative;
 pub(crate) mod lattice_product;
 mod low_rank_update;
 mod multigrid;

@@ -4,8 +4,8 @@ use crate::linear::backend::{Backend, MakeBackend};
 use crate::linear::error::FactorError;
 use crate::linear::multigrid::{BlockMatrix, Cell, Coloring, Hierarchy};
 
-/// Number of vertices from which a body is solved iteratively: measured with `benchmarks/statics.py`.
-const LARGE: usize = 4_000;
+/// Number of vertices from which an equilibrium is solved iteratively: measured with `benchmarks/statics.py`.
+pub(crate) const LARGE: usize = 4_000;
 
 /// Solver of the linear systems of Newton's method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,12 +33,12 @@ impl LinearSolver {
         names.find(|own| own.0 == name).map(|own| own.1)
     }
 
-    /// Back end of conjugate gradients for a body with a number of vertices; `None` for a direct factor. Back ends are
-    /// named here and nowhere else.
-    pub(crate) fn backend(self, vertices: usize) -> Option<MakeBackend> {
+    /// Back end of conjugate gradients for a body with a number of vertices, of which `large` are enough; `None` for a
+    /// direct factor. Back ends are named here and nowhere else.
+    pub(crate) fn backend(self, vertices: usize, large: usize) -> Option<MakeBackend> {
         match self {
             Self::Direct => None,
-            Self::Auto if vertices < LARGE => None,
+            Self::Auto if vertices < large => None,
             Self::Auto | Self::Iterative => Some(multigrid),
         }
     }

@@ -9,7 +9,7 @@ use super::conjugate_gradients::{End, Equation, conjugate_gradients};
 use super::iterative::IterativeSystem;
 use super::multigrid::Block;
 use super::operator::LinearOperator;
-use super::options::{LinearOptions, LinearSolver};
+use super::options::{LARGE, LinearOptions, LinearSolver};
 use crate::sensitivity::adjoint::AdjointError;
 
 /// Tangent of a problem under its whole load, assembled for conjugate gradients.
@@ -48,7 +48,7 @@ impl Stiffness {
             solver: LinearSolver::Iterative,
             memory,
         };
-        let Some(make) = options.solver.backend(positions.len()) else {
+        let Some(make) = options.solver.backend(positions.len(), LARGE) else {
             return Ok(None);
         };
         let Some(mut system) = IterativeSystem::new(problem, problem.held(), options, make)? else {

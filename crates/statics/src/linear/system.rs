@@ -8,7 +8,7 @@ use crate::linear::direct::{DirectFactor, DirectSystem};
 use crate::linear::error::FactorError;
 use crate::linear::iterative::{IterativeFactor, IterativeSystem};
 use crate::linear::low_rank_update::{LowRankUpdate, UpdateSolutions};
-use crate::linear::options::LinearOptions;
+use crate::linear::options::{LARGE, LinearOptions};
 
 /// Tangent of a problem, kept with its sparsity pattern for many assemblies.
 ///
@@ -44,7 +44,8 @@ impl System {
         held: &[[bool; 3]],
         options: LinearOptions,
     ) -> Result<Self, FactorError> {
-        let backend = options.solver.backend(problem.body().rest().len());
+        let vertices = problem.body().rest().len();
+        let backend = options.solver.backend(vertices, LARGE);
         let tangent = if let Some(make) = backend
             && let Some(system) = IterativeSystem::new(problem, held, options, make)?
         {

@@ -16,7 +16,7 @@ use super::direct::{DirectFactor, DirectSystem};
 use super::iterative::IterativeSystem;
 use super::lattice_product::LatticeProduct;
 use super::operator::{Jacobi, LinearOperator, Preconditioner, RankUpdated};
-use super::options::{LinearOptions, LinearSolver};
+use super::options::{LARGE, LinearOptions, LinearSolver};
 
 /// Tolerance of solutions: that of derivatives, which rounding in the slower directions leaves possible.
 const TOLERANCE: f64 = 1e-8;
@@ -205,7 +205,9 @@ impl Preconditioner for Exact<'_> {
 }
 
 pub(crate) fn multigrid() -> MakeBackend {
-    LinearSolver::Iterative.backend(0).expect("a back end")
+    LinearSolver::Iterative
+        .backend(0, LARGE)
+        .expect("a back end")
 }
 
 #[test]

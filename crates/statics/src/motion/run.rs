@@ -6,6 +6,7 @@ use voxsoft_solid::vector::{Vec3, axpy, sub};
 use voxsoft_solid::{Damping, Grab, LiveStatus, Past, Problem, State};
 
 use super::scheme::{Stage, Start};
+use crate::linear::options::LinearSolver;
 
 /// Settings of a motion by implicit steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +20,10 @@ pub struct ImplicitSettings {
     pub retardation: f64,
     /// Tolerance of rest: of the relative residual force, and of the kinetic energy over the elastic energy.
     pub tolerance: f64,
+    /// Solver of the linear systems of [`crate::Implicit`] steps.
+    pub linear: LinearSolver,
+    /// Most bytes of the tangent.
+    pub memory: u64,
 }
 
 impl Default for ImplicitSettings {
@@ -28,6 +33,8 @@ impl Default for ImplicitSettings {
             damping: Damping::Critical,
             retardation: 0.0,
             tolerance: 1e-4,
+            linear: LinearSolver::Auto,
+            memory: u64::MAX,
         }
     }
 }

@@ -47,6 +47,7 @@ impl<S: InnerSearch> Stepper for Integrator<S> {
             match self.take_whole_step(&mut |_| go_on(Ask::Within)) {
                 Ok(()) => self.judge(),
                 Err(Stop::Cancelled) => break,
+                Err(Stop::Memory(bytes)) => self.run.status = LiveStatus::OutOfMemory(bytes),
                 Err(stop) => {
                     self.run.status = LiveStatus::Diverged;
                     self.run.breakdown = Some(self.run.place_of(&stop));

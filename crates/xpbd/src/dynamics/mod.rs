@@ -47,6 +47,8 @@ pub struct Dynamics {
     pub deterministic: bool,
     /// Interval of records by the observer in s (rounded to steps).
     pub record_interval: Option<f64>,
+    /// Most bytes of the tangent of implicit steps, for a body that needs them.
+    pub memory: u64,
 }
 
 impl Default for Dynamics {
@@ -62,6 +64,7 @@ impl Default for Dynamics {
             tolerance: 1e-4,
             deterministic: false,
             record_interval: None,
+            memory: usize::MAX as u64,
         }
     }
 }

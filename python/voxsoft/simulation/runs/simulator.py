@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from voxsoft import _core
+from voxsoft._memory import memory_limit
 from voxsoft.design import Design, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.records import Record
@@ -235,6 +236,7 @@ class Simulator:
             retardation=settings.retardation,
             tolerance=settings.tolerance,
             converged=converges_each_step(self.design),
+            memory=memory_limit(),
         )
         if self._live.method == "implicit":
             self._live.prefer_step(settings.time_step)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
+from voxsoft._memory import memory_limit
 from voxsoft.design.contact import names_of
 from voxsoft.studio.bodies.body import StudioBody
 from voxsoft.studio.bodies.objects import touches_live
@@ -55,6 +56,7 @@ def scene_of(body: StudioBody, probes: Sequence[Probe] | None = None) -> _core.S
         tolerance=TOLERANCE,
         surfaces=surfaces,
         middles=middles,
+        memory=memory_limit(),
     )
 
 

@@ -77,6 +77,12 @@ impl Values {
         [*high, *low] = split(factor * value);
     }
 
+    /// Sets a number of a block.
+    pub fn set(&mut self, place: usize, row: usize, column: usize, value: f64) {
+        let at = 3 * column + row;
+        [self.high[place][at], self.low[place][at]] = split(value);
+    }
+
     /// Splits into parts of `counts` blocks, one after the other.
     pub fn parts(&mut self, counts: impl Iterator<Item = usize>) -> Vec<Part<'_>> {
         let (mut high, mut low) = (self.high.as_mut_slice(), self.low.as_mut_slice());

@@ -167,9 +167,11 @@ impl Motion {
             damping: settings.damping,
             retardation: settings.retardation,
             tolerance: settings.tolerance,
+            memory: settings.memory,
+            ..ImplicitSettings::default()
         };
         let mut run = Run::new(problem, own, start);
-        match Newton::new(&mut run, settings.memory) {
+        match Newton::new(&mut run) {
             Ok(search) => Ok(Self::begun(run, search)),
             Err(error) => Err((error, Box::new(run))),
         }

@@ -36,7 +36,8 @@ pub struct Newton {
 
 impl Newton {
     /// Starts from the state of a run.
-    pub(super) fn new(run: &mut Run, memory: u64) -> Result<Self, FactorError> {
+    pub(super) fn new(run: &mut Run) -> Result<Self, FactorError> {
+        let memory = run.settings.memory;
         let inertia = Arc::new(Inertia::new(run.problem.body().masses()));
         begin_fluid(run);
         Ok(Self {

@@ -13,13 +13,16 @@
 //! with an old one have cost as much.
 
 mod contact;
+mod factorized;
 mod floor;
 mod guess;
+mod inverse;
 mod lagged;
 mod line;
 mod minimize;
 mod objective;
 mod pairs;
+mod preconditioned;
 mod pressures;
 mod search;
 mod turns;
@@ -38,7 +41,6 @@ use super::integrator::{Asker, Integrator, Stop};
 use super::run::{ImplicitSettings, Run};
 use super::stepper::STEPS;
 use crate::linear::options::LinearOptions;
-use crate::linear::options::LinearSolver;
 
 /// Most moves of one search; another follows with a fresh tangent.
 const MOST_MOVES: u32 = 8;
@@ -57,11 +59,6 @@ const ROUGH: f64 = 10.0;
 const SEARCHES_IN_CONTACT: u32 = 6;
 /// Largest ratio of the inertia of a step to that of the factor, or its inverse.
 const INERTIA_RANGE: f64 = 1.5;
-/// Direct factorization of the tangent, whatever its size.
-const LINEAR_OPTIONS: LinearOptions = LinearOptions {
-    solver: LinearSolver::Direct,
-    memory: u64::MAX,
-};
 /// Rounds of a step in which vertices may touch the floor or leave it.
 const FLOOR_ROUNDS: u32 = 3;
 
@@ -263,9 +260,13 @@ impl QuasiNewton {
         tangent: Tangent,
     ) -> Result<(), Stop> {
         let problem = &run.problem;
+        let options = LinearOptions {
+            solver: run.settings.linear,
+            memory: run.settings.memory,
+        };
         let lagged = match &mut self.lagged {
             Some(lagged) if !self.pattern_changed => lagged,
-            lagged => lagged.insert(Lagged::new(problem, LINEAR_OPTIONS)?),
+            lagged => lagged.insert(Lagged::new(problem, options)?),
         };
         self.pattern_changed = false;
         lagged.assemble(problem, positions, goal.time, goal.within, tangent);
