@@ -1,6 +1,6 @@
 //! Coulomb friction with the multipliers, bounds and anchors of samples.
 
-use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
+use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 
 use super::law::{Along, Law, Tangential};
 use super::state::{ContactState, SampleMemory};
@@ -115,5 +115,43 @@ impl SurfaceContact {
                 take(sample, friction);
             }
         }
+    }
+
+    /// Friction on each vertex in N: samples share it in many ways, between which multipliers may change without motion.
+    pub(super) fn friction_on_vertices(
+        &self,
+        state: &ContactState,
+        positions: &[Vec3],
+    ) -> Vec<Vec3> {
+        let mut forces = vec![[0.0; 3]; positions.len()];
+        self.each_friction(state, positions, |sample, friction| {
+            self.add_force(friction.found.force, friction.spot(sample), &mut forces);
+        });
+        forces
+    }
+
+    /// See [`voxsoft_solid::Contact::deviation`].
+    pub(super) fn deviation_of_friction(&self, positions: &[Vec3], ratio: f64) -> Option<f64> {
+        let mut bonds = self.description.bonds.iter();
+        if bonds.any(|bond| bond.strength.is_finite()) {
+            return None;
+        }
+        let rubs = self.friction_on_vertices(&self.state, positions);
+        let [last, before] = &self.state.accepted_friction;
+        let mut deviation = 0.0;
+        for (vertex, force) in rubs.iter().enumerate() {
+            let at = |forces: &[Vec3]| forces.get(vertex).copied().unwrap_or_default();
+            let (last, before) = (at(last), at(before));
+            let mut off = sub(*force, last);
+            axpy(&mut off, -ratio, sub(last, before));
+            deviation += norm(off);
+        }
+        let size = |forces: &[Vec3]| -> f64 { forces.iter().map(|force| norm(*force)).sum() };
+        let rubbed = size(last);
+        if rubbed == 0.0 && size(&rubs) > 0.0 {
+            return None;
+        }
+        let bound: f64 = self.state.now.iter().map(|memory| memory.bound).sum();
+        Some(if bound > 0.0 { deviation / bound } else { 0.0 })
     }
 }

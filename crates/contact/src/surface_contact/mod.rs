@@ -23,6 +23,7 @@
 //! samples move along.
 
 mod across;
+mod anchors;
 pub mod bonds;
 mod edges;
 mod facing;

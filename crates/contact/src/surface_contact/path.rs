@@ -3,15 +3,15 @@
 use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet};
 
-use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
+use voxsoft_solid::vector::{Vec3, norm, scale, sub};
 use voxsoft_solid::{Contact, ContactMemory};
 
 use super::state::{BeforePrediction, ContactState, Facing, Hold, Recording, SampleMemory};
 use super::{
-    APART, BOUND, CREEP, ContactPair, DEEPEST, LOOKS, LOST, PATIENCE, PRECISE, STICK, STIFFER,
-    STRAYED, Spot, SurfaceContact, listing,
+    APART, BOUND, CREEP, DEEPEST, LOOKS, LOST, PATIENCE, PRECISE, STICK, STIFFER, STRAYED, Spot,
+    SurfaceContact, listing,
 };
-use crate::gap::{self, normal};
+use crate::gap;
 use crate::surface::Carried;
 use crate::threads;
 
@@ -19,8 +19,6 @@ use crate::threads;
 /// many triangles, and a diverging iteration any.
 const WASTE: usize = 2;
 const MANY: usize = 100;
-/// Smallest cosine between the normals of a triangle and of the plane of friction for which the place across is used.
-const LEAST_LEAN: f64 = 0.5;
 /// Largest extrapolation of multipliers, in steps.
 const LONGEST_EXTRAPOLATION: f64 = 2.0;
 
@@ -219,27 +217,7 @@ impl Contact for SurfaceContact {
     }
 
     fn deviation(&self, positions: &[Vec3], ratio: f64) -> Option<f64> {
-        let mut bonds = self.description.bonds.iter();
-        if bonds.any(|bond| bond.strength.is_finite()) {
-            return None;
-        }
-        let rubs = self.friction_on_vertices(&self.state, positions);
-        let [last, before] = &self.state.accepted_friction;
-        let mut deviation = 0.0;
-        for (vertex, force) in rubs.iter().enumerate() {
-            let at = |forces: &[Vec3]| forces.get(vertex).copied().unwrap_or_default();
-            let (last, before) = (at(last), at(before));
-            let mut off = sub(*force, last);
-            axpy(&mut off, -ratio, sub(last, before));
-            deviation += norm(off);
-        }
-        let size = |forces: &[Vec3]| -> f64 { forces.iter().map(|force| norm(*force)).sum() };
-        let rubbed = size(last);
-        if rubbed == 0.0 && size(&rubs) > 0.0 {
-            return None;
-        }
-        let bound: f64 = self.state.now.iter().map(|memory| memory.bound).sum();
-        Some(if bound > 0.0 { deviation / bound } else { 0.0 })
+        self.deviation_of_friction(positions, ratio)
     }
 
     fn accept(&mut self, positions: &[Vec3]) {
@@ -475,82 +453,6 @@ impl SurfaceContact {
             .map(|[change, size]| change.abs() / (BOUND[0] * size.max(negligible)));
         // A ratio 0/0 without any bound counts as zero.
         of_vertices.chain(of_pairs).fold(0.0, f64::max)
-    }
-
-    /// Friction on each vertex in N: samples share it in many ways, between which multipliers may change without motion.
-    fn friction_on_vertices(&self, state: &ContactState, positions: &[Vec3]) -> Vec<Vec3> {
-        let mut forces = vec![[0.0; 3]; positions.len()];
-        self.each_friction(state, positions, |sample, friction| {
-            self.add_force(friction.found.force, friction.spot(sample), &mut forces);
-        });
-        forces
-    }
-
-    /// Foot of a sample on the triangle that it faces.
-    fn foot(&self, meeting: &ContactPair, points: &[Vec3]) -> (u32, [f64; 3]) {
-        let weights = match meeting.facing {
-            Facing::Across(..) => meeting.weights,
-            _ => {
-                let point = self.place(meeting.sample, meeting.along, points);
-                gap::affine(point, self.corners(meeting.triangle, points))
-            }
-        };
-        (meeting.triangle, weights)
-    }
-
-    /// Place on the triangle that a sample faces from which it has not slipped in the `plane` of friction of this normal,
-    /// so that an anchor there leaves friction as it is: the sides of a gap lean from each other.
-    fn foot_across(&self, meeting: &ContactPair, plane: Vec3, points: &[Vec3]) -> (u32, [f64; 3]) {
-        let corners = self.corners(meeting.triangle, points);
-        let outward = normal(corners);
-        let lean = dot(plane, outward);
-        if matches!(meeting.facing, Facing::Across(..)) || lean <= LEAST_LEAN {
-            return self.foot(meeting, points);
-        }
-        let mut point = self.place(meeting.sample, meeting.along, points);
-        let height = dot(sub(point, corners[0]), outward);
-        axpy(&mut point, -height / lean, plane);
-        (meeting.triangle, gap::affine(point, corners))
-    }
-
-    /// First anchor of a sample that has come into contact since the last accepted state: the place where it met the
-    /// surface, back along its way by the ratio of the gaps. An edge sticks where it first presses at an equilibrium.
-    /// Returns the place on the triangle, the place on the edge, and the part of the step that remained.
-    pub(super) fn first_anchor(
-        &self,
-        state: &ContactState,
-        meeting: &ContactPair,
-        points: &[Vec3],
-    ) -> ((u32, [f64; 3]), f64, f64) {
-        if matches!(meeting.facing, Facing::Across(..)) {
-            return (self.foot(meeting, points), meeting.along, 0.0);
-        }
-        let point = points[meeting.sample as usize];
-        let corners = self.corners(meeting.triangle, points);
-        let before = self.corners(meeting.triangle, &state.accepted_points);
-        let start = state.accepted_points[meeting.sample as usize];
-        let first = gap::affine(start, before);
-        let mut foot = [0.0; 3];
-        let mut foot_now = [0.0; 3];
-        for c in 0..3 {
-            axpy(&mut foot, first[c], before[c]);
-            axpy(&mut foot_now, first[c], corners[c]);
-        }
-        let clearance = self.mobility(meeting) * self.clearance(meeting.sample);
-        let gap_before = dot(sub(start, foot), normal(before)) - clearance;
-        let gap_now = meeting.gap - clearance;
-        let given = state.given_since.get(meeting.sample as usize);
-        let since = if let Some(given) = given {
-            *given
-        } else if gap_before > 0.0 && gap_before > gap_now {
-            1.0 - gap_before / (gap_before - gap_now.min(0.0))
-        } else {
-            1.0
-        };
-        // A contact that only just begins has `since` near 0: it has not slipped yet.
-        let slip = sub(point, foot_now);
-        let anchor = add(point, scale(-since, slip));
-        ((meeting.triangle, gap::affine(anchor, corners)), 0.0, since)
     }
 
     /// Updates the faces that samples meet: of all of them, or of those that have strayed from theirs.

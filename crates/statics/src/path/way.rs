@@ -1,8 +1,8 @@
 //! Longest step along a path that depends on the way: with friction, bonds that may break, or loads with a memory.
 //!
 //! Friction of a step is that of its end, from anchors at its start (return mapping). This is exact where friction
-//! changes linearly along the step, as under loads that grow together and press what they rub, and wrong in the second
-//! order of the step elsewhere. So steps lengthen where friction follows the line through the last two states
+//! changes linearly along the step, as under loads that grow together and press the places that they rub, and wrong in
+//! the second order of the step elsewhere. So steps lengthen where friction follows the line through the last two states
 //! ([`Contact::deviation`]).
 
 use voxsoft_solid::{Contact, Problem};
