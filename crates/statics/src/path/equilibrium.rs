@@ -633,9 +633,9 @@ impl Equilibrium {
     }
 
     /// Factorizes the tangent for a mixed iteration. Far from equilibrium the tangent may be indefinite, and mixed
-    /// iterations are no descent method anyway; but with surfaces that press they diverge from there.
+    /// iterations are no descent method anyway; but with contact they diverge from there.
     fn carried(&mut self) -> Result<Factor, Failure> {
-        if !self.presses || !self.problem.is_conservative() {
+        if self.problem.contact().is_none() || !self.problem.is_conservative() {
             return Ok(self.system.factor(0.0)?);
         }
         match self.system.factor_positive(0.0) {
