@@ -24,8 +24,8 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
     pairs.map(|(a, b)| norm(sub(*a, *b))).fold(0.0, f64::max)
 }
 
-/// Positions after some steps, and a bound on what is left of all searches there: the last move of each, which goes on
-/// as an error of the velocity in every later step.
+/// Positions after some steps, and a bound on the error that all searches have left there: the last move of each, which
+/// goes on as an error of the velocity in every later step.
 fn moved(problem: &Problem, settings: ImplicitSettings, steps: u32) -> (Vec<Vec3>, f64) {
     let mut run = Implicit::new(problem.clone(), settings);
     let mut left = 0.0;
@@ -124,7 +124,7 @@ fn hands_and_the_floor_work_with_both_solvers() {
         assert_eq!(run.advance(600).status, LiveStatus::AtRest);
         (pulled, run.state().positions.clone())
     });
-    // Friction is absent, so that the block may glide by what is left of each step: shapes are compared by heights.
+    // Without friction the block may glide by the error of each step: shapes are compared by heights.
     let heights = |positions: &[Vec3]| {
         positions
             .iter()

@@ -63,7 +63,7 @@ impl IterativeSystem {
         Self::of_symmetric(problem, held, options, make)
     }
 
-    /// The same for a tangent from which the caller leaves out loads without a potential, so that it is symmetric.
+    /// Makes the system of a tangent without the loads that have no potential, so that it is symmetric.
     pub fn of_symmetric(
         problem: &Problem,
         held: &[[bool; 3]],

@@ -40,7 +40,7 @@ pub(super) trait Inverse: Send {
     /// Expands free coordinates into vectors on vertices, zero where held.
     fn spread(&self, free: &[f64]) -> Vec<Vec3>;
 
-    /// Assembles the stiffness `K`; what was factorized before is lost.
+    /// Assembles the stiffness `K`, and discards the factor.
     fn assemble(&mut self, visit: Visit<'_>);
 
     /// Factorizes with a diagonal `D` (N/m); returns `false` if the sum was found not to be positive definite.

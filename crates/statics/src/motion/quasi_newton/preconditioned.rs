@@ -1,8 +1,8 @@
 //! Iterative solver of the lagged tangent of large bodies.
 //!
-//! Conjugate gradients with a multigrid V-cycle, stopped early: a move has to lower the potential, and the moves after
-//! it find what it has left. Inertia helps little: in a step of a frame's length waves of shear run across some twenty
-//! voxels and more, so that coarse levels matter nearly as much as at rest.
+//! Conjugate gradients with a multigrid V-cycle, stopped early: a move has to lower the potential, and later moves find
+//! the rest. Inertia helps little: in a step of a frame's length waves of shear run across twenty voxels and more, so that
+//! coarse levels matter nearly as much as at rest.
 
 use voxsoft_solid::assembly::Elements;
 use voxsoft_solid::vector::Vec3;
