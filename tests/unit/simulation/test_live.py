@@ -208,3 +208,15 @@ def test_the_deterministic_way_differs_by_rounding_alone(setup):
     plain.advance(500)
     moved = np.abs(plain.positions() - setup.mesh.vertices).max()
     assert np.abs(quick.positions() - plain.positions()).max() < 1e-9 * moved
+
+
+def test_implicit_steps_keep_to_a_limit_of_memory():
+    material = vs.NeoHookean(young=60 * kPa, poisson=0.49, density=1070.0)
+    design = beam()
+    design = design.replace(parts=[part.replace(material=material) for part in design.parts])
+    rubber = Setup.of(design)
+    assert live_of(rubber).advance(1).taken == 1
+    live = live_of(rubber, memory=10_000)
+    with pytest.raises(MemoryError, match=r"about \d+ bytes"):
+        live.advance(1)
+    assert (live.positions() == rubber.mesh.vertices).all()
