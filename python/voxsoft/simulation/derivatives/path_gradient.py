@@ -120,20 +120,7 @@ def _recorded_path(setup: Setup, result: Result) -> tuple[_core.Problem, list[fl
     """Return the problem at the end of a path recorded by its contact, and the load factors."""
     used = result.solver
     settings = LoadControl(tolerance=used["tolerance"], first_step=used["first_step"])
-    if has_friction(setup.design) and settings.tolerance > LARGEST_WITH_FRICTION:
-        raise SimulationError(
-            "gradient",
-            f"a tolerance of {settings.tolerance:g} is too much for a derivative with friction",
-            f"solve with a tolerance of {LARGEST_WITH_FRICTION:g} or less",
-        )
     _, report = find_equilibrium(setup, settings, None, _core.recording(setup.problem))
-    off = float(np.abs(report.answer.positions - result.positions).max())
-    if not off <= _SAME * setup.design.voxel_size:
-        raise SimulationError(
-            "gradient",
-            "the load path of this result ends elsewhere when it is followed again",
-            "solve it again, and differentiate that result",
-        )
     points = path_of(report.answer).points
     # The residual of this path, not of the result: friction anchors have moved along since.
     check_residual(float(points[-1, 2]))
@@ -158,6 +145,19 @@ def _recorded_path(setup: Setup, result: Result) -> tuple[_core.Problem, list[fl
             "with friction derivatives are known only for what touches from the first step on",
             "let it touch in the unloaded body, set the friction to 0, or use a sampler without "
             "gradients",
+        )
+    if has_friction(setup.design) and settings.tolerance > LARGEST_WITH_FRICTION:
+        raise SimulationError(
+            "gradient",
+            f"a tolerance of {settings.tolerance:g} is too much for a derivative with friction",
+            f"solve with a tolerance of {LARGEST_WITH_FRICTION:g} or less",
+        )
+    off = float(np.abs(report.answer.positions - result.positions).max())
+    if not off <= _SAME * setup.design.voxel_size:
+        raise SimulationError(
+            "gradient",
+            "the load path of this result ends elsewhere when it is followed again",
+            "solve it again, and differentiate that result",
         )
     factors: list[float] = points[:, 0].tolist()
     return report.answer.problem, factors
