@@ -11,7 +11,7 @@ use crate::path::load_control::LAST;
 
 /// Longest step whatever friction does, as a part of the path.
 const SHORT: f64 = 0.05;
-/// First step of a path, which has no past to judge it by: what touches from the start on mostly rubs along a line.
+/// First step of a path, which has no past to judge it by: contact from the start on mostly rubs along a line.
 const FIRST: f64 = 0.25;
 /// Longest step if only loads are path-dependent: the contact of a tendon is found from one state to the next, and
 /// slides on in the same sense under loads that grow together.
@@ -40,6 +40,8 @@ pub(crate) struct Way {
     longest: Option<f64>,
     /// True until a step was taken.
     begins: bool,
+    /// True once friction has begun later: it grows from nothing then, on no line, and all steps are short.
+    late: bool,
 }
 
 impl Way {
@@ -52,6 +54,7 @@ impl Way {
                 .and_then(|contact| contact.deviation(problem.body().rest(), 0.0))
                 .map(|_| FIRST),
             begins: true,
+            late: false,
         }
     }
 
@@ -60,6 +63,7 @@ impl Way {
         Self {
             longest: None,
             begins: false,
+            late: false,
         }
     }
 
@@ -75,10 +79,14 @@ impl Way {
         let Some(longest) = &mut self.longest else {
             return true;
         };
-        let Some(deviation) = deviation else {
-            let most = if begins { FIRST } else { SHORT };
-            *longest = most;
-            return step <= LAST * most * (1.0 + ROUNDING);
+        self.late |= deviation.is_none() && !begins;
+        let deviation = match deviation {
+            Some(deviation) if !self.late => deviation,
+            _ => {
+                let most = if begins { FIRST } else { SHORT };
+                *longest = most;
+                return step <= LAST * most * (1.0 + ROUNDING);
+            }
         };
         if deviation <= STRAIGHT {
             *longest = longest.max(LONGER * step).min(1.0);
@@ -98,6 +106,7 @@ mod tests {
         let mut way = Way {
             longest: Some(FIRST),
             begins: true,
+            late: false,
         };
         assert!(way.judge(FIRST, None), "nothing is known of a first step");
         assert_eq!(way.longest(), Some(FIRST));
@@ -106,6 +115,8 @@ mod tests {
         assert!(!way.judge(1.0, None), "friction that begins in a long step");
         assert_eq!(way.longest(), Some(SHORT));
         assert!(way.judge(SHORT, None));
+        assert!(way.judge(SHORT, Some(0.0)));
+        assert_eq!(way.longest(), Some(SHORT));
     }
 
     #[test]
@@ -113,6 +124,7 @@ mod tests {
         let mut way = Way {
             longest: Some(1.0),
             begins: true,
+            late: false,
         };
         assert!(!way.judge(1.0, Some(2.0 * CROOKED)));
         assert_eq!(way.longest(), Some(0.25));
