@@ -38,7 +38,7 @@ pub(crate) fn longest_step(problem: &Problem) -> f64 {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Way {
     longest: Option<f64>,
-    /// True until a step was taken.
+    /// True until a step was taken, if surfaces press on each other from the start on.
     begins: bool,
     /// True once friction has begun later: it grows from nothing then, on no line, and all steps are short.
     late: bool,
@@ -53,7 +53,7 @@ impl Way {
             longest: contact
                 .and_then(|contact| contact.deviation(problem.body().rest(), 0.0))
                 .map(|_| FIRST),
-            begins: true,
+            begins: contact.is_some_and(|contact| contact.is_touching(problem.body().rest())),
             late: false,
         }
     }
