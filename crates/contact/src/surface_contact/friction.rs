@@ -130,10 +130,17 @@ impl SurfaceContact {
         forces
     }
 
+    /// Tests whether a surface has friction with itself: both sides of a fold that closes slip on each other, and no line
+    /// through two states tells how.
+    pub(super) fn rubs_itself(&self) -> bool {
+        let friction = &self.description.friction;
+        (0..friction.len()).any(|surface| friction[surface][surface] > 0.0)
+    }
+
     /// See [`voxsoft_solid::Contact::deviation`].
     pub(super) fn deviation_of_friction(&self, positions: &[Vec3], ratio: f64) -> Option<f64> {
         let mut bonds = self.description.bonds.iter();
-        if bonds.any(|bond| bond.strength.is_finite()) {
+        if bonds.any(|bond| bond.strength.is_finite()) || self.rubs_itself() {
             return None;
         }
         let rubs = self.friction_on_vertices(&self.state, positions);

@@ -157,10 +157,8 @@ impl Contact for SurfaceContact {
 
     fn begin_prediction(&mut self) -> bool {
         // Derivatives retrace equilibria, each with the multipliers of the one before.
+        let rubs_itself = self.rubs_itself();
         let state = &mut self.state;
-        // Both sides of a fold that closes slip on each other, and are not held by where they met first.
-        let friction = &self.description.friction;
-        let rubs_itself = (0..friction.len()).any(|surface| friction[surface][surface] > 0.0);
         let may = state.recording.is_none() && !rubs_itself;
         if may {
             state.before_prediction = Some(BeforePrediction {
