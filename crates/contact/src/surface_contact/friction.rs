@@ -130,11 +130,14 @@ impl SurfaceContact {
         forces
     }
 
-    /// Tests whether a surface has friction with itself: both sides of a fold that closes slip on each other, and no line
+    /// Tests whether a surface presses on itself with friction: both sides of a fold that closes slip on each other, and no line
     /// through two states tells how.
     pub(super) fn rubs_itself(&self) -> bool {
-        let friction = &self.description.friction;
-        (0..friction.len()).any(|surface| friction[surface][surface] > 0.0)
+        let mut memories = self.samples.iter().zip(&self.state.now);
+        memories.any(|(sample, memory)| {
+            let own = |triangle: u32| self.surface_of[triangle as usize] == sample.surface;
+            memory.bound > 0.0 && memory.anchor.is_some_and(|(triangle, _)| own(triangle))
+        })
     }
 
     /// See [`voxsoft_solid::Contact::deviation`].
