@@ -1,11 +1,16 @@
 //! Coulomb friction with the multipliers, bounds and anchors of samples.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 
 use super::law::{Along, Law, Tangential};
 use super::state::{ContactState, SampleMemory};
 use super::{Spot, SurfaceContact};
-use crate::gap::unit;
+use crate::gap::{normal, unit};
+
+/// Height over the plane of a face, in voxels, up to which the next face counts as in it.
+const FLAT: f64 = 1e-6;
 
 /// Friction on one sample.
 #[derive(Debug, Clone, Copy)]
@@ -130,14 +135,44 @@ impl SurfaceContact {
         forces
     }
 
-    /// Tests whether a surface presses on itself with friction: both sides of a fold that closes slip on each other, and no line
-    /// through two states tells how.
+    /// Tests whether a surface may rub itself: both sides of a fold that closes slip on each other, and neither the place
+    /// where they met first nor a line through two states tells how. A convex surface never does.
     pub(super) fn rubs_itself(&self) -> bool {
-        let mut memories = self.samples.iter().zip(&self.state.now);
-        memories.any(|(sample, memory)| {
-            let own = |triangle: u32| self.surface_of[triangle as usize] == sample.surface;
-            memory.bound > 0.0 && memory.anchor.is_some_and(|(triangle, _)| own(triangle))
-        })
+        let friction = &self.description.friction;
+        let surfaces = self.description.surfaces.iter().enumerate();
+        surfaces
+            .filter(|(number, _)| friction[*number][*number] > 0.0)
+            .any(|(number, _)| !self.is_convex(number as u32))
+    }
+
+    /// Tests whether a surface is convex in the unloaded design: one closed component (of Euler's characteristic 2)
+    /// without an edge whose faces look at each other.
+    fn is_convex(&self, surface: u32) -> bool {
+        let own = |(_, of): &(usize, &u32)| **of == surface;
+        let triangles = self.surface_of.iter().enumerate().filter(own);
+        let mut opposite: BTreeMap<[u32; 2], Vec<(usize, u32)>> = BTreeMap::new();
+        let (mut points, mut faces) = (BTreeSet::new(), 0);
+        for (triangle, _) in triangles {
+            faces += 1;
+            let corners = self.triangles[triangle];
+            points.extend(corners);
+            for corner in 0..3 {
+                let [a, b, third] = [0, 1, 2].map(|step| corners[(corner + step) % 3]);
+                let beside = opposite.entry([a.min(b), a.max(b)]).or_default();
+                beside.push((triangle, third));
+            }
+        }
+        let near = FLAT * self.description.voxel;
+        let convex = |beside: &Vec<(usize, u32)>| {
+            beside.iter().all(|(triangle, _)| {
+                let corners = self.corners(*triangle as u32, &self.rest_points);
+                let outward = normal(corners);
+                beside.iter().all(|(_, third)| {
+                    dot(sub(self.rest_points[*third as usize], corners[0]), outward) <= near
+                })
+            })
+        };
+        points.len() + faces == opposite.len() + 2 && opposite.values().all(convex)
     }
 
     /// See [`voxsoft_solid::Contact::deviation`].
