@@ -137,7 +137,7 @@ impl SurfaceContact {
 
     /// Tests whether a surface may rub itself: both sides of a fold that closes slip on each other, and neither the place
     /// where they met first nor a line through two states tells how. A convex surface never does.
-    pub(super) fn rubs_itself(&self) -> bool {
+    pub(super) fn may_rub_itself(&self) -> bool {
         let friction = &self.description.friction;
         let surfaces = self.description.surfaces.iter().enumerate();
         surfaces
@@ -178,7 +178,7 @@ impl SurfaceContact {
     /// See [`voxsoft_solid::Contact::deviation`].
     pub(super) fn deviation_of_friction(&self, positions: &[Vec3], ratio: f64) -> Option<f64> {
         let mut bonds = self.description.bonds.iter();
-        if bonds.any(|bond| bond.strength.is_finite()) || self.rubs_itself() {
+        if bonds.any(|bond| bond.strength.is_finite()) || self.rubs_itself {
             return None;
         }
         let rubs = self.friction_on_vertices(&self.state, positions);

@@ -138,6 +138,8 @@ pub struct SurfaceContact {
     still: Vec<[bool; 3]>,
     /// True for samples within their clearance in the unloaded design; empty where `still` is.
     touching: Vec<bool>,
+    /// True if a surface may rub itself.
+    rubs_itself: bool,
     /// Triangles of all surfaces, of these points.
     triangles: Vec<[u32; 3]>,
     /// Surface of each triangle.
@@ -293,6 +295,7 @@ impl SurfaceContact {
             twins: Vec::new(),
             still: Vec::new(),
             touching: Vec::new(),
+            rubs_itself: false,
             triangles,
             surface_of,
             around,
@@ -302,6 +305,7 @@ impl SurfaceContact {
             state: ContactState::default(),
         };
         contact.ties_at = contact.ties_at(&first_sample, contact.points.len());
+        contact.rubs_itself = contact.may_rub_itself();
         Contact::reset(&mut contact, rest);
         Ok(contact)
     }

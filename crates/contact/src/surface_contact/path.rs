@@ -157,9 +157,8 @@ impl Contact for SurfaceContact {
 
     fn begin_prediction(&mut self) -> bool {
         // Derivatives retrace equilibria, each with the multipliers of the one before.
-        let rubs_itself = self.rubs_itself();
         let state = &mut self.state;
-        let may = state.recording.is_none() && !rubs_itself;
+        let may = state.recording.is_none() && !self.rubs_itself;
         if may {
             state.before_prediction = Some(BeforePrediction {
                 now: state.now.clone(),

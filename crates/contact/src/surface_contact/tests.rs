@@ -145,3 +145,43 @@ fn mirrored_contact_equals_contact_of_half() {
         }
     }
 }
+
+/// Tetrahedron with a point in its first face, moved outward by `height`.
+fn dented(height: f64) -> SurfaceContact {
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let third = 1.0 / 3.0 + height;
+    let rest = [&corners[..], &[[third; 3]]].concat();
+    let surface = Surface {
+        points: (0..5).map(Carried::vertex).collect(),
+        triangles: vec![
+            [1, 2, 4],
+            [2, 3, 4],
+            [3, 1, 4],
+            [0, 2, 1],
+            [0, 3, 2],
+            [0, 1, 3],
+        ],
+    };
+    rubbing(surface, &rest)
+}
+
+/// Contact of a surface that has friction with itself.
+fn rubbing(surface: Surface, rest: &[Vec3]) -> SurfaceContact {
+    let alone = Description {
+        friction: vec![vec![0.5]],
+        ..description(vec![surface])
+    };
+    SurfaceContact::new(alone, rest).unwrap()
+}
+
+#[test]
+fn surfaces_that_are_not_convex_may_rub_themselves() {
+    assert!(!dented(0.0).rubs_itself && !dented(0.1).rubs_itself);
+    assert!(dented(-0.1).rubs_itself);
+    assert!(!rubbing(tetrahedron(4, None), &PRESSED).rubs_itself);
+    assert!(
+        rubbing(tetrahedron(0, Some(4)), &PRESSED).rubs_itself,
+        "two components"
+    );
+    assert!(!pressed().0.rubs_itself, "no friction");
+}

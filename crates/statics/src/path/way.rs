@@ -11,7 +11,7 @@ use crate::path::load_control::LAST;
 
 /// Longest step whatever friction does, as a part of the path.
 const SHORT: f64 = 0.05;
-/// First step of a path, which has no past to judge it by: contact from the start on mostly rubs along a line.
+/// First step with friction, which has no past to judge it by.
 const FIRST: f64 = 0.25;
 /// Longest step if only loads are path-dependent: the contact of a tendon is found from one state to the next, and
 /// slides on in the same sense under loads that grow together.
@@ -36,57 +36,39 @@ pub(crate) fn longest_step(problem: &Problem) -> f64 {
 
 /// Longest step that friction allows, as the path goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Way {
-    longest: Option<f64>,
-    /// True until a step was taken, if surfaces press on each other from the start on.
-    begins: bool,
-    /// True once friction has begun later: it grows from nothing then, on no line, and all steps are short.
-    late: bool,
-}
+pub(crate) struct Way(Option<f64>);
 
 impl Way {
     /// Begins the path of a problem.
     pub fn new(problem: &Problem) -> Self {
         let rubs = |contact: &&dyn Contact| contact.depends_on_way();
         let contact = problem.contact().filter(rubs);
-        Self {
-            longest: contact
+        Self(
+            contact
                 .and_then(|contact| contact.deviation(problem.body().rest(), 0.0))
                 .map(|_| FIRST),
-            begins: contact.is_some_and(|contact| contact.is_touching(problem.body().rest())),
-            late: false,
-        }
+        )
     }
 
     /// Path whose steps are given.
     pub fn given() -> Self {
-        Self {
-            longest: None,
-            begins: false,
-            late: false,
-        }
+        Self(None)
     }
 
     /// Longest next step; `None` if friction sets none.
     pub fn longest(self) -> Option<f64> {
-        self.longest
+        self.0
     }
 
     /// Judges a step by the deviation of friction at its end, if there is a past to tell it; returns `false` if it has to
     /// be taken again, shorter.
     pub fn judge(&mut self, step: f64, deviation: Option<f64>) -> bool {
-        let begins = std::mem::take(&mut self.begins);
-        let Some(longest) = &mut self.longest else {
+        let Some(longest) = &mut self.0 else {
             return true;
         };
-        self.late |= deviation.is_none() && !begins;
-        let deviation = match deviation {
-            Some(deviation) if !self.late => deviation,
-            _ => {
-                let most = if begins { FIRST } else { SHORT };
-                *longest = most;
-                return step <= LAST * most * (1.0 + ROUNDING);
-            }
+        let Some(deviation) = deviation else {
+            *longest = FIRST;
+            return step <= LAST * FIRST * (1.0 + ROUNDING);
         };
         if deviation <= STRAIGHT {
             *longest = longest.max(LONGER * step).min(1.0);
@@ -103,29 +85,18 @@ mod tests {
 
     #[test]
     fn steps_lengthen_on_a_straight_path() {
-        let mut way = Way {
-            longest: Some(FIRST),
-            begins: true,
-            late: false,
-        };
+        let mut way = Way(Some(FIRST));
         assert!(way.judge(FIRST, None), "nothing is known of a first step");
         assert_eq!(way.longest(), Some(FIRST));
         assert!(way.judge(FIRST, Some(STRAIGHT)));
         assert_eq!(way.longest(), Some(1.0));
         assert!(!way.judge(1.0, None), "friction that begins in a long step");
-        assert_eq!(way.longest(), Some(SHORT));
-        assert!(way.judge(SHORT, None));
-        assert!(way.judge(SHORT, Some(0.0)));
-        assert_eq!(way.longest(), Some(SHORT));
+        assert_eq!(way.longest(), Some(FIRST));
     }
 
     #[test]
     fn crooked_steps_are_taken_again_until_they_are_short() {
-        let mut way = Way {
-            longest: Some(1.0),
-            begins: true,
-            late: false,
-        };
+        let mut way = Way(Some(1.0));
         assert!(!way.judge(1.0, Some(2.0 * CROOKED)));
         assert_eq!(way.longest(), Some(0.25));
         assert!(!way.judge(0.25, Some(2.0 * CROOKED)));
