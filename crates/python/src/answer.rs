@@ -171,7 +171,7 @@ pub struct PyAdvance {
 }
 
 impl PyAdvance {
-    /// A run that has ended for want of memory raises a `MemoryError`.
+    /// A run that has ended because memory did not suffice raises a `MemoryError`.
     pub(crate) fn of(look: &Look, taken: u32, seconds: f64) -> PyResult<Self> {
         Ok(Self {
             status: look.status.try_into()?,

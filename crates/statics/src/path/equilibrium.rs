@@ -109,7 +109,7 @@ pub(crate) struct Equilibrium {
     /// True if rigid objects move freely: the distance of their motion then gives no measure of rounding in their stiff
     /// springs.
     pub has_loose: bool,
-    /// True if surfaces press on each other at the positions of an iteration.
+    /// True if surfaces press on each other at the positions of an iteration, for iterative solutions.
     pub presses: bool,
     /// True while iterations predict the multipliers of contact ([`Equilibrium::newton_predicted`]).
     pub predicts: bool,
@@ -187,7 +187,11 @@ impl Equilibrium {
         if contact.is_some_and(|contact| contact.follow(positions)) {
             self.system = System::new(&self.problem, &self.held, self.options)?;
         }
-        let contact = self.problem.contact();
+        // Only iterative solutions ask, and only their bodies are so large that it costs little beside them.
+        let contact = self
+            .problem
+            .contact()
+            .filter(|_| self.system.is_iterative());
         self.presses = contact.is_some_and(|contact| contact.is_touching(positions));
         Ok(())
     }
