@@ -11,7 +11,7 @@ use super::inverse::{Change, Inverse, Visit};
 use crate::linear::error::FactorError;
 use crate::linear::iterative::{IterativeFactor, IterativeSystem};
 
-/// Relative error of a solution in the norm of the preconditioner: 0.01 takes twice the iterations and as many moves,
+/// Relative error of a solution in the norm of the preconditioner: 0.01 takes 1.8 times the iterations and as many moves,
 /// 0.2 an eighth more moves, each with an evaluation of all voxels that costs as much as five iterations.
 const TOLERANCE: f64 = 0.1;
 /// Polls, one in five iterations, after which a solution ends with its present error.
