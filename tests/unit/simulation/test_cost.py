@@ -75,7 +75,8 @@ def test_friction_is_counted():
     )
     setup = Setup.of(design)
     reported = newton_iterations(design, setup.mesh, None, setup.problem.mass)
-    assert reported.low <= simulate(setup).steps <= reported.high
+    assert reported.low <= simulate(setup).steps <= 3 * reported.seconds
+    assert reported.high is None  # twenty steps, if it may rub itself
 
 
 def test_a_run_costs_more_the_farther_it_goes_and_the_finer_it_is():

@@ -37,7 +37,8 @@ _OF_A_LATTICE: Final = 0.2
 _FEWEST: Final = 4.0
 _MORE: Final = 40.0
 _OF_A_STEP: Final = 6.0
-#: Least iterations of a load path with friction: three steps of ten, in which bounds settle.
+#: Least iterations of a load path with friction: three steps of ten, in which bounds settle. A
+#: body that is not convex takes twenty steps, as it may rub itself.
 _WITH_FRICTION: Final = 30.0
 #: Iterations of a time step with contact: a capsule that is held takes 3, fingers that close 15.
 _OF_A_STEP_IN_CONTACT: Final = 7.0
@@ -196,7 +197,7 @@ def newton_iterations(design: Design, mesh: Mesh, wall: float | None, mass: floa
         expected = _OF_A_STEP * method.steps
     elif isinstance(method, ArcLengthControl):
         expected = _OF_A_STEP * min(method.steps, _STEPS_OF_AN_ARC)
-    elif motion <= _FAR:
+    elif motion <= _FAR and not has_friction(design):
         return Cost(expected, expected / _SPREAD, expected * _SPREAD)
     return Cost(expected, min(expected / _SPREAD, _FEWEST / 2.0), None)
 
