@@ -55,6 +55,23 @@ impl<M: Debug + Clone + PartialEq + Send + Sync + 'static> Remembered for M {
     }
 }
 
+/// Factors on the default tolerances of contact, at most 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Precision {
+    /// Of gaps and of the creep of surfaces that stick.
+    pub gaps: f64,
+    /// Of friction and its bounds, whose errors add up along a path.
+    pub friction: f64,
+}
+
+impl Precision {
+    /// The default tolerances.
+    pub const DEFAULT: Self = Self {
+        gaps: 1.0,
+        friction: 1.0,
+    };
+}
+
 /// Contact between surfaces: a term of the body with memory.
 ///
 /// Its energy is that of the Lagrange multipliers and the friction anchors that it holds (augmented Lagrangian). A
@@ -88,9 +105,8 @@ pub trait Contact: Term + Any {
     fn relist(&mut self);
 
     /// Updates the multipliers to the forces at `positions`, an equilibrium. Returns whether they were converged
-    /// already, and nothing has changed. Forces of the size `negligible` (N) do not matter. `precision` scales the
-    /// default tolerance, at most 1.
-    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool;
+    /// already, and nothing has changed. Forces of the size `negligible` (N) do not matter.
+    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: Precision) -> bool;
 
     /// Prepares iterations with predicted multipliers: until the first [prediction](Contact::take_prediction), contact
     /// that sticks does so whatever its bound. Returns `false` if it cannot, as while the load path is recorded.

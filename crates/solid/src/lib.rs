@@ -66,7 +66,7 @@ pub mod vector;
 pub use blocks::{Blocks, PerBlock};
 pub use body::{Body, Mesh};
 pub use breakdown::Breakdown;
-pub use contact::{Contact, ContactMemory, Moment, RecordedContact, Remembered};
+pub use contact::{Contact, ContactMemory, Moment, Precision, RecordedContact, Remembered};
 pub use element::cut_surface::CutSurface;
 pub use element::faces::{FaceConditions, WarpingModes};
 pub use element::hex8::Hex8;

@@ -225,8 +225,8 @@ mod tests {
     use super::*;
     use crate::surface::{Carried, Surface};
     use crate::surface_contact::Description;
-    use voxsoft_solid::Contact;
     use voxsoft_solid::conformance::check_term;
+    use voxsoft_solid::{Contact, Precision};
 
     /// Two tetrahedra, the upper edge of the first along x across the lower one of the second along y, `apart` from it.
     fn crossed(apart: f64) -> Vec<Vec3> {
@@ -280,7 +280,7 @@ mod tests {
         let mut contact = contact(0.0, &apart);
         contact.follow(&positions);
         assert!(contact.pairs(&positions).is_empty());
-        assert!(!contact.correct(&positions, 0.0, 1.0));
+        assert!(!contact.correct(&positions, 0.0, Precision::DEFAULT));
         let pairs = contact.pairs(&positions);
         assert_eq!(pairs.len(), 1);
         assert!((pairs[0].gap + 0.01).abs() < 1e-12, "{pairs:?}");
@@ -296,7 +296,7 @@ mod tests {
         let mut contact = contact(0.0, &crossed(0.0));
         contact.follow(&positions);
         for _ in 0..2 {
-            assert!(!contact.correct(&positions, 0.0, 1.0));
+            assert!(!contact.correct(&positions, 0.0, Precision::DEFAULT));
             contact.follow(&positions);
             assert_eq!(contact.pairs(&positions).len(), 1);
             check_term(&contact, &apart, &positions).unwrap();
@@ -309,7 +309,7 @@ mod tests {
         let mut contact = contact(0.4, &crossed(0.0));
         contact.follow(&positions);
         for _ in 0..2 {
-            contact.correct(&positions, 0.0, 1.0);
+            contact.correct(&positions, 0.0, Precision::DEFAULT);
         }
         let slip = |by: f64| {
             let mut moved = positions.clone();
@@ -332,7 +332,7 @@ mod tests {
     fn an_edge_does_not_face_edges_behind_it() {
         let positions = crossed(-1.0);
         let mut contact = contact(0.0, &positions);
-        contact.correct(&positions, 0.0, 1.0);
+        contact.correct(&positions, 0.0, Precision::DEFAULT);
         let state = &contact.state;
         let across = |facing: &&Option<Facing>| matches!(facing, Some(Facing::Across(..)));
         assert_eq!(state.facing.iter().filter(across).count(), 0);

@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::element::hex8::Tangent;
 use voxsoft_solid::vector::{Vec3, scale};
-use voxsoft_solid::{Contact, ContactMemory, ProblemError, Term};
+use voxsoft_solid::{Contact, ContactMemory, Precision, ProblemError, Term};
 
 use super::friction::Friction;
 use super::law::Normal;
@@ -294,7 +294,7 @@ impl Contact for LiveSurfaceContact {
         true
     }
 
-    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
+    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: Precision) -> bool {
         let settled = self.contact.correct(positions, negligible, precision);
         self.contact.state.stick = STICK;
         settled

@@ -4,7 +4,7 @@ use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet};
 
 use voxsoft_solid::vector::{Vec3, norm, scale, sub};
-use voxsoft_solid::{Contact, ContactMemory};
+use voxsoft_solid::{Contact, ContactMemory, Precision};
 
 use super::state::{BeforePrediction, ContactState, Facing, Hold, Recording, SampleMemory};
 use super::{
@@ -98,7 +98,7 @@ impl Contact for SurfaceContact {
         self.state.looks = LOOKS;
     }
 
-    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
+    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: Precision) -> bool {
         self.change(|contact, state| {
             state.keep_moment(positions);
             let (now, beyond) = contact.corrected(state, positions);
@@ -107,9 +107,10 @@ impl Contact for SurfaceContact {
             }
             state.corrections += 1;
             let patient = state.corrections <= PATIENCE;
-            let mut largest =
+            let mut friction =
                 contact.off_bounds(&state.now, &now, BOUND[usize::from(!patient)], negligible);
             let mut farthest = 0.0f64;
+            let mut gaps = 0.0f64;
             let (mut lost, mut bounds) = (0.0, negligible);
             let points = contact.points_at(positions);
             for (sample, (old, new)) in state.now.iter().zip(&now).enumerate() {
@@ -119,7 +120,7 @@ impl Contact for SurfaceContact {
                 let unit = contact.penalty(sample as u32) * contact.description.voxel;
                 let pressed = (new.normal - old.normal) / unit;
                 let crept = norm(sub(new.friction, old.friction)) / (state.stick * unit);
-                largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
+                gaps = gaps.max(pressed / DEEPEST).max(-pressed / APART);
                 bounds += new.bound;
                 if old.bound > 0.0 && new.bound == 0.0 {
                     let friction = contact.friction(state, sample as u32, &points);
@@ -128,24 +129,26 @@ impl Contact for SurfaceContact {
                 farthest = farthest.max(crept / CREEP);
             }
             let (holds, off) = contact.corrected_ties(state, positions);
-            largest = largest.max(farthest).max(off).max(beyond / BOUND[0]);
+            gaps = gaps.max(farthest).max(off);
+            friction = friction.max(beyond / BOUND[0]);
             if lost > 0.0 {
-                largest = largest.max(lost / (LOST * bounds));
+                friction = friction.max(lost / (LOST * bounds));
             }
             let enough = if state.corrections <= PRECISE {
                 precision
             } else {
-                1.0
+                Precision::DEFAULT
             };
-            if farthest > enough && farthest > state.crept / STIFFER {
+            if farthest > enough.gaps && farthest > state.crept / STIFFER {
                 state.stick = (STIFFER * state.stick).min(STICK[1]);
             }
             state.crept = farthest;
             // The forces of a settled state are those of its equilibrium, not of multipliers that came after. Edges
             // search once points have settled: while these are still too deep, the edges beside them are so too.
-            let settled = largest <= enough && !(patient && contact.face_edges(state, positions));
+            let close = gaps <= enough.gaps && friction <= enough.friction;
+            let settled = close && !(patient && contact.face_edges(state, positions));
             if settled {
-                state.settle_moment(enough <= precision);
+                state.settle_moment(enough == precision);
             } else {
                 state.now = now;
                 state.holds = holds;

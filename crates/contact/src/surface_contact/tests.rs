@@ -1,7 +1,7 @@
 //! Contact of tetrahedra, alone and with mirror images, checked against the laws of terms.
 use super::*;
 use voxsoft_solid::conformance::{Law, check_term};
-use voxsoft_solid::{Contact, Images, MirroredContact};
+use voxsoft_solid::{Contact, Images, MirroredContact, Precision};
 
 /// Two tetrahedra, the tip of the second in a face of the first, by less than the pressure that the exact tangent
 /// accepts: beyond it the stiffness leaves out a part of the turning of the pressure.
@@ -69,7 +69,7 @@ fn contact_keeps_the_laws_of_terms() {
     let apart = apart(&positions);
     contact.follow(&positions);
     check_term(&contact, &apart, &positions).unwrap();
-    contact.correct(&positions, 0.0, 1.0);
+    contact.correct(&positions, 0.0, Precision::DEFAULT);
     check_term(&contact, &apart, &positions).unwrap();
 }
 
@@ -77,12 +77,15 @@ fn contact_keeps_the_laws_of_terms() {
 fn immovable_bodies_are_not_pushed_apart() {
     let (mut contact, positions) = pressed();
     contact.follow(&positions);
-    assert!(!contact.correct(&positions, 0.0, 1.0), "it is too deep");
+    assert!(
+        !contact.correct(&positions, 0.0, Precision::DEFAULT),
+        "it is too deep"
+    );
     let (contact, _) = pressed();
     let mut contact = contact.with_still(vec![[true; 3]; 8], &PRESSED);
     contact.follow(&positions);
     assert!(contact.pairs(&positions).is_empty());
-    assert!(contact.correct(&positions, 0.0, 1.0));
+    assert!(contact.correct(&positions, 0.0, Precision::DEFAULT));
     // A contact that closes later acts as usual.
     let (contact, _) = pressed();
     let mut contact = contact.with_still(vec![[true; 3]; 8], &apart(&PRESSED));
@@ -117,7 +120,7 @@ fn mirrored_contact_equals_contact_of_half() {
     let mut alone = SurfaceContact::new(description(surfaces), &half).unwrap();
     let apart = apart(&half);
     alone.follow(&half);
-    alone.correct(&half, 0.0, 1.0);
+    alone.correct(&half, 0.0, Precision::DEFAULT);
     // Mirrored contact counts as anchored by the other half, which here does not touch it: rigid motion without energy
     // is the one law that it breaks, after those of derivatives pass.
     let keeps_derivatives = |mirrored: &MirroredContact<SurfaceContact>| {
@@ -127,7 +130,7 @@ fn mirrored_contact_equals_contact_of_half() {
     };
     mirrored.follow(&half);
     keeps_derivatives(&mirrored);
-    mirrored.correct(&half, 0.0, 1.0);
+    mirrored.correct(&half, 0.0, Precision::DEFAULT);
     keeps_derivatives(&mirrored);
     let forces = |contact: &dyn Contact| {
         let mut forces = vec![[0.0; 3]; half.len()];

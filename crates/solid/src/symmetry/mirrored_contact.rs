@@ -10,7 +10,7 @@ use crate::assembly::Visitor;
 use crate::element::hex8::Tangent;
 use crate::term::{AssumedStrain, Term};
 use crate::vector::Vec3;
-use crate::{Contact, ContactMemory, Images, ProblemError};
+use crate::{Contact, ContactMemory, Images, Precision, ProblemError};
 
 /// Contact on mirror images.
 #[derive(Debug, Clone)]
@@ -147,7 +147,7 @@ impl<C: Contact + Clone> Contact for MirroredContact<C> {
         self.contact.relist();
     }
 
-    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
+    fn correct(&mut self, positions: &[Vec3], negligible: f64, precision: Precision) -> bool {
         let seen = self.images.seen(positions);
         self.contact.correct(&seen, negligible, precision)
     }

@@ -2,7 +2,7 @@
 //! loads, a fixed volume, or a fixed arc length.
 
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Contact, Fluid, Observer, Problem};
+use voxsoft_solid::{Contact, Fluid, Observer, Precision, Problem};
 
 use crate::path::equilibrium::{Equilibrium, Failure, Found, Strategy};
 use crate::path::load_parameter::LoadParameter;
@@ -17,9 +17,9 @@ const STALE: usize = 20;
 /// that may remain; at the end corrections are checked at the requested tolerance.
 const LOOSE: f64 = 1e-3;
 const LEFT: f64 = 0.05;
-/// Precision of contact under the whole load, where forces are read, and along a path with friction: bounds of friction
-/// are off by 0.3 % of the largest one at each vertex otherwise, which adds up, and missing reactions to the loads are
-/// reported from 0.1 % on.
+/// Precision of friction along a path, where errors of its bounds add up, 0.3 % of the largest one at each vertex
+/// otherwise; and of all contact in an equilibrium under the whole load. In a motion, the gaps of each step are those of
+/// that step alone.
 const PRECISE: f64 = 0.1;
 
 /// Search for an equilibrium with fixed multipliers of contact.
@@ -167,15 +167,28 @@ impl Equilibrium {
         contact.is_some_and(|contact| contact.release_bonds(positions))
     }
 
-    /// Corrects the multipliers of contact by an equilibrium; returns true if they have settled.
-    fn is_contact_settled(&mut self, positions: &[Vec3], point: LoadParameter) -> bool {
+    /// Precision of contact at a point of the path.
+    fn precision_at(&self, point: LoadParameter) -> Precision {
         let contact = self.problem.contact();
         let adds_up = contact.is_some_and(|contact| contact.depends_on_way());
-        let precision = if adds_up || (point.dead, point.pressure) == (1.0, 1.0) {
-            self.precision.min(PRECISE)
-        } else {
-            self.precision
+        let is_whole = (point.dead, point.pressure) == (1.0, 1.0);
+        let precise = self.precision.min(PRECISE);
+        let choose = |precise_here: bool| {
+            if precise_here {
+                precise
+            } else {
+                self.precision
+            }
         };
+        Precision {
+            gaps: choose(is_whole && self.inertia.is_none()),
+            friction: choose(is_whole || adds_up),
+        }
+    }
+
+    /// Corrects the multipliers of contact by an equilibrium; returns true if they have settled.
+    fn is_contact_settled(&mut self, positions: &[Vec3], point: LoadParameter) -> bool {
+        let precision = self.precision_at(point);
         let negligible = self.negligible;
         let settled = |contact: &mut dyn Contact| contact.correct(positions, negligible, precision);
         self.problem.contact_mut().is_none_or(settled)
