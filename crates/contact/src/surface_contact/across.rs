@@ -42,11 +42,7 @@ impl SurfaceContact {
         points: &[Vec3],
     ) -> Option<Normal> {
         let law = self.law(meeting.sample, meeting.triangle);
-        let mobility = self.mobility(meeting);
-        if mobility <= ROUNDING {
-            return None;
-        }
-        let gap = meeting.gap - mobility * self.clearance(meeting.sample);
+        let gap = self.gap_to_clearance(meeting)?;
         let reaches = gap < law.range() && law.range() > 0.0;
         law.normal(Across {
             multiplier: memory.normal,
@@ -60,6 +56,12 @@ impl SurfaceContact {
         })
     }
 
+    /// Gap less the clearance, m; `None` if no vertex of the pair moves.
+    pub(super) fn gap_to_clearance(&self, meeting: &ContactPair) -> Option<f64> {
+        let mobility = self.mobility(meeting);
+        (mobility > ROUNDING).then(|| meeting.gap - mobility * self.clearance(meeting.sample))
+    }
+
     /// Calls `take` with every contact pair that has forces along its normal, and with these.
     pub(super) fn each_contact(
         &self,
@@ -67,14 +69,25 @@ impl SurfaceContact {
         positions: &[Vec3],
         mut take: impl FnMut(&ContactPair, Normal, &[Vec3]),
     ) {
+        self.each_meeting(state, positions, |meeting, points| {
+            let memory = &state.now[meeting.sample as usize];
+            if let Some(normal) = self.normal(memory, meeting, points) {
+                take(meeting, normal, points);
+            }
+        });
+    }
+
+    /// Calls `take` with every sample that faces a triangle, and with the points.
+    pub(super) fn each_meeting(
+        &self,
+        state: &ContactState,
+        positions: &[Vec3],
+        mut take: impl FnMut(&ContactPair, &[Vec3]),
+    ) {
         let points = self.points_at(positions);
         for (index, facing) in state.facing.iter().enumerate() {
-            let meeting = facing.and_then(|facing| self.meeting(index as u32, facing, &points));
-            let Some(meeting) = meeting else {
-                continue;
-            };
-            if let Some(normal) = self.normal(&state.now[index], &meeting, &points) {
-                take(&meeting, normal, &points);
+            if let Some(meeting) = facing.and_then(|f| self.meeting(index as u32, f, &points)) {
+                take(&meeting, &points);
             }
         }
     }

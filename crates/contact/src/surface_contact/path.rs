@@ -9,7 +9,7 @@ use voxsoft_solid::{Contact, ContactMemory, Precision};
 use super::state::{BeforePrediction, ContactState, Facing, Hold, Recording, SampleMemory};
 use super::{
     APART, BOUND, CREEP, DEEPEST, LOOKS, LOST, PATIENCE, PRECISE, STICK, STIFFER, STRAYED, Spot,
-    SurfaceContact, listing,
+    SurfaceContact, listing, predicted,
 };
 use crate::gap;
 use crate::surface::Carried;
@@ -161,7 +161,7 @@ impl Contact for SurfaceContact {
     fn begin_prediction(&mut self) -> bool {
         // Derivatives retrace equilibria, each with the multipliers of the one before.
         let state = &mut self.state;
-        let may = state.recording.is_none() && !self.rubs_itself;
+        let may = state.recording.is_none();
         if may {
             state.before_prediction = Some(BeforePrediction {
                 now: state.now.clone(),
@@ -169,6 +169,7 @@ impl Contact for SurfaceContact {
                 stick: state.stick,
                 looks: state.looks,
             });
+            state.predicted.clear();
             Self::let_stick(state);
         }
         may
@@ -186,7 +187,8 @@ impl Contact for SurfaceContact {
 
     fn take_prediction(&mut self, positions: &[Vec3], moves: &[Vec3]) {
         self.change(|contact, state| {
-            state.now = contact.predicted_multipliers(state, positions, moves);
+            (state.now, state.predicted) =
+                contact.predicted_multipliers(state, positions, &state.predicted, moves);
         });
     }
 
@@ -373,15 +375,22 @@ impl SurfaceContact {
         state.looks = LOOKS;
     }
 
-    /// Samples and triangles that have stiffness at `positions`.
+    /// Samples and triangles that have stiffness at `positions`, or may keep it there by a predicted pressure.
     pub(super) fn pairs_of_stiffness(
         &self,
         state: &ContactState,
         positions: &[Vec3],
     ) -> BTreeSet<(u32, u32)> {
         let mut pairs = BTreeSet::new();
-        self.each_contact(state, positions, |meeting, _, _| {
-            pairs.insert((meeting.sample, meeting.triangle));
+        let kept = predicted::KEPT * self.description.voxel;
+        self.each_meeting(state, positions, |meeting, points| {
+            let presses = || self.normal(&state.now[meeting.sample as usize], meeting, points);
+            let near = self
+                .gap_to_clearance(meeting)
+                .is_some_and(|gap| gap <= kept);
+            if near || presses().is_some() {
+                pairs.insert((meeting.sample, meeting.triangle));
+            }
         });
         self.each_friction(state, positions, |sample, friction| {
             pairs.insert((sample, friction.anchor.0));

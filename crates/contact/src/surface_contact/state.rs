@@ -139,6 +139,8 @@ pub(super) struct ContactState {
     pub pattern_shrank: bool,
     /// State before iterations with predicted multipliers, while these go on.
     pub before_prediction: Option<BeforePrediction>,
+    /// Predicted pressures of all samples in N, within these iterations; empty before the first prediction.
+    pub predicted: Vec<f64>,
     /// True while a path is retraced, for which the stiffness has to be exact.
     pub retraces: bool,
     /// Values of [`SampleMemory::since`] of all samples, prescribed while a path is retraced: for a sample that was

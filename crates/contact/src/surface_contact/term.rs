@@ -52,18 +52,7 @@ impl Term for SurfaceContact {
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        let state = &self.state;
-        self.each_contact(state, positions, |meeting, normal, _| {
-            let force = scale(normal.force(), meeting.normal);
-            self.add_force(force, meeting.spot(), forces);
-        });
-        self.each_friction(state, positions, |sample, friction| {
-            self.add_force(friction.found.force, friction.spot(sample), forces);
-        });
-        self.each_tie(state, positions, |_, tie, force| {
-            tie.first.add_force(1.0, force, forces);
-            tie.second.add_force(-1.0, force, forces);
-        });
+        self.add_forces_of(positions, &[], forces);
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
@@ -80,13 +69,30 @@ impl Term for SurfaceContact {
                 Tangent::Stressless => 0.0,
             }
         };
-        self.visit_stiffness_under(state, positions, believed, visit);
+        self.visit_stiffness_under(state, positions, (&[], believed), visit);
     }
 
     fn predict(&self, positions: &[Vec3], moves: &[Vec3]) -> Option<AssumedStrain> {
-        Some(AssumedStrain::Numbers(
-            self.predicted_pressures(positions, moves),
-        ))
+        Some(AssumedStrain::Numbers(self.predicted_pressures(
+            positions,
+            &[],
+            moves,
+        )))
+    }
+
+    fn add_predicted_forces(
+        &self,
+        strain: &AssumedStrain,
+        positions: &[Vec3],
+        forces: &mut [Vec3],
+    ) {
+        self.add_forces_of(positions, strain.numbers(), forces);
+    }
+
+    fn update(&self, strain: &mut AssumedStrain, positions: &[Vec3], moves: &[Vec3]) -> bool {
+        *strain =
+            AssumedStrain::Numbers(self.predicted_pressures(positions, strain.numbers(), moves));
+        true
     }
 
     fn visit_predicted_stiffness(
@@ -97,21 +103,38 @@ impl Term for SurfaceContact {
     ) {
         let pressures = strain.numbers();
         let predicted = |sample: usize, _| pressures[sample];
-        self.visit_stiffness_under(&self.state, positions, predicted, visit);
+        self.visit_stiffness_under(&self.state, positions, (pressures, predicted), visit);
     }
 }
 
 impl SurfaceContact {
-    /// Contact stiffness; its geometric part uses the force along the normal (N) that `believed` returns for a sample
-    /// and its forces.
+    /// Adds the forces in N at `positions`, with those of samples that pressures among the `predicted` ones keep in
+    /// contact.
+    fn add_forces_of(&self, positions: &[Vec3], predicted: &[f64], forces: &mut [Vec3]) {
+        let state = &self.state;
+        self.each_kept(state, positions, predicted, |meeting, normal, _| {
+            let force = scale(normal.force(), meeting.normal);
+            self.add_force(force, meeting.spot(), forces);
+        });
+        self.each_friction(state, positions, |sample, friction| {
+            self.add_force(friction.found.force, friction.spot(sample), forces);
+        });
+        self.each_tie(state, positions, |_, tie, force| {
+            tie.first.add_force(1.0, force, forces);
+            tie.second.add_force(-1.0, force, forces);
+        });
+    }
+
+    /// Contact stiffness, with that of samples that pressures among the `predicted` ones keep in contact; its geometric
+    /// part uses the force along the normal (N) that `believed` returns for a sample and its forces.
     pub(super) fn visit_stiffness_under(
         &self,
         state: &ContactState,
         positions: &[Vec3],
-        believed: impl Fn(usize, Normal) -> f64,
+        (predicted, believed): (&[f64], impl Fn(usize, Normal) -> f64),
         visit: Visitor<'_>,
     ) {
-        self.each_contact(state, positions, |meeting, normal, points| {
+        self.each_kept(state, positions, predicted, |meeting, normal, points| {
             let force = believed(meeting.sample as usize, normal);
             self.visit_gap(meeting, [normal.stiffness, force], points, visit);
         });

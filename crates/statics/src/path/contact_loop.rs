@@ -4,7 +4,7 @@
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Contact, Fluid, Observer, Precision, Problem};
 
-use crate::path::equilibrium::{Equilibrium, Failure, Found, Strategy};
+use crate::path::equilibrium::{Equilibrium, Failure, Found, Predicted, Strategy};
 use crate::path::load_parameter::LoadParameter;
 use crate::path::settings::Settings;
 
@@ -79,10 +79,13 @@ impl Search for AtLoad {
         round: Round,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
+        let mut round = round;
         if round.first || round.loose {
-            let found = equilibrium.newton_predicted(positions, self.point, settings, observer)?;
-            if let Some(found) = found {
-                return Ok(found);
+            match equilibrium.newton_predicted(positions, self.point, settings, observer)? {
+                Predicted::Found(found) => return Ok(found),
+                // Samples that open and close in turn do so with fixed multipliers too, unless a line search decides.
+                Predicted::Lost => round.first = false,
+                Predicted::Impossible => (),
             }
         }
         let strategy = strategy_of(round, &equilibrium.problem, self.safe);

@@ -64,6 +64,15 @@ pub(crate) struct Found {
     pub residual: f64,
 }
 
+/// Result of iterations that predict the multipliers of contact.
+pub(crate) enum Predicted {
+    Found(Found),
+    /// They do not converge.
+    Lost,
+    /// There is no contact whose multipliers can be predicted.
+    Impossible,
+}
+
 /// Net forces at some positions.
 pub(crate) struct Forces {
     /// Residual on free coordinates.
@@ -286,19 +295,17 @@ impl Equilibrium {
     }
 
     /// Finds the equilibrium at `point` from `positions`, which it changes, with multipliers of contact that each
-    /// iteration predicts; `None`, and all as before, where contact cannot, or iterations do not converge.
+    /// iteration predicts; all is as before where it finds none.
     pub fn newton_predicted(
         &mut self,
         positions: &mut Vec<Vec3>,
         point: LoadParameter,
         settings: &Settings,
         observer: &mut Observer<'_>,
-    ) -> Result<Option<Found>, Failure> {
-        let Some(contact) = self.problem.contact_mut() else {
-            return Ok(None);
-        };
-        if !contact.begin_prediction() {
-            return Ok(None);
+    ) -> Result<Predicted, Failure> {
+        let contact = self.problem.contact_mut();
+        if !contact.is_some_and(|contact| contact.begin_prediction()) {
+            return Ok(Predicted::Impossible);
         }
         let opening = self.opening.clone();
         self.predicts = true;
@@ -308,10 +315,10 @@ impl Equilibrium {
             contact.end_prediction(outcome.is_ok());
         }
         if !matches!(outcome, Err(Failure::Lost | Failure::Singular)) {
-            return outcome.map(Some);
+            return outcome.map(Predicted::Found);
         }
         self.opening = opening;
-        Ok(None)
+        Ok(Predicted::Lost)
     }
 
     /// Switches to the direct solver, if that fits in memory.
