@@ -198,6 +198,7 @@ impl Expr {
 
 impl Unary {
     /// The value in float64.
+    #[inline]
     pub fn apply(self, a: f64) -> f64 {
         match self {
             Self::Neg => -a,
@@ -216,10 +217,27 @@ impl Unary {
             Self::Log => a.ln(),
         }
     }
+
+    /// Writes the values at many numbers; asked once which operation it is, for all of them.
+    pub fn apply_all(self, a: &[f64], out: &mut [f64]) {
+        macro_rules! each {
+            ($($op:ident)*) => {
+                match self {
+                    $(Self::$op => {
+                        for (out, &a) in out.iter_mut().zip(a) {
+                            *out = Self::$op.apply(a);
+                        }
+                    })*
+                }
+            };
+        }
+        each!(Neg Abs Sqrt Square Floor Triangle Sin Cos Tan Asin Acos Atan Exp Log);
+    }
 }
 
 impl Binary {
     /// The value in float64.
+    #[inline]
     pub fn apply(self, a: f64, b: f64) -> f64 {
         match self {
             Self::Add => a + b,
@@ -234,6 +252,22 @@ impl Binary {
             Self::Atan2 => a.atan2(b),
             Self::Hypot => (a * a + b * b).sqrt(),
         }
+    }
+
+    /// Writes the values at many pairs; asked once which operation it is, for all of them.
+    pub fn apply_all(self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        macro_rules! each {
+            ($($op:ident)*) => {
+                match self {
+                    $(Self::$op => {
+                        for (out, (&a, &b)) in out.iter_mut().zip(a.iter().zip(b)) {
+                            *out = Self::$op.apply(a, b);
+                        }
+                    })*
+                }
+            };
+        }
+        each!(Add Sub Mul Div Min Max Atan2 Hypot);
     }
 }
 

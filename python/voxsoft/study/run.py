@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from voxsoft._interrupt import Interrupts
 from voxsoft.design import Constraint, Design, Objective
+from voxsoft.design.document.identity import Hashes
 from voxsoft.errors import VoxSoftError
 from voxsoft.search.optuna_bridge import StoredStudy, TrialState
 from voxsoft.study.equilibria import Equilibria
@@ -74,6 +75,7 @@ class StudyRun:
     total: int
     gate: Gate | None = None
     equilibria: Equilibria | None = None
+    _hashes: Hashes = field(default_factory=Hashes)
     _running: dict[Future[Outcome], _Job] = field(default_factory=dict)
     #: Futures that are done, as they end: a look at all that run would take longer, the more do.
     _ended: SimpleQueue[Future[Outcome]] = field(default_factory=SimpleQueue)
@@ -132,7 +134,7 @@ class StudyRun:
         except VoxSoftError as error:
             self._store(proposal.number, Outcome("failed", str(error)), "", None)
             return
-        job = _Job(proposal.number, design, design.hash)
+        job = _Job(proposal.number, design, self._hashes.of(design))
         if job.hash in self._solved:
             self._share(job)
         elif job.hash in self._twins:
@@ -153,7 +155,12 @@ class StudyRun:
     def _collect(self, patience: float | None = None) -> None:
         """Store finished trials; wait for at least one, or for some seconds."""
         lost, gone = [], False
-        for future in sorted(self._wait(patience), key=lambda done: self._running[done].number):
+        try:
+            ended = self._wait(patience)
+        except KeyboardInterrupt:
+            self._keep_finished()
+            raise
+        for future in sorted(ended, key=lambda done: self._running[done].number):
             if future.cancelled():
                 gone = True
                 continue
@@ -177,9 +184,6 @@ class StudyRun:
         except Empty:
             # Those that the study had given up with a broken pool are none of its own any more.
             return [future for future in ended if future in self._running]
-        except KeyboardInterrupt:
-            self._keep_finished()
-            raise
 
     def _keep_finished(self) -> None:
         """Store finished trials before the study stops, without calling `progress`."""

@@ -236,11 +236,11 @@ def test_ctrl_c_keeps_finished_trials_and_names_the_way_on(make, threads):
 
 
 def test_ctrl_c_stores_finished_trials_not_yet_read(make, threads, monkeypatch):
-    def interrupted(futures, *_):
-        concurrent.futures.wait(futures)
+    def interrupted(run, *_):
+        concurrent.futures.wait(run._running)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("voxsoft.study.run.wait", interrupted)
+    monkeypatch.setattr("voxsoft.study.run.StudyRun._wait", interrupted)
     study = make()
     with pytest.raises(KeyboardInterrupt, match="4 of"):
         study.grid(executor=threads, workers=2)  # hands out twice as many as run at once
