@@ -405,3 +405,69 @@ pub fn length(components: &[Expr]) -> Expr {
         .unwrap_or_else(|| 0.0.into())
         .sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NUMBERS: [f64; 9] = [
+        0.0,
+        -0.0,
+        0.3,
+        -2.7,
+        1.0,
+        1e300,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+    ];
+
+    /// Alike to the bit, but for the sign of a zero that two zeros leave open, and what a NaN carries.
+    fn alike(one: f64, other: f64) -> bool {
+        one == other || (one.is_nan() && other.is_nan())
+    }
+
+    #[test]
+    fn many_numbers_have_the_values_of_each() {
+        for op in [
+            Unary::Neg,
+            Unary::Abs,
+            Unary::Sqrt,
+            Unary::Square,
+            Unary::Floor,
+            Unary::Triangle,
+            Unary::Sin,
+            Unary::Asin,
+            Unary::Exp,
+            Unary::Log,
+        ] {
+            let mut all = [0.0; NUMBERS.len()];
+            op.apply_all(&NUMBERS, &mut all);
+            let each = NUMBERS.map(|number| op.apply(number));
+            assert!(
+                all.into_iter().zip(each).all(|(a, b)| alike(a, b)),
+                "{op:?}"
+            );
+        }
+        for op in [
+            Binary::Add,
+            Binary::Sub,
+            Binary::Mul,
+            Binary::Div,
+            Binary::Min,
+            Binary::Max,
+            Binary::Atan2,
+            Binary::Hypot,
+        ] {
+            for other in NUMBERS {
+                let mut all = [0.0; NUMBERS.len()];
+                op.apply_all(&NUMBERS, &[other; NUMBERS.len()], &mut all);
+                let each = NUMBERS.map(|number| op.apply(number, other));
+                assert!(
+                    all.into_iter().zip(each).all(|(a, b)| alike(a, b)),
+                    "{op:?}"
+                );
+            }
+        }
+    }
+}
