@@ -422,7 +422,7 @@ mod tests {
         f64::NAN,
     ];
 
-    /// Alike to the bit, but for the sign of a zero that two zeros leave open, and what a NaN carries.
+    /// Equal numbers, or both none; the smaller of two zeros may have either sign.
     fn alike(one: f64, other: f64) -> bool {
         one == other || (one.is_nan() && other.is_nan())
     }

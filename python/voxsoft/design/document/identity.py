@@ -96,7 +96,7 @@ class Hashes:
         for key, value in document.items():
             texts[key] = text_of(key, value)
             entry = getattr(whole, key)
-            # Not what a file decides, nor what `with_fill` writes.
+            # Entries that a file decides are written anew, and those that `with_fill` writes.
             if (
                 isinstance(entry, (tuple, Mapping, Record))
                 and '"path"' not in texts[key]
@@ -108,7 +108,7 @@ class Hashes:
 
 
 def _are_same(entry: object, other: object) -> bool:
-    """Check if entries are one object, or hold the same ones: reading copies what holds them."""
+    """Check if entries are one object, or hold the same ones: reading copies tuples and tables."""
     if isinstance(entry, tuple) and isinstance(other, tuple):
         return len(entry) == len(other) and all(map(is_, entry, other))
     if isinstance(entry, Mapping) and isinstance(other, Mapping):
