@@ -4,7 +4,8 @@
 some rounds: a busy machine makes it longer and never shorter.
 
 The main process is timed with an executor that answers at once, over the paper's 105 designs: to
-propose, build, hash, store and report a trial. A trial is timed over those designs of the cylinder
+propose, build, hash, store and report a trial; and with one that has 3,200 trials under way, as for
+1,600 workers, over rubber cylinders, once. A trial is timed over those designs of the cylinder
 families that enclose a chamber: the paper's springs, and rubber on cut voxels of 248 to 288.
 """
 
@@ -16,8 +17,11 @@ os.environ["RAYON_NUM_THREADS"] = "1"
 
 import tempfile
 import time
+from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future
+from contextlib import suppress
+from functools import partial
 from typing import TypeVar
 
 from measure import Report
@@ -29,6 +33,13 @@ from voxsoft.units import mm
 
 T = TypeVar("T")
 
+WORKERS, TIMED = 1600, 800
+#: More designs than are timed or under way.
+MANY = {
+    "radius": ("20 mm", "40 mm", "1 mm"),
+    "height": ("20 mm", "50 mm", "1 mm"),
+    "wall": ("10 mm", "16 mm", "1 mm"),
+}
 RUBBER = {"radius": (20 * mm, 25 * mm), "height": (20 * mm, 25 * mm, 30 * mm), "wall": (10 * mm,)}
 
 
@@ -42,6 +53,27 @@ class AtOnce(Executor):
         return future
 
 
+class Late(Executor):
+    """Executor that has `many` tasks under way, and calls the oldest as another one comes."""
+
+    def __init__(self, many: int) -> None:
+        self._many = many
+        self._waiting: deque[tuple[Future[object], Callable[[], object]]] = deque()
+
+    def submit(self, task: Callable[..., T], /, *values: object, **names: object) -> Future[T]:
+        """Take a task, and end another one."""
+        future: Future[T] = Future()
+        self._waiting.append((future, partial(task, *values, **names)))
+        if len(self._waiting) >= self._many:
+            oldest, call = self._waiting.popleft()
+            oldest.set_result(call())
+        return future
+
+
+class Enough(Exception):
+    """The end of a study that was timed for long enough."""
+
+
 def nothing(design: vs.Design) -> Outcome:
     """Evaluate nothing."""
     return Outcome("ok", metrics={"rise": design.voxel_size})
@@ -52,6 +84,22 @@ def coordinate() -> int:
     with tempfile.TemporaryDirectory() as folder:
         study = Study(families.paper_cylinder(), folder=folder, evaluate=nothing)
         return len(study.grid(executor=AtOnce(), workers=1).trials)
+
+
+def coordinate_many() -> float:
+    """Processor time for a trial of a study with 1,600 workers [s]."""
+    times: list[float] = []
+
+    def tell(_: object) -> None:
+        times.append(time.process_time())
+        if len(times) == TIMED:
+            raise Enough
+
+    with tempfile.TemporaryDirectory() as folder:
+        study = Study(families.cylinder(), MANY, folder=folder, evaluate=nothing)
+        with suppress(Enough):
+            study.grid(executor=Late(2 * WORKERS), workers=WORKERS, progress=tell)
+    return (times[-1] - times[0]) / (len(times) - 1)
 
 
 def chambered(designs: Sequence[vs.Design]) -> list[vs.Design]:
@@ -75,6 +123,7 @@ def main() -> None:
     rounds = int(report.options["rounds"])
     trials = coordinate()
     report.add("main process", least(coordinate, rounds) / trials * 1e3, "ms")
+    report.add(f"main process, {WORKERS:,} workers", coordinate_many() * 1e3, "ms")
     with tempfile.TemporaryDirectory() as folder:
         study = Study(families.paper_cylinder(), folder=folder, evaluate=nothing)
         points = [trial.parameters for trial in study.grid(executor=AtOnce(), workers=1).trials]

@@ -9,7 +9,7 @@ from waiting import until
 from voxsoft.design import Clamp, Design, Parameter, Part, Probe, Region
 from voxsoft.errors import DesignError
 from voxsoft.shapes import Box
-from voxsoft.study import Outcome
+from voxsoft.study import Outcome, evaluate_design
 
 FALL = {"fall": {"maximize": "displacement", "probe": "tip", "axis": "z"}}
 SPACE = {"x": (0.0, 1.0, 0.1), "y": (1, 10)}
@@ -95,3 +95,11 @@ def patient(mark, design):
         file.write("begun\n")
     until(mark.with_suffix(".go").exists, "leave to go on")
     return bowl(design)
+
+
+def deadly_once(mark, wall, design):
+    """Simulates, and kills its worker before the first design of one wall."""
+    if not mark.exists() and design.parameters["wall"].value == wall:
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return evaluate_design(design)

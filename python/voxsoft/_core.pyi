@@ -75,6 +75,7 @@ def cut_measures(
     beyond: NDArray[np.int32],
     behind: NDArray[np.int32],
     gives: NDArray[np.bool_],
+    known: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 def material_integrals(
     filled: NDArray[np.float64], normals: NDArray[np.float64]

@@ -1,20 +1,23 @@
-"""Studies on worker processes, a broken executor and a Dask cluster: lost workers and trials."""
+"""Studies on worker processes, executors and Dask: lost workers and trials.
+
+A real cluster is in `test_study_dask.py`.
+"""
 
 import multiprocessing
 import os
 import re
-import signal
 import sys
-from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from functools import partial
+from types import SimpleNamespace
 
 import pytest
-from study_families import FALL, block, counted, deadly, slow
+from study_families import FALL, block, bowl, counted, deadly, slow
 from waiting import until
 
 from voxsoft.errors import MissingPackageError, StudyError
 from voxsoft.study import Study
-from voxsoft.study.workers import LocalProcesses
+from voxsoft.study.workers import DaskCluster, LocalProcesses
 
 SPACE = {"x": (0.0, 0.2, 0.1), "y": (1, 6)}
 
@@ -61,27 +64,61 @@ def test_a_broken_executor_ends_the_study_and_keeps_its_trials(make, mark):
     assert len(study.grid(workers=1).trials) == 18
 
 
-@pytest.mark.slow
-def test_dask_replaces_a_worker_that_is_killed(make, tmp_path):
-    distributed = pytest.importorskip("distributed")
-    study = make(slow)
-    killed = []
+class LastOnly(Executor):
+    """An executor that cancels the first of two tasks and does the second."""
 
-    def kill_one(event):
-        if event.done == 4:
-            pids = client.run(os.getpid)
-            killed.append(next(iter(pids.values())))
-            os.kill(killed[0], signal.SIGKILL)
+    def __init__(self):
+        self._first = None
 
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
-        ) as cluster,
-        distributed.Client(cluster, set_as_default=False) as client,
-    ):
-        result = study.grid(scheduler=cluster.scheduler_address, progress=kill_one)
-    assert killed
-    assert result.counts["ok"] == len(result.trials) == 18
+    def submit(self, task, /, *arguments):
+        future = Future()
+        if self._first is None:
+            self._first = future
+            return future
+        future.set_result(task(*arguments))
+        self._first.cancel()
+        return future
+
+
+def test_trials_that_end_as_the_workers_are_lost_are_kept(make):
+    study = make(bowl)
+    with pytest.raises(StudyError, match="executor: the connection to the workers was lost"):
+        study.grid(executor=LastOnly(), workers=1)
+    assert [trial.number for trial in study.result().trials] == [1]
+
+
+class Scheduler:
+    """A client of Dask whose scheduler ends after some questions."""
+
+    questions = 0
+
+    def __init__(self, *_, **__):
+        pass
+
+    def get_executor(self, **_):
+        return self
+
+    def nthreads(self):
+        Scheduler.questions += 1
+        if Scheduler.questions > 2:
+            raise OSError("in <TCP (closed)>")
+        return {"a": 2, "b": 2}
+
+
+def test_a_scheduler_is_rarely_asked_for_its_workers_and_lost_in_plain_words(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", SimpleNamespace(Client=Scheduler))
+    monkeypatch.setattr(Scheduler, "questions", 0)
+    monkeypatch.setattr("voxsoft.study.workers.time", SimpleNamespace(monotonic=lambda: now))
+    now = 5.0
+    cluster = DaskCluster("tcp://here:1")
+    assert [cluster.slots for _ in range(50)] == [4] * 50
+    assert Scheduler.questions == 1
+    now = 7.0
+    assert cluster.slots == 4
+    assert Scheduler.questions == 2
+    now = 9.0
+    with pytest.raises(StudyError, match=r"scheduler tcp://here:1: the connection .* was lost"):
+        _ = cluster.slots
 
 
 def test_a_scheduler_that_is_not_there_is_named(make, monkeypatch):

@@ -1,10 +1,11 @@
 //! Cells that a surface cuts: filled fractions of their small cubes, integrals, and closed voids.
+use numpy::ndarray::{ArrayView1, ArrayView2};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
     PyReadonlyArray3,
 };
 use pyo3::prelude::*;
-use voxsoft_shape::cut::{self, ALL, CellState, Neighbors};
+use voxsoft_shape::cut::{self, ALL, CellState, Filled, Neighbors};
 use voxsoft_shape::{FieldError, Shape};
 
 use crate::gate;
@@ -58,8 +59,14 @@ pub fn fill_cells<'py>(
     ))
 }
 
-/// Integrals over the material of cells, (k, 10), and over its surface, (k, 25).
+/// Integrals over the material of cells, (k, 10), and over its surface, (k, 25); `known` are their small cubes, where
+/// they have been filled before.
 #[pyfunction]
+#[pyo3(signature = (shapes, corners, size, beyond, behind, gives, known = None))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the arguments of Python's function"
+)]
 pub fn cut_measures<'py>(
     py: Python<'py>,
     shapes: Vec<PyRef<'py, PyShape>>,
@@ -68,20 +75,39 @@ pub fn cut_measures<'py>(
     beyond: PyReadonlyArray3<'py, i32>,
     behind: PyReadonlyArray3<'py, i32>,
     gives: PyReadonlyArray1<'py, bool>,
+    known: Option<(PyReadonlyArray2<'py, f64>, PyReadonlyArray3<'py, f64>)>,
 ) -> PyResult<(Rows<'py>, Rows<'py>)> {
     let (shapes, corners) = (owned(&shapes), points(&corners));
     let (beyond, behind) = (sides(&beyond), sides(&behind));
     let gives = gives.as_array().to_vec();
+    let known = known.map(|(filled, normals)| cubes(&filled, &normals));
     let work = move |_: &_| {
+        let cubes = match known {
+            Some(cubes) => cubes,
+            None => cut::fill(&shapes, &corners, size)?,
+        };
         let neighbors = Neighbors {
             beyond: &beyond,
             behind: &behind,
             gives: &gives,
         };
-        cut::measures(&shapes, &corners, size, neighbors)
+        Ok(cut::measures(cubes, neighbors))
     };
     let found = gate::run_owned(py, work)?.map_err(|error| field_error(py, error))?;
     Ok((matrix(py, found.material)?, matrix(py, found.surface)?))
+}
+
+fn cubes(filled: &PyReadonlyArray2<'_, f64>, normals: &PyReadonlyArray3<'_, f64>) -> Filled {
+    let (filled, normals) = (filled.as_array(), normals.as_array());
+    let parts = |cell: ArrayView1<'_, f64>| std::array::from_fn(|cube| cell[cube]);
+    let normal = |cell: ArrayView2<'_, f64>| {
+        std::array::from_fn(|cube| [0, 1, 2].map(|axis| cell[[cube, axis]]))
+    };
+    Filled {
+        filled: filled.outer_iter().map(parts).collect(),
+        normals: normals.outer_iter().map(normal).collect(),
+        shares: vec![],
+    }
 }
 
 fn sides(numbers: &PyReadonlyArray3<'_, i32>) -> Vec<[[i32; 2]; 3]> {

@@ -198,6 +198,7 @@ impl Expr {
 
 impl Unary {
     /// The value in float64.
+    #[inline]
     pub fn apply(self, a: f64) -> f64 {
         match self {
             Self::Neg => -a,
@@ -216,10 +217,27 @@ impl Unary {
             Self::Log => a.ln(),
         }
     }
+
+    /// Writes the values at many numbers; asked once which operation it is, for all of them.
+    pub fn apply_all(self, a: &[f64], out: &mut [f64]) {
+        macro_rules! each {
+            ($($op:ident)*) => {
+                match self {
+                    $(Self::$op => {
+                        for (out, &a) in out.iter_mut().zip(a) {
+                            *out = Self::$op.apply(a);
+                        }
+                    })*
+                }
+            };
+        }
+        each!(Neg Abs Sqrt Square Floor Triangle Sin Cos Tan Asin Acos Atan Exp Log);
+    }
 }
 
 impl Binary {
     /// The value in float64.
+    #[inline]
     pub fn apply(self, a: f64, b: f64) -> f64 {
         match self {
             Self::Add => a + b,
@@ -234,6 +252,22 @@ impl Binary {
             Self::Atan2 => a.atan2(b),
             Self::Hypot => (a * a + b * b).sqrt(),
         }
+    }
+
+    /// Writes the values at many pairs; asked once which operation it is, for all of them.
+    pub fn apply_all(self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        macro_rules! each {
+            ($($op:ident)*) => {
+                match self {
+                    $(Self::$op => {
+                        for (out, (&a, &b)) in out.iter_mut().zip(a.iter().zip(b)) {
+                            *out = Self::$op.apply(a, b);
+                        }
+                    })*
+                }
+            };
+        }
+        each!(Add Sub Mul Div Min Max Atan2 Hypot);
     }
 }
 
@@ -370,4 +404,70 @@ pub fn length(components: &[Expr]) -> Expr {
         .reduce(|a, b| a + b)
         .unwrap_or_else(|| 0.0.into())
         .sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NUMBERS: [f64; 9] = [
+        0.0,
+        -0.0,
+        0.3,
+        -2.7,
+        1.0,
+        1e300,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+    ];
+
+    /// Equal numbers, or both none; the smaller of two zeros may have either sign.
+    fn alike(one: f64, other: f64) -> bool {
+        one == other || (one.is_nan() && other.is_nan())
+    }
+
+    #[test]
+    fn many_numbers_have_the_values_of_each() {
+        for op in [
+            Unary::Neg,
+            Unary::Abs,
+            Unary::Sqrt,
+            Unary::Square,
+            Unary::Floor,
+            Unary::Triangle,
+            Unary::Sin,
+            Unary::Asin,
+            Unary::Exp,
+            Unary::Log,
+        ] {
+            let mut all = [0.0; NUMBERS.len()];
+            op.apply_all(&NUMBERS, &mut all);
+            let each = NUMBERS.map(|number| op.apply(number));
+            assert!(
+                all.into_iter().zip(each).all(|(a, b)| alike(a, b)),
+                "{op:?}"
+            );
+        }
+        for op in [
+            Binary::Add,
+            Binary::Sub,
+            Binary::Mul,
+            Binary::Div,
+            Binary::Min,
+            Binary::Max,
+            Binary::Atan2,
+            Binary::Hypot,
+        ] {
+            for other in NUMBERS {
+                let mut all = [0.0; NUMBERS.len()];
+                op.apply_all(&NUMBERS, &[other; NUMBERS.len()], &mut all);
+                let each = NUMBERS.map(|number| op.apply(number, other));
+                assert!(
+                    all.into_iter().zip(each).all(|(a, b)| alike(a, b)),
+                    "{op:?}"
+                );
+            }
+        }
+    }
 }

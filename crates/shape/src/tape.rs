@@ -128,17 +128,8 @@ impl Tape {
                     out.iter_mut().zip(points).for_each(|(o, p)| *o = p[*axis]);
                 }
                 Step::Constant(c) => out.fill(*c),
-                Step::Unary(op, a) => {
-                    out.iter_mut()
-                        .zip(of(*a))
-                        .for_each(|(o, a)| *o = op.apply(*a));
-                }
-                Step::Binary(op, a, b) => {
-                    let pairs = of(*a).iter().zip(of(*b));
-                    out.iter_mut()
-                        .zip(pairs)
-                        .for_each(|(o, (a, b))| *o = op.apply(*a, *b));
-                }
+                Step::Unary(op, a) => op.apply_all(of(*a), out),
+                Step::Binary(op, a, b) => op.apply_all(of(*a), of(*b), out),
                 Step::Field(field, at) => {
                     let [x, y, z] = at.map(of);
                     let moved: Vec<_> = (0..n).map(|i| [x[i], y[i], z[i]]).collect();

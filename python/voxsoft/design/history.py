@@ -378,5 +378,6 @@ def with_named(document: Mapping[str, Any]) -> tuple[dict[str, Any], list[ErrorD
             del found["history"]
         return found
 
-    kept = {k: each if k == "histories" else put(each, (k,)) for k, each in document.items()}
+    without = ("histories", "parameters", "shapes")
+    kept = {k: each if k in without else put(each, (k,)) for k, each in document.items()}
     return kept, problems

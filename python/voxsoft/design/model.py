@@ -41,7 +41,7 @@ from voxsoft.design.document.emptiness import (
     with_stand_ins,
     without_empty_shapes,
 )
-from voxsoft.design.document.identity import NOT_PHYSICS, hash_of, with_fill
+from voxsoft.design.document.identity import NOT_PHYSICS, Hashes, with_fill
 from voxsoft.design.document.kept_formulas import with_kept_formulas
 from voxsoft.design.document.resolution import Document, Resolution, formulas, with_parameter_values
 from voxsoft.design.document.schema import with_formulas
@@ -53,7 +53,7 @@ from voxsoft.design.object import Object
 from voxsoft.design.operands import MaterialName, Name, ParameterName
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
-from voxsoft.design.references import Included, dangling_references, dangling_shapes
+from voxsoft.design.references import Included, dangling_references, dangling_shapes, shape_names
 from voxsoft.design.refinement import Refinement
 from voxsoft.design.region import Probe
 from voxsoft.design.solver import Solver
@@ -297,7 +297,9 @@ class Design(Record):
         if like is None or not kept:
             dangling = list(dangling_references(document, empty, included))
         elif empty != like.empty_shapes:  # of all names only those of shapes can be lost
-            dangling = list(dangling_shapes(document, empty))
+            moved = {key: each for key, each in document.items() if key not in kept}
+            if like._shapes_named_by_same & {*empty} or any(dangling_shapes(moved, empty)):
+                dangling = list(dangling_shapes(document, empty))
         if problems or dangling:
             error_type = FormulaError if only_formulas and not dangling else DesignError
             raise error_type.listing(dict.fromkeys([*problems, *dangling]))
@@ -505,7 +507,7 @@ class Design(Record):
         except PydanticSerializationError as error:
             what = "hold a Python function, which no file can hold"
             raise DesignError("shapes", what, "write it as an expression") from error
-        for table, part in zip(dumped["parts"], self.parts, strict=True):
+        for table, part in zip(dumped.get("parts", ()), self.parts, strict=False):
             if cards and isinstance(part.material, str) and is_card_path(part.material):
                 table["material"] = self.material_of(part).model_dump(
                     mode="json", by_alias=True, exclude_none=True
@@ -519,8 +521,29 @@ class Design(Record):
         Name, description, parameters, objectives and constraints do not count; values that
         formulas gave do. Numbers are rounded to 12 significant digits.
         """
-        whole = self.assembled
-        return hash_of(with_fill(whole._dumped(NOT_PHYSICS, cards=True), whole))
+        return Hashes().of(self)
+
+    def physics(self, exclude: Iterable[str] = ()) -> Document:
+        """Plain data of the entries that decide the result of a simulation.
+
+        Parameters
+        ----------
+        exclude
+            Keys of further entries to leave out.
+
+        Raises
+        ------
+        DesignError
+            A shape is made of a Python function.
+
+        Examples
+        --------
+        >>> from voxsoft.design import families
+        >>> sorted(families.beam().physics({"loads", "probes"}))
+        ['clamps', 'parts', 'shapes', 'solver', 'voxel_size']
+        """
+        dumped = self._dumped({*NOT_PHYSICS, *exclude}, cards=True)
+        return {key: value for key, value in dumped.items() if key not in NOT_PHYSICS}
 
     def with_parameters(self, **values: float | str) -> Self:
         """Return the design with other values of its parameters.
@@ -553,6 +576,11 @@ class Design(Record):
             for key, each in self._entries().items()
             if key in self._source and key not in moved and isinstance(each, _OF_RECORDS)
         }
+
+    @cached_property
+    def _shapes_named_by_same(self) -> frozenset[str]:
+        """Names of shapes in the entries of :attr:`_same_at_all_parameters`."""
+        return frozenset(name for _, name in shape_names(self._same_at_all_parameters))
 
     def replace(self, **changes: Any) -> Self:  # noqa: ANN401 - the fields declare the types
         """Return the design with other values of some of its entries, checked like new.

@@ -71,7 +71,7 @@ def dangling_references(
 def dangling_shapes(document: Mapping[str, Any], empty: Collection[str]) -> Iterator[ErrorDetail]:
     """Find every name of a shape that there is not; see :func:`dangling_references`."""
     shapes = _table(document, "shapes")
-    for path, name in _shape_names(document):
+    for path, name in shape_names(document):
         if name in empty:
             yield ErrorDetail(place(path), f'the shape "{name}" is empty at these parameters')
         elif name not in shapes:
@@ -184,7 +184,7 @@ def _bodies(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDe
             yield _unknown((*path, "body"), "body", name, known)
 
 
-def _shape_names(document: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:
+def shape_names(document: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:
     """Collect the names of shapes with their places, all over the design."""
     for name, shape in _table(document, "shapes").items():
         yield from operand_names(shape, ("shapes", name))

@@ -125,10 +125,11 @@ class StoredStudy:
 
     def __init__(self, name: str, storage: str | BaseStorage) -> None:
         self._storage = _opened(storage)
+        # Any sampler but Optuna's default, which would warn where it does not fit.
+        self._unused = RandomSampler()
         with _quiet():
-            # Any sampler but Optuna's default, which would warn where it does not fit.
             self._study = optuna.load_study(
-                study_name=name, storage=self._storage, sampler=RandomSampler()
+                study_name=name, storage=self._storage, sampler=self._unused
             )
         self._id = self._storage.get_study_id_from_name(name)
         self._held = len(self.trials())
@@ -196,9 +197,8 @@ class StoredStudy:
         """
         running, number = TrialState.RUNNING, self._held
         template = create_trial(state=running, params=dict(parameters), distributions=dict(space))
-        self._study.add_trial(template)
-        # Optuna does not return the number of an added trial: it is the next, with one writer.
-        if self.trial(number).params != dict(parameters):
+        made = self._storage.create_new_trial(self._id, template)
+        if made != self._trial_id(number):
             what = "got a trial from another process"
             raise StudyError(self._study.study_name, what, "let one process at a time run it")
         self._held += 1
@@ -220,7 +220,7 @@ class StoredStudy:
 
     def tell(self, number: int, values: Sequence[float]) -> None:
         """End a trial with its values."""
-        self._study.tell(number, values)
+        self._tell(number, values, TrialState.COMPLETE)
 
     def tell_unsolved(self, number: int) -> None:
         """End a trial without values so that the sampler in use learns from it.
@@ -232,9 +232,19 @@ class StoredStudy:
         if isinstance(self._study.sampler, _LEARN_FROM_COMPLETED):
             minimize = StudyDirection.MINIMIZE
             worst = [inf if each == minimize else -inf for each in self._study.directions]
-            self._study.tell(number, worst)
+            self._tell(number, worst, TrialState.COMPLETE)
         else:
-            self._study.tell(number, state=TrialState.PRUNED)
+            self._tell(number, None, TrialState.PRUNED)
+
+    def _tell(self, number: int, values: Sequence[float] | None, state: TrialState) -> None:
+        """End a trial; Optuna's own way serves samplers, and takes as long as all of the rest."""
+        if self._study.sampler is not self._unused:
+            self._study.tell(number, values, state)
+        elif values is None:
+            self._storage.set_trial_state_values(self._trial_id(number), state)
+        else:
+            plain = [float(value) for value in values]
+            self._storage.set_trial_state_values(self._trial_id(number), state, plain)
 
     def _store_place(self, number: int, key: str, place: Place) -> None:
         self._storage.set_trial_system_attr(self._trial_id(number), key, place)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
+from concurrent.futures import BrokenExecutor, Future
 from dataclasses import dataclass, field, replace
 from math import isfinite
+from queue import Empty, SimpleQueue
 from typing import Any, Final
 
 from voxsoft._interrupt import Interrupts
 from voxsoft.design import Constraint, Design, Objective
-from voxsoft.errors import StudyError, VoxSoftError
+from voxsoft.design.document.identity import Hashes
+from voxsoft.errors import VoxSoftError
 from voxsoft.search.optuna_bridge import StoredStudy, TrialState
 from voxsoft.study.equilibria import Equilibria
 from voxsoft.study.event import ProgressCallback, TrialEvent
@@ -19,10 +21,13 @@ from voxsoft.study.gate import Gate
 from voxsoft.study.outcome import Evaluate, Outcome
 from voxsoft.study.proposals import Proposal
 from voxsoft.study.trial import OUTCOME_KEY, Trial, outcome_of, read_trial, record_of
-from voxsoft.study.workers import Workers
+from voxsoft.study.workers import LostWorkersError, Workers, lost_workers
 
 #: Seconds between two checks of a closed gate.
 _LOOK: Final = 0.05
+#: Seconds between two looks at the number of workers: a cluster may get more of them while all
+#: trials that it has are on their way.
+_LOOK_AT_SLOTS: Final = 1.0
 
 Build = Callable[[Mapping[str, Any]], Design]
 
@@ -70,7 +75,10 @@ class StudyRun:
     total: int
     gate: Gate | None = None
     equilibria: Equilibria | None = None
+    _hashes: Hashes = field(default_factory=Hashes)
     _running: dict[Future[Outcome], _Job] = field(default_factory=dict)
+    #: Futures that are done, as they end: a look at all that run would take longer, the more do.
+    _ended: SimpleQueue[Future[Outcome]] = field(default_factory=SimpleQueue)
     _twins: dict[str, list[_Job]] = field(default_factory=dict)
     _solved: dict[str, tuple[int, Outcome]] = field(default_factory=dict)
     _best: float | None = None
@@ -88,19 +96,29 @@ class StudyRun:
             self._learn(read_trial(stored, self.objectives, self.constraints), outcome_of(record))
 
     def evaluate_all(self, batches: Iterable[Iterable[Proposal]]) -> None:
-        """Evaluate batch after batch; each is drawn once the one before is stored."""
+        """Evaluate batch after batch; each is drawn once the one before is stored.
+
+        Raises
+        ------
+        LostWorkersError
+            The workers are gone; all that was finished is stored.
+        """
         with Interrupts() as interrupts:
-            for batch in batches:
-                for proposal in batch:
-                    interrupts.stop_if_interrupted()
-                    self._wait_for_gate(interrupts)
-                    self._begin(proposal)
-                    # Queue a few more than run at once at the workers, so that none is idle.
-                    while len(self._running) >= 2 * self.workers.slots:
+            try:
+                for batch in batches:
+                    for proposal in batch:
+                        interrupts.stop_if_interrupted()
+                        self._wait_for_gate(interrupts)
+                        self._begin(proposal)
+                        # Queue a few more than run at once at the workers, so that none is idle.
+                        while len(self._running) >= 2 * self.workers.slots:
+                            self._collect(_LOOK_AT_SLOTS)
+                    while self._running:
+                        interrupts.stop_if_interrupted()
                         self._collect()
-                while self._running:
-                    interrupts.stop_if_interrupted()
-                    self._collect()
+            except LostWorkersError:
+                self._keep_finished()
+                raise
 
     def _wait_for_gate(self, interrupts: Interrupts) -> None:
         while self.gate is not None and self.gate.closed:
@@ -116,11 +134,11 @@ class StudyRun:
         except VoxSoftError as error:
             self._store(proposal.number, Outcome("failed", str(error)), "", None)
             return
-        job = _Job(proposal.number, design, design.hash)
+        job = _Job(proposal.number, design, self._hashes.of(design))
         if job.hash in self._solved:
             self._share(job)
-        elif any(job.hash == other.hash for other in self._running.values()):
-            self._twins.setdefault(job.hash, []).append(job)
+        elif job.hash in self._twins:
+            self._twins[job.hash].append(job)
         else:
             self._submit(job)
 
@@ -131,29 +149,46 @@ class StudyRun:
             # The pool noticed a dead worker before any of its futures reported it.
             self._recover([])
             future = self.workers.submit(self.evaluate, job.design)
-        self._running[future] = job
+        self._running[future], self._twins[job.hash] = job, []
+        future.add_done_callback(self._ended.put)
 
     def _collect(self, patience: float | None = None) -> None:
         """Store finished trials; wait for at least one, or for some seconds."""
-        lost = []
+        lost, gone = [], False
         try:
-            finished, _ = wait(self._running, patience, FIRST_COMPLETED)
+            ended = self._wait(patience)
         except KeyboardInterrupt:
             self._keep_finished()
             raise
-        for future in sorted(finished, key=lambda done: self._running[done].number):
+        for future in sorted(ended, key=lambda done: self._running[done].number):
+            if future.cancelled():
+                gone = True
+                continue
             job = self._running.pop(future)
             if isinstance(future.exception(), BrokenExecutor):
                 lost.append(job)
             else:
                 self._take(job, future)
+        if gone:
+            raise lost_workers(self.workers.where)
         if lost:
             self._recover(lost)
+
+    def _wait(self, patience: float | None) -> list[Future[Outcome]]:
+        """Wait for at least one trial to end, or for some seconds; return all that did."""
+        ended = []
+        try:
+            ended.append(self._ended.get(timeout=patience))
+            while True:
+                ended.append(self._ended.get_nowait())
+        except Empty:
+            # Those that the study had given up with a broken pool are none of its own any more.
+            return [future for future in ended if future in self._running]
 
     def _keep_finished(self) -> None:
         """Store finished trials before the study stops, without calling `progress`."""
         self.progress = None
-        for future in [each for each in self._running if each.done()]:
+        for future in [each for each in self._running if each.done() and not each.cancelled()]:
             job = self._running.pop(future)
             if not isinstance(future.exception(), BrokenExecutor):
                 self._take(job, future)
@@ -234,12 +269,6 @@ def _outcome(future: Future[Outcome], objectives: Mapping[str, Objective]) -> Ou
     """Read the answer of a worker; an error there becomes a status."""
     try:
         outcome = future.result()
-    except CancelledError:
-        raise StudyError(
-            "workers",
-            "the connection to the workers was lost",
-            "start the study again; finished trials are kept",
-        ) from None
     except Exception as error:
         return Outcome("failed", f"{type(error).__name__}: {error}")
     if outcome.status != "ok":

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
 from typing import Any, Final, Protocol, TypeVar
@@ -21,6 +23,9 @@ from voxsoft.study.gate import Gate, SharedGate, keep_gate, through_gate
 
 #: Seconds to wait for a Dask scheduler.
 DASK_TIMEOUT: Final = 10.0
+#: Seconds between two questions to a Dask scheduler for its workers: an answer takes as long as
+#: some trials take this process.
+_DASK_LOOK: Final = 1.0
 #: Memory of a worker process with a small body: 25 MB were measured, its share of common pages
 #: included, and as much again for larger ones.
 _WORKER_BYTES: Final = 50 * 10**6
@@ -30,8 +35,26 @@ _MANAGER_PATIENCE: Final = 5.0
 Answer = TypeVar("Answer")
 
 
+class LostWorkersError(StudyError):
+    """Workers that no trial can be handed to any more, nor come back from."""
+
+
+def lost_workers(where: str) -> LostWorkersError:
+    """Make the error of workers that are gone; `where` names them, or who hands trials to them."""
+    return LostWorkersError(
+        where,
+        "the connection to the workers was lost",
+        "see that they run, and start the study again; finished trials are kept",
+    )
+
+
 class Workers(Protocol):
     """Workers that evaluate trials, some side by side."""
+
+    @property
+    def where(self) -> str:
+        """Name of the workers in an error."""
+        ...
 
     @property
     def slots(self) -> int:
@@ -39,7 +62,7 @@ class Workers(Protocol):
         ...
 
     def submit(self, task: Callable[..., Answer], *arguments: object) -> Future[Answer]:
-        """Start a task, or queue it."""
+        """Start a task, or queue it; one that is cancelled will never be done."""
         ...
 
     def recover(self) -> None:
@@ -99,6 +122,8 @@ def make_workers(
 
 class LocalProcesses:
     """Worker processes on this machine, which stay warm between trials."""
+
+    where = "workers"
 
     def __init__(self, count: int, gate: Gate | None = None) -> None:
         self.slots, self._gate = count, gate
@@ -185,6 +210,8 @@ class _RememberingContext:
 class ForeignExecutor:
     """User's executor, which stays open."""
 
+    where = "executor"
+
     def __init__(self, executor: Executor, slots: int) -> None:
         self._executor, self.slots = executor, slots
 
@@ -216,6 +243,8 @@ class DaskCluster:
                 "scheduler", "needs the package distributed", "pip install distributed"
             ) from None
         client: Any = distributed.Client
+        self.where = f"scheduler {address}"
+        self._threads, self._looked = 0, -_DASK_LOOK
         try:
             self._client: Any = client(address, set_as_default=False, timeout=DASK_TIMEOUT)
         except (OSError, ValueError, TypeError) as error:  # TypeError: TLS without certificates
@@ -229,13 +258,30 @@ class DaskCluster:
 
     @property
     def slots(self) -> int:
-        """Threads of all workers; a cluster without workers still takes a task, and waits."""
-        threads: dict[str, int] = self._client.nthreads()
-        return max(1, sum(threads.values()))
+        """Threads of all workers; a cluster without workers still takes a task, and waits.
+
+        Raises
+        ------
+        LostWorkersError
+            The scheduler does not answer.
+        """
+        now = time.monotonic()
+        if now - self._looked >= _DASK_LOOK:
+            with self._or_lost():
+                threads: dict[str, int] = self._client.nthreads()
+            self._threads, self._looked = sum(threads.values()), now
+        return max(1, self._threads)
 
     def submit(self, task: Callable[..., Answer], *arguments: object) -> Future[Answer]:
-        """Start a task, or queue it."""
-        future: Future[Answer] = self._executor.submit(task, *arguments)
+        """Start a task, or queue it.
+
+        Raises
+        ------
+        LostWorkersError
+            The connection to the scheduler is closed.
+        """
+        with self._or_lost():
+            future: Future[Answer] = self._executor.submit(task, *arguments)
         return future
 
     def recover(self) -> None:
@@ -243,7 +289,30 @@ class DaskCluster:
 
     def close(self, *, now: bool) -> None:
         """Leave the cluster running."""
-        self._client.close()
+        with _quiet_dask():
+            self._client.close()
+
+    @contextmanager
+    def _or_lost(self) -> Iterator[None]:
+        """Say that the scheduler is gone where Dask fails."""
+        try:
+            yield
+        except (OSError, RuntimeError):  # Dask's: a connection or a client that is closed
+            raise lost_workers(self.where) from None
+
+
+@contextmanager
+def _quiet_dask() -> Iterator[None]:
+    """Keep Dask from logging that a client is closed while it tries to connect again."""
+    loggers = [logging.getLogger(f"distributed.{name}") for name in ("client", "utils")]
+    before = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, before, strict=True):
+            logger.setLevel(level)
 
 
 def require_metrics(workers: Workers, wanted: tuple[OwnMetric, ...]) -> None:

@@ -107,6 +107,11 @@ def parse_any(text: str, *, where: str = "quantity") -> Quantity:
     >>> parse_any("4 kPa").value
     4000.0
     """
+    return _any_quantity(text, where)
+
+
+@lru_cache(maxsize=1024)  # a study reads the bounds of its parameters for every trial
+def _any_quantity(text: str, where: str) -> Quantity:
     number, unit = _split(text, where, None)
     if not unit:
         return Quantity(_finite(float(number), text, where), Dimension())

@@ -26,6 +26,16 @@ def hollow_ball(inner, outer, size, center=(0, 0, 0)):
     return design(shape, size)
 
 
+def test_small_cubes_that_are_known_are_those_that_are_filled_again():
+    ball = hollow_ball(3.2, 6.1, 1.0)
+    cut = CutVoxels.of(ball)  # its cells near the surface are filled once
+    again = cut.resampled(ball)
+    for name in ("fractions", "moments", "surfaces"):
+        assert np.array_equal(getattr(cut, name), getattr(again, name))
+    (void,), (anew,) = cut.voids, again.voids
+    assert all(np.array_equal(*pair) for pair in zip(void, anew, strict=True))
+
+
 def test_overlapping_and_abutting_parts_are_not_counted_twice():
     left, right = vs.Box(size=(0.37, 1, 1)), vs.Box(size=(0.63, 1, 1), center=(0.685, 0.5, 0.5))
     slanted = vs.HalfSpace(point=(0.5, 0.5, 0.5), normal=(2, 1, 0))

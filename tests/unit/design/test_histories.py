@@ -5,6 +5,7 @@ import pytest
 from tiny_design import TINY
 
 import voxsoft as vs
+from voxsoft.design import families
 from voxsoft.errors import DesignError
 
 
@@ -125,3 +126,9 @@ def test_a_column_that_is_none_is_refused(tmp_path):
     (tmp_path / "t.csv").write_text("time_s,left\n0,1\n")
     with pytest.raises(DesignError, match=r'no column "lift".*"left"'):
         vs.History.from_table(tmp_path / "t.csv", "lift")
+
+
+def test_a_parameter_may_be_called_history():
+    beam = families.beam().document
+    known = {**beam, "parameters": {**beam["parameters"], "history": "5 mm"}}
+    assert vs.Design.from_document(known).parameters["history"].value == 0.005

@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -10,11 +11,13 @@ from voxsoft.cli.app import app
 from voxsoft.design import families
 from voxsoft.shapes import Box, Cylinder, Rotate
 from voxsoft.simulation import check
+from voxsoft.simulation.checks import coarse_walls as walls
 from voxsoft.simulation.checks.coarse_walls import coarse_walls
 from voxsoft.simulation.checks.vanished import vanished_shapes
 from voxsoft.simulation.results.warnings import warnings_at
 
 MM = 1e-3
+HOLE = Cylinder(radius=5.3 * MM, height=0.014, base=(0, 0, 0.003))
 
 
 def hollow(side, wall, size, **changes):
@@ -27,6 +30,30 @@ def hollow(side, wall, size, **changes):
 
 def found(design):
     return list(coarse_walls(design, vs.mesh_of(design)))
+
+
+@pytest.mark.parametrize(
+    "design",
+    [
+        hollow(22.5, 3.75, 2.5),
+        hollow(12, 1.3, 1.0),
+        hollow(20, 3.0, 2.5, shapes={"body": Cylinder(radius=9 * MM, height=0.02) - HOLE}),
+        families.paper_cylinder(radius="17 mm", height="26 mm", wall="6 mm"),
+        families.sphere().replace(fill="binary"),
+    ],
+)
+def test_rows_that_the_first_line_clears_are_not_doubtful_on_all(design):
+    mesh = vs.mesh_of(design)
+    cells = walls.GridRegions.of(mesh, mesh.voxel_size)
+    shapes = walls.built_parts(design)
+    for axis in range(3):
+        for rows in walls._rows(cells.rooms, axis):
+            flat = walls._flat(rows, shapes, cells, len(rows.number))
+            points = walls._points(flat, shapes, cells, walls._ASIDE)
+            expected = walls._picked(flat, walls._may_differ(flat, points))
+            doubted = walls._doubted(rows, shapes, cells)
+            assert np.array_equal(doubted.first, expected.first)
+            assert np.array_equal(doubted.number, expected.number)
 
 
 @pytest.mark.parametrize(

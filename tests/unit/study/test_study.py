@@ -16,6 +16,7 @@ from study_families import FALL, SPACE, block, bowl, moody, score, slow, two_sid
 from voxsoft.design import Design
 from voxsoft.design.families import cylinder
 from voxsoft.errors import DesignError, MissingPackageError, StudyError
+from voxsoft.search.optuna_bridge import StoredStudy
 from voxsoft.study import Outcome, Study
 
 
@@ -236,11 +237,11 @@ def test_ctrl_c_keeps_finished_trials_and_names_the_way_on(make, threads):
 
 
 def test_ctrl_c_stores_finished_trials_not_yet_read(make, threads, monkeypatch):
-    def interrupted(futures, *_):
-        concurrent.futures.wait(futures)
+    def interrupted(run, *_):
+        concurrent.futures.wait(run._running)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("voxsoft.study.run.wait", interrupted)
+    monkeypatch.setattr("voxsoft.study.run.StudyRun._wait", interrupted)
     study = make()
     with pytest.raises(KeyboardInterrupt, match="4 of"):
         study.grid(executor=threads, workers=2)  # hands out twice as many as run at once
@@ -329,11 +330,11 @@ def test_trials_of_an_interrupted_run_are_taken_up_first(make, threads):
 
 def test_an_outcome_stored_before_its_state_is_not_evaluated_again(make, threads, monkeypatch):
     study = make({"y": [5]})
-    tell = optuna.Study.tell
-    monkeypatch.setattr(optuna.Study, "tell", lambda *a, **k: pytest.fail("stopped here"))
+    tell = StoredStudy.tell
+    monkeypatch.setattr(StoredStudy, "tell", lambda *a, **k: pytest.fail("stopped here"))
     with pytest.raises(BaseException, match="stopped here"):
         study.grid(executor=threads)
-    monkeypatch.setattr(optuna.Study, "tell", tell)
+    monkeypatch.setattr(StoredStudy, "tell", tell)
     monkeypatch.setattr("study_families.score", lambda x, y: pytest.fail("evaluated again"))
     result = study.grid(executor=threads)
     assert [trial.status for trial in result.trials] == ["ok"]

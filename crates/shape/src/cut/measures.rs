@@ -1,8 +1,6 @@
 //! Integrals over the material of cells and over its surface.
 use super::facets::facets;
-use super::{ALL, CUBES, FacetSums, Filled, Neighbors, fill, place};
-use crate::error::FieldError;
-use crate::shape::Shape;
+use super::{ALL, CUBES, FacetSums, Filled, Neighbors, place};
 
 /// Integrals over the material and the surface of some cells.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,32 +12,24 @@ pub struct Measures {
     pub surface: Vec<FacetSums>,
 }
 
-/// The integrals of cells with the given lowest corners, for shapes as in [`fill()`].
-///
-/// # Errors
-///
-/// A field gave no value.
-pub fn measures(
-    shapes: &[Shape],
-    corners: &[[f64; 3]],
-    size: f64,
-    neighbors: Neighbors<'_>,
-) -> Result<Measures, FieldError> {
+/// The integrals of cells from their small cubes, as [`fill()`](super::fill()) finds them.
+#[must_use]
+pub fn measures(cubes: Filled, neighbors: Neighbors<'_>) -> Measures {
     let Filled {
         filled,
         normals: mut units,
         ..
-    } = fill(shapes, corners, size)?;
+    } = cubes;
     for normals in &mut units {
         for normal in normals {
             *normal = unit(*normal);
         }
     }
     let material = filled.iter().zip(&units);
-    Ok(Measures {
+    Measures {
         material: material.map(|(f, n)| integrals(f, n)).collect(),
         surface: facets(&filled, &units, neighbors),
-    })
+    }
 }
 
 /// The integrals over the material of a cell, from the filled fractions of its small cubes and their unit normals.
@@ -82,6 +72,7 @@ pub fn unit(vector: [f64; 3]) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::fill;
     use super::*;
     use crate::primitives;
 
@@ -95,7 +86,8 @@ mod tests {
             behind: &none,
             gives: &[false],
         };
-        let found = measures(&[slab], &[[0.0; 3]], 1.0, neighbors).unwrap();
+        let cubes = fill(&[slab], &[[0.0; 3]], 1.0).unwrap();
+        let found = measures(cubes, neighbors);
         let third = 1.0 / 3.0;
         let exact = [
             0.5,

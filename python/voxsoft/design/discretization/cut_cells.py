@@ -206,6 +206,7 @@ def measures_of(
     phase: Triple,
     behind: Ints,
     gives: NDArray[np.bool_],
+    cubes: Cubes | None = None,
 ) -> tuple[Floats, Floats]:
     """Return integrals over the material of some cells, (k, 10), and over its surface, (k, 25).
 
@@ -229,6 +230,8 @@ def measures_of(
         behind it there, and with the rest to the cell behind.
     gives
         Marks of cells that give facets to those behind them, (k,); the others keep all.
+    cubes
+        Small cubes of the cells, where they are known.
     """
     corners: Floats = np.asarray(phase) + cells * np.float64(size)
     low = cells.min(axis=0) - 1
@@ -236,7 +239,7 @@ def measures_of(
     number[tuple((cells - low).T)] = np.arange(len(cells))
     beyond = number[tuple(np.moveaxis((cells - low)[:, None, None] + SIDES, -1, 0))]
     found, surface = _core.cut_measures(
-        built_parts(design), corners, size, beyond, behind.astype(np.int32), gives
+        built_parts(design), corners, size, beyond, behind.astype(np.int32), gives, cubes
     )
     found[found[:, 0] > 1.0 - _ROUNDING] = WHOLE
     found[found[:, 0] < _ROUNDING] = 0.0

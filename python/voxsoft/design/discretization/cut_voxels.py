@@ -279,7 +279,7 @@ def _spread(
 
     `cubes` are those of the cells near the surface, where they are known.
     """
-    spread, around, lost = _material(design, t)
+    spread, around, lost = _material(design, t, cubes)
     own = t.voxel >= 0
     held = np.tile(WHOLE, (t.whole, 1))
     held[t.voxel[own]] = spread.measures[own]
@@ -294,10 +294,12 @@ def _spread(
     return fractions, moments, surfaces(around), voids(design, spread, t.zones, cubes), lost
 
 
-def _material(design: Design, t: _Topology) -> tuple[Spread, Floats, float]:
+def _material(
+    design: Design, t: _Topology, cubes: Cubes | None = None
+) -> tuple[Spread, Floats, float]:
     """Material near the surface, sums over the surface in each voxel, lost volume [m³]."""
     own = t.voxel >= 0
-    measures, around = measures_of(design, t.places, t.size, t.phase, t.beside, own)
+    measures, around = measures_of(design, t.places, t.size, t.phase, t.beside, own, cubes)
     filled = measures[:, 0]
     sums = np.zeros((t.whole, around.shape[1]))
     sums[t.voxel[own]] = around[own]

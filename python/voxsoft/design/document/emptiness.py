@@ -124,7 +124,7 @@ class _Pruning:
 
     def differences(self, value: Any) -> Any:  # noqa: ANN401 - a document holds anything
         """Prune the subtracted operands of every difference in `value`."""
-        if isinstance(value, (str, Quantity)):
+        if isinstance(value, (str, int, float, Quantity)):
             return value
         if isinstance(value, list):
             return [self.differences(entry) for entry in value]

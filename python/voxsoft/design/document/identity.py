@@ -5,10 +5,13 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from operator import is_
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from voxsoft.design.document.documents import is_mesh
+from voxsoft.materials import is_card_path
+from voxsoft.records import Record
 from voxsoft.units import round_significant
 
 if TYPE_CHECKING:
@@ -35,12 +38,88 @@ def hash_of(document: Mapping[str, Any]) -> str:
     >>> hash_of({"voxel_size": 0.1 + 0.2}) == hash_of({"voxel_size": 0.3, "name": "other"})
     True
     """
-    physics = {key: value for key, value in document.items() if key not in NOT_PHYSICS}
+    return hash_of_texts(
+        {key: text_of(key, value) for key, value in document.items() if key not in NOT_PHYSICS}
+    )
+
+
+def text_of(key: str, value: object) -> str:
+    """Write an entry of a resolved design document as canonical JSON; empty if it does not count.
+
+    Examples
+    --------
+    >>> text_of("voxel_size", 0.1 + 0.2), text_of("fill", "binary")
+    ('0.3', '')
+    """
     # A key that is younger than the records of studies: full voxels are not written down.
-    if physics.get("fill") == "binary":
-        del physics["fill"]
-    text = json.dumps(_canonical(physics), sort_keys=True, separators=(",", ":"))
-    return hashlib.sha256(text.encode()).hexdigest()
+    if value is None or (key == "fill" and value == "binary"):
+        return ""
+    return json.dumps(_canonical(value, key), sort_keys=True, separators=(",", ":"))
+
+
+def hash_of_texts(texts: Mapping[str, str]) -> str:
+    """Hash the entries of a document, each as :func:`text_of` wrote it; see :func:`hash_of`."""
+    entries = (f"{json.dumps(key)}:{texts[key]}" for key in sorted(texts) if texts[key])
+    return hashlib.sha256(f"{{{','.join(entries)}}}".encode()).hexdigest()
+
+
+class Hashes:
+    """Hashes of designs of a family, most entries of which are the same objects in all of them.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> beam, hashes = families.beam(), Hashes()
+    >>> longer = beam.with_parameters(length="110 mm")
+    >>> [hashes.of(each) == each.hash for each in (beam, longer)]
+    [True, True]
+    """
+
+    def __init__(self) -> None:
+        self._texts: dict[str, tuple[object, str]] = {}
+
+    def of(self, design: Design) -> str:
+        """Hash a design as :attr:`voxsoft.design.Design.hash` does.
+
+        Raises
+        ------
+        DesignError
+            A shape is made of a Python function.
+        """
+        whole = design.assembled
+        texts = {
+            key: text
+            for key, (entry, text) in self._texts.items()
+            if _are_same(getattr(whole, key), entry)
+        }
+        document = with_fill(whole.physics({*texts}), whole)
+        for key, value in document.items():
+            texts[key] = text_of(key, value)
+            entry = getattr(whole, key)
+            # Entries that a file decides are written anew, and those that `with_fill` writes.
+            if (
+                isinstance(entry, (tuple, Mapping, Record))
+                and '"path"' not in texts[key]
+                and key != "bodies"
+                and not (key == "parts" and _names_card_file(whole))
+            ):
+                self._texts[key] = (entry, texts[key])
+        return hash_of_texts(texts)
+
+
+def _are_same(entry: object, other: object) -> bool:
+    """Check if entries are one object, or hold the same ones: reading copies tuples and tables."""
+    if isinstance(entry, tuple) and isinstance(other, tuple):
+        return len(entry) == len(other) and all(map(is_, entry, other))
+    if isinstance(entry, Mapping) and isinstance(other, Mapping):
+        return entry.keys() == other.keys() and all(map(is_, entry.values(), other.values()))
+    return entry is other
+
+
+def _names_card_file(design: Design) -> bool:
+    return any(
+        isinstance(each.material, str) and is_card_path(each.material) for each in design.parts
+    )
 
 
 def with_fill(document: Mapping[str, Any], design: Design) -> dict[str, Any]:

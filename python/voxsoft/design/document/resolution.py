@@ -245,6 +245,8 @@ def _resolve(value: object, path: Path, parameters: _Parameters, found: Resoluti
         if not is_formula(value) or (path and path[-1] in _PROSE):
             return value
         return _evaluated(value, path, parameters, found)
+    if isinstance(value, (int, float)):  # the abstract Mapping takes ten times as long to ask for
+        return value
     if is_inner_design(path):
         return value  # its formulas are of parameters of its own
     if isinstance(value, Mapping):

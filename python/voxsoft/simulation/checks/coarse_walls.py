@@ -22,6 +22,7 @@ from voxsoft.units import format_quantity
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+_Aside = Sequence[tuple[float, float]]
 
 #: Relative difference from which a thickness is doubtful: bending stiffness goes with its cube.
 LARGE: Final = 0.15
@@ -35,7 +36,7 @@ _FINER: Final = 32
 #: Points by which a thickness of so few may be off: one for each of two layers in a wall.
 _OFF: Final = 2
 #: Offsets of parallel lines, in voxels: a wall is flat where it is as thick on all, to one point.
-_ASIDE: Final = ((0.0, 0.0), (0.45, 0.45), (0.45, -0.45), (-0.45, 0.45), (-0.45, -0.45))
+_ASIDE: Final[_Aside] = ((0.0, 0.0), (0.45, 0.45), (0.45, -0.45), (-0.45, 0.45), (-0.45, -0.45))
 #: Smallest share of rows along an axis for a thickness to be judged.
 _SHARE: Final = 0.1
 #: Deviation from whole voxels up to which a voxel size fits; smallest such size over the present.
@@ -106,18 +107,20 @@ def _of_body(design: Design, mesh: Mesh, size: float) -> list[_Measured]:
     cells = GridRegions.of(mesh, size)
     shapes = built_parts(design)
     slow = any(isinstance(each, TriangleMesh) for each in shapes_of(design))
-    found: list[tuple[_Rows, Floats]] = []
-    for axis in range(3):
-        for rows in _rows(cells.rooms, axis):
-            some = _some(rows, _ROWS_OF_A_FILE if slow else _ROWS)
-            if len(some.number):
-                found.append(_flat(some, shapes, cells))
-    # Finer points take most of the time: first for those that may be doubtful, then for all.
-    doubted = (_picked(rows, _may_differ(rows, points)) for rows, points in found)
+    every = [
+        _some(rows, _ROWS_OF_A_FILE if slow else _ROWS)
+        for axis in range(3)
+        for rows in _rows(cells.rooms, axis)
+    ]
+    every = [rows for rows in every if len(rows.number)]
+    # More lines and finer points take most of the time: first for those that may be doubtful, then
+    # for all.
+    doubted = (_doubted(rows, shapes, cells) for rows in every)
     finer = (each for rows in doubted for each in _measured(rows, shapes, cells))
     if not any(each.difference >= LARGE for each in finer):
         return []
-    return [each for rows, _ in found for each in _measured(rows, shapes, cells)]
+    found = (_flat(rows, shapes, cells, len(rows.number)) for rows in every)
+    return [each for rows in found for each in _measured(rows, shapes, cells)]
 
 
 def _rows(rooms: NDArray[np.int16], axis: int) -> Iterator[_Rows]:
@@ -148,7 +151,11 @@ def _picked(rows: _Rows, which: slice | Ints | NDArray[np.bool_]) -> _Rows:
 
 
 def _described(
-    rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions, finer: int = 1
+    rows: _Rows,
+    shapes: Sequence[_core.Shape],
+    cells: GridRegions,
+    finer: int = 1,
+    aside: _Aside = _ASIDE,
 ) -> Floats:
     """Measure the material, or void, of the shapes along each row [m]; 0 where it varies, (n,).
 
@@ -157,27 +164,50 @@ def _described(
     points = finer * _POINTS
     longest = int(rows.number.max(initial=0))
     steps = (np.arange((longest + 1) * points) + 0.5) / points - 0.5
-    places = np.tile((rows.first + 0.5)[None, :, None, :], (len(_ASIDE), 1, len(steps), 1))
+    places = np.tile((rows.first + 0.5)[None, :, None, :], (len(aside), 1, len(steps), 1))
     places[..., rows.axis] += steps - 0.5
-    places[..., np.arange(3) != rows.axis] += np.array(_ASIDE)[:, None, None, :]
+    places[..., np.arange(3) != rows.axis] += np.array(aside)[:, None, None, :]
     spots = np.ascontiguousarray((cells.origin + cells.size * places).reshape(-1, 3))
     inside = np.zeros(len(spots), dtype=bool)
     for shape in shapes:
         inside |= shape.evaluate(spots) < 0.0
-    wanted = inside.reshape(len(_ASIDE), len(rows.number), len(steps)) == rows.is_wall
+    wanted = inside.reshape(len(aside), len(rows.number), len(steps)) == rows.is_wall
     wanted &= steps < rows.number[:, None] + 0.5
     within = wanted.sum(axis=-1)
     lengths: Floats = within[0] * (cells.size / points)
     return np.where(np.ptp(within, axis=0) <= finer, lengths, 0.0)
 
 
-def _flat(rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions) -> tuple[_Rows, Floats]:
-    """Return one row of each thickness that many rows share, and that thickness in points."""
-    measured = np.rint(_described(rows, shapes, cells) * (_POINTS / cells.size))
-    pairs = np.stack([measured, rows.number], axis=1)
-    kinds, first, count = np.unique(pairs, axis=0, return_index=True, return_counts=True)
-    kept = (count >= _SHARE * len(pairs)) & (kinds[:, 0] > 0.0)
-    return _picked(rows, first[kept]), kinds[kept, 0]
+def _doubted(rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions) -> _Rows:
+    """Return those rows of :func:`_flat` whose thickness may be a doubtful one."""
+    # A flat row is as thick on all lines as on the first, so that many rows share it there too.
+    points = _points(rows, shapes, cells, _ASIDE[:1])
+    _, kind, count = np.unique(_kinds(rows, points), return_inverse=True, return_counts=True)
+    shared = count[kind.reshape(-1)] >= _SHARE * len(points)
+    some = _picked(rows, shared & (points > 0.0) & _may_differ(rows, points))
+    return _flat(some, shapes, cells, len(points)) if len(some.number) else some
+
+
+def _flat(rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions, total: int) -> _Rows:
+    """Return one row of each thickness that many rows of a total number share."""
+    points = _points(rows, shapes, cells, _ASIDE)
+    _, first, count = np.unique(_kinds(rows, points), return_index=True, return_counts=True)
+    return _picked(rows, first[(count >= _SHARE * total) & (points[first] > 0.0)])
+
+
+def _points(
+    rows: _Rows, shapes: Sequence[_core.Shape], cells: GridRegions, aside: _Aside
+) -> Floats:
+    """Thickness of each row in points, (n,)."""
+    lengths = _described(rows, shapes, cells, 1, aside)
+    points: Floats = np.rint(lengths * (_POINTS / cells.size))
+    return points
+
+
+def _kinds(rows: _Rows, points: Floats) -> Ints:
+    """One number for each pair of a thickness and a number of voxels, in their order, (n,)."""
+    kinds: Ints = points.astype(np.intp) * (_MOST_VOXELS + 1) + rows.number
+    return kinds
 
 
 def _may_differ(rows: _Rows, points: Floats) -> NDArray[np.bool_]:

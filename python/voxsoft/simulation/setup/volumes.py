@@ -279,7 +279,14 @@ class GridRegions:
 
     @classmethod
     def of(cls, mesh: Mesh, size: float) -> GridRegions:
-        """Return the cells of the voxels of a mesh, of edge `size` [m]."""
+        """Return the cells of the voxels of a mesh, of edge `size` [m]; found once for a mesh."""
+        if id(mesh) not in _regions_known:
+            _regions_known[id(mesh)] = cls._of(mesh, size)
+            weakref.finalize(mesh, _regions_known.pop, id(mesh), None)
+        return _regions_known[id(mesh)]
+
+    @classmethod
+    def _of(cls, mesh: Mesh, size: float) -> GridRegions:
         corners = mesh.vertices[mesh.tets.reshape(-1, 20)].min(axis=1)
         origin = corners.min(axis=0) - _RIM * size
         cells = np.rint((corners - origin) / size).astype(np.intp)
@@ -394,3 +401,5 @@ def _strata(along: int) -> Floats:
 
 
 _AROUND: Final[Floats] = _strata(3) - 1.0
+#: Cells of meshes that are still in use, by their identity.
+_regions_known: Final[dict[int, GridRegions]] = {}
