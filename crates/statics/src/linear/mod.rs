@@ -11,6 +11,7 @@ pub(crate) mod iterative;
 pub(crate) mod lattice_product;
 mod low_rank_update;
 mod multigrid;
+mod objects;
 pub(crate) mod operator;
 pub(crate) mod options;
 mod ordering;
