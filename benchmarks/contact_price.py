@@ -96,6 +96,7 @@ def pads(count: int, *, grasp: bool) -> vs.Design:
         voxel_size=SIDE / count,
         parts=[vs.Part(shape=shapes[0] | shapes[1], material=RUBBER)],
         clamps=outer + inner,
+        contact=Contact(friction=0.8),  # which takes the same implicit steps
         loads=[vs.Gravity(history=History(time=[0.05, 0.1], factor=[0.0, 1.0]))],
         solver=Solver(method="dynamics", time_step=0.01, end_time=0.15),
     )
@@ -103,7 +104,7 @@ def pads(count: int, *, grasp: bool) -> vs.Design:
         return alone
     shape = vs.Box(size=(SIDE, 16 * mm, 16 * mm), center=(0, 0, 0))
     bar = Object(name="bar", shape=shape, motion="free", mass="20 g", voxel_size=2 * mm)
-    return alone.replace(clamps=outer, objects=[bar], contact=Contact(friction=0.8))
+    return alone.replace(clamps=outer, objects=[bar])
 
 
 #: Scenes by name, each with that beside which it is priced, if any.
