@@ -116,7 +116,7 @@ impl Objects {
         self.turned = Some(Turned { motions, assembled });
     }
 
-    /// Changes the matrix back to what was assembled; returns true if it differs.
+    /// Changes the matrix back to the assembled one; returns true if it differs.
     pub fn turn_back(&mut self, matrix: &mut BlockMatrix) -> bool {
         let assembled = self.turned.take().map_or(Vec::new(), |own| own.assembled);
         for (row, column, block) in &assembled {
@@ -144,7 +144,7 @@ impl Objects {
         });
     }
 
-    /// Replaces the coordinates of each object by what `sum` returns for its motions, its former coordinates, their
+    /// Replaces the coordinates of each object by those that `sum` returns for its motions, its former coordinates, their
     /// number and that of the coordinate.
     fn each(&self, vectors: &mut [Vec3], sum: impl Fn(&[f64], &[f64], usize, usize) -> f64) {
         let Some(turned) = &self.turned else { return };
@@ -191,8 +191,8 @@ fn set_diagonal(matrix: &mut BlockMatrix, rows: &[u32], values: &[f64]) {
     }
 }
 
-/// Multiplies what couples an object with others by its eigenvectors, from the left in its rows and from the right in
-/// its columns.
+/// Multiplies the blocks that couple an object with others by its eigenvectors, from the left in its rows and from the
+/// right in its columns.
 fn turn_rows(matrix: &mut BlockMatrix, rows: &[u32], vectors: &[f64]) {
     let n = 3 * rows.len();
     let others: Vec<u32> = matrix
@@ -277,8 +277,9 @@ mod tests {
     use super::*;
     use crate::linear::direct::DirectSystem;
     use crate::linear::iterative::IterativeSystem;
+    use crate::linear::laden::laden;
     use crate::linear::options::{LinearOptions, LinearSolver};
-    use crate::linear::trials::{assembled, laden, multigrid};
+    use crate::linear::trials::{assembled, multigrid};
     use voxsoft_solid::conformance::numbers::{distance, random, size};
 
     const YOUNG: f64 = 60e3;
