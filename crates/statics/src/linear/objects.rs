@@ -180,7 +180,7 @@ fn set_diagonal(matrix: &mut BlockMatrix, rows: &[u32], values: &[f64]) {
     for (a, &row) in rows.iter().enumerate() {
         for &column in rows {
             let at = |k: usize| {
-                if row == column && k % 4 == 0 {
+                if row == column && k.is_multiple_of(4) {
                     values[3 * a + k / 4]
                 } else {
                     0.0

@@ -173,7 +173,6 @@ impl Motion {
             tolerance: settings.tolerance,
             memory: settings.memory,
             linear: settings.linear,
-            ..ImplicitSettings::default()
         };
         let mut run = Run::new(problem, own, start);
         match Newton::new(&mut run) {
