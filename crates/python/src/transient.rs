@@ -48,6 +48,7 @@ pub fn transient(
         max_time,
         record_interval,
         memory,
+        ..Transient::default()
     };
     let inner = problem.now();
     let touching = problem.touching.as_ref().map(Arc::clone);

@@ -380,6 +380,10 @@ impl Term for LiveSurfaceContact {
         self.contact.check(vertices)
     }
 
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
         for &pair in &self.run.pattern {
             self.contact.visit_pair(pair, visit);

@@ -19,6 +19,7 @@ pub(crate) trait Backend: Send + Sync {
     fn preconditioner<'a>(&'a self, matrix: &'a BlockMatrix) -> Box<dyn Preconditioner + 'a>;
 }
 
-/// Makes the back end for a body: from its voxels, whose nodes are numbered like the rows of the matrix; the pattern of
-/// the matrix; and the coloring that its rows are sorted by, so that no two rows of one color share an entry.
-pub(crate) type MakeBackend = fn(Vec<Cell>, &BlockMatrix, Coloring) -> Box<dyn Backend>;
+/// Makes the back end for a body: from its voxels, whose nodes are numbered like the rows of the matrix; the rows of
+/// rigid objects, which are few and no nodes of voxels; the pattern of the matrix; and the coloring that its rows are
+/// sorted by, so that no two rows of one color share an entry.
+pub(crate) type MakeBackend = fn(Vec<Cell>, &[u32], &BlockMatrix, Coloring) -> Box<dyn Backend>;

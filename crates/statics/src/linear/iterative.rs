@@ -6,12 +6,13 @@
 use voxsoft_solid::assembly::Elements;
 use voxsoft_solid::element::assumed_strain::AssumedStrains;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Load, Problem, Term, elastic};
+use voxsoft_solid::{Load, Problem, elastic};
 
 use crate::linear::backend::{Backend, MakeBackend};
 use crate::linear::conjugate_gradients::{End, Equation, conjugate_gradients};
 use crate::linear::error::FactorError;
 use crate::linear::multigrid::{BlockMatrix, cells_of, color, for_each_large, vectorized};
+use crate::linear::objects::{Objects, objects_of};
 use crate::linear::operator::RankUpdated;
 use crate::linear::options::LinearOptions;
 use crate::linear::row_pattern::pattern;
@@ -34,6 +35,8 @@ pub(crate) struct IterativeSystem {
     places: Vec<u32>,
     held: Vec<[bool; 3]>,
     matrix: BlockMatrix,
+    /// Free rigid objects, whose coordinates in the matrix and in vectors by rows change where it is factorized.
+    objects: Objects,
     /// Relative shift of the diagonal.
     lifted: f64,
     backend: Box<dyn Backend>,
@@ -73,34 +76,37 @@ impl IterativeSystem {
         let body = problem.body();
         let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.small_hex8s().len();
         let loads = problem.loads().iter();
-        let local = body.attached().all(Term::is_local)
-            && loads.map(|load| &load.kind).all(|kind| kind.is_local());
+        let local = loads.map(|load| &load.kind).all(|kind| kind.is_local());
         if !whole || !local {
             return Ok(None);
         }
         let Some(mut cells) = cells_of(body) else {
             return Ok(None);
         };
-        // Coarser levels do not represent vertices that are no corners of cells, such as those of free objects.
-        let mut known: Vec<bool> = held.iter().map(|held| held.iter().all(|h| *h)).collect();
+        let mut is_corner = vec![false; held.len()];
         for node in cells.iter().flat_map(|cell| cell.nodes) {
-            known[node as usize] = true;
+            is_corner[node as usize] = true;
         }
-        if !known.into_iter().all(|known| known) {
+        let Some(mut objects) = objects_of(problem, held, &is_corner) else {
             return Ok(None);
-        }
+        };
         options.allow(BYTES_PER_VERTEX * body.rest().len() as u64)?;
-        let draft = pattern(problem);
+        let draft = pattern(problem, &objects);
         let (coloring, places) = color(&draft);
+        for row in objects.iter_mut().flatten() {
+            *row = places[*row as usize];
+        }
         for cell in &mut cells {
             cell.nodes = cell.nodes.map(|node| places[node as usize]);
         }
         let matrix = draft.renumbered(&places);
-        let backend = make(cells, &matrix, coloring);
+        let objects = Objects::new(objects);
+        let backend = make(cells, &objects.all_rows(), &matrix, coloring);
         Ok(Some(Self {
             places,
             held: held.to_vec(),
             matrix,
+            objects,
             lifted: 0.0,
             backend,
             coupled: Vec::new(),
@@ -117,9 +123,31 @@ impl IterativeSystem {
         (&self.matrix, &*self.backend)
     }
 
+    /// Free rigid objects.
+    #[cfg(test)]
+    pub fn objects(&self) -> &Objects {
+        &self.objects
+    }
+
     /// Row of each vertex.
     pub fn places(&self) -> &[u32] {
         &self.places
+    }
+
+    /// Discards the assembled tangent.
+    fn clear(&mut self) {
+        self.lifted = 0.0;
+        self.matrix.clear();
+        self.objects.forget();
+    }
+
+    /// Changes the matrix and the coupled vectors back to the coordinates of vertices; returns true if that takes a new
+    /// factor.
+    pub fn turn_back(&mut self) -> bool {
+        for vector in &mut self.coupled {
+            self.objects.vertices(vector);
+        }
+        self.objects.turn_back(&mut self.matrix)
     }
 
     /// See [`crate::linear::system::System::assemble`].
@@ -132,8 +160,7 @@ impl IterativeSystem {
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
-        self.lifted = 0.0;
-        self.matrix.clear();
+        self.clear();
         let mut target = Target {
             places: &self.places,
             held: &self.held,
@@ -161,8 +188,7 @@ impl IterativeSystem {
 
     /// Assembles element matrices that `visit` passes on, many at a time.
     pub fn assemble_batches(&mut self, visit: impl FnOnce(&mut dyn FnMut(Elements<'_>))) {
-        self.lifted = 0.0;
-        self.matrix.clear();
+        self.clear();
         let mut target = Target {
             places: &self.places,
             held: &self.held,
@@ -172,7 +198,8 @@ impl IterativeSystem {
     }
 
     /// Diagonal of the assembled tangent on free coordinates.
-    pub fn diagonal(&self) -> Vec<f64> {
+    pub fn diagonal(&mut self) -> Vec<f64> {
+        self.turn_back();
         let block = |&place: &u32| self.matrix.diagonal_block(place as usize);
         let blocks = self.places.iter().map(block);
         blocks
@@ -182,6 +209,7 @@ impl IterativeSystem {
 
     /// Sets that diagonal; held coordinates stay as they are.
     pub fn set_diagonal(&mut self, diagonal: &[f64]) {
+        self.turn_back();
         let (vectors, _) = diagonal.as_chunks::<3>();
         for ((&row, held), vector) in self.places.iter().zip(&self.held).zip(vectors) {
             let place = self.matrix.diagonal_place(row as usize);
@@ -213,6 +241,7 @@ impl IterativeSystem {
         if by == 1.0 {
             return;
         }
+        self.turn_back();
         for row in 0..self.matrix.rows() {
             let (place, block) = (
                 self.matrix.diagonal_place(row),
@@ -231,6 +260,12 @@ impl IterativeSystem {
     pub fn factor(&mut self, downhill: bool) -> Result<IterativeFactor, FactorError> {
         if !self.matrix.are_finite() {
             return Err(FactorError::Singular);
+        }
+        if !self.objects.are_turned() {
+            self.objects.turn(&mut self.matrix);
+            for vector in &mut self.coupled {
+                self.objects.amplitudes(vector);
+            }
         }
         self.backend.take(&self.matrix);
         Ok(IterativeFactor { downhill })
@@ -259,9 +294,8 @@ impl IterativeSystem {
         let guess = guess.map(|guess| self.by_rows(guess));
         let sides = (self.by_rows(side), guess.as_deref());
         let (answer, end) = self.iterate(factor, sides, None, tolerance, stop);
-        for (vertex, &place) in self.places.iter().enumerate() {
-            side[3 * vertex..3 * vertex + 3].copy_from_slice(&answer[place as usize]);
-        }
+        let answer = self.by_vertices(answer);
+        side.copy_from_slice(answer.as_flattened());
         match end {
             End::Converged | End::NegativeCurvature => Ok(()),
             End::Stalled => Err(FactorError::Stalled),
@@ -297,13 +331,21 @@ impl IterativeSystem {
         end != End::NegativeCurvature
     }
 
-    /// Converts a vector of free coordinates into rows.
+    /// Converts a vector of free coordinates into rows of the matrix.
     pub fn by_rows(&self, side: &[f64]) -> Vec<Vec3> {
         let mut rows = vec![[0.0; 3]; self.places.len()];
         for (vertex, &place) in self.places.iter().enumerate() {
             rows[place as usize].copy_from_slice(&side[3 * vertex..3 * vertex + 3]);
         }
+        self.objects.amplitudes(&mut rows);
         rows
+    }
+
+    /// Converts rows of the matrix into vectors on vertices.
+    pub fn by_vertices(&self, mut rows: Vec<Vec3>) -> Vec<Vec3> {
+        self.objects.vertices(&mut rows);
+        let places = self.places.iter();
+        places.map(|&place| rows[place as usize]).collect()
     }
 
     /// Conjugate gradients on the tangent with its coupled terms and a `border`; returns the solution by rows for a

@@ -8,9 +8,12 @@ pub(crate) mod conjugate_gradients;
 pub(crate) mod direct;
 pub(crate) mod error;
 pub(crate) mod iterative;
+#[cfg(test)]
+mod laden;
 pub(crate) mod lattice_product;
 mod low_rank_update;
 mod multigrid;
+mod objects;
 pub(crate) mod operator;
 pub(crate) mod options;
 mod ordering;

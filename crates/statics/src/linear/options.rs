@@ -45,8 +45,13 @@ impl LinearSolver {
 }
 
 /// Assembled matrix and V-cycle on the threads of the processor.
-fn multigrid(cells: Vec<Cell>, matrix: &BlockMatrix, coloring: Coloring) -> Box<dyn Backend> {
-    Box::new(Hierarchy::new(cells, matrix, coloring))
+fn multigrid(
+    cells: Vec<Cell>,
+    objects: &[u32],
+    matrix: &BlockMatrix,
+    coloring: Coloring,
+) -> Box<dyn Backend> {
+    Box::new(Hierarchy::new(cells, objects.to_vec(), matrix, coloring))
 }
 
 /// Solver and memory limit of linear systems.

@@ -23,10 +23,18 @@ impl Pieces {
     }
 }
 
-/// Columns of each vertex: the corners of its voxels, and the vertices coupled by membranes and pressures.
-pub(crate) fn pattern(problem: &Problem) -> BlockMatrix {
+/// Columns of each vertex: the corners of its voxels, and the vertices coupled by membranes and pressures. All vertices
+/// of one of the `objects` have the same ones.
+pub(crate) fn pattern(problem: &Problem, objects: &[Vec<u32>]) -> BlockMatrix {
     let body = problem.body();
     let count = body.rest().len();
+    let mut object_of: Vec<Option<&[u32]>> = vec![None; count];
+    for object in objects {
+        for &vertex in object {
+            object_of[vertex as usize] = Some(object);
+        }
+    }
+    let mut whole = Vec::new();
     let mut elements = Pieces::default();
     if body.ties().is_empty() {
         body.voxels().iter().for_each(|v| elements.push(v));
@@ -35,7 +43,15 @@ pub(crate) fn pattern(problem: &Problem) -> BlockMatrix {
         hex8s.visit_pattern(&mut |vertices| elements.push(vertices));
     }
     for term in body.terms_beyond_voxels() {
-        term.visit_pattern(&mut |vertices| elements.push(vertices));
+        term.visit_pattern(&mut |vertices| {
+            whole.clear();
+            whole.extend_from_slice(vertices);
+            let touched = vertices.iter().filter_map(|&v| object_of[v as usize]);
+            touched.for_each(|object| whole.extend_from_slice(object));
+            whole.sort_unstable();
+            whole.dedup();
+            elements.push(&whole);
+        });
     }
     problem.visit_load_pattern(&mut |vertices| elements.push(vertices));
     // Elements at each vertex, then the vertices of those elements.

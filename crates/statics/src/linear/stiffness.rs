@@ -63,7 +63,8 @@ impl Stiffness {
     }
 
     /// The assembled matrix.
-    pub fn block_rows(&self) -> BlockRows {
+    pub fn block_rows(&mut self) -> BlockRows {
+        self.preconditioned &= !self.system.turn_back();
         let (matrix, places) = (self.system.parts().0, self.system.places());
         let mut vertex_of = vec![0u32; places.len()];
         for (vertex, &place) in places.iter().enumerate() {
@@ -128,9 +129,7 @@ impl Stiffness {
             End::Cancelled => return Err(AdjointError::Cancelled),
         }
         Ok(LinearSolution {
-            displacements: (system.places().iter())
-                .map(|&place| answer[place as usize])
-                .collect(),
+            displacements: system.by_vertices(answer),
             iterations: operator.products.into_inner(),
         })
     }

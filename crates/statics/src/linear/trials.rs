@@ -14,6 +14,7 @@ use super::backend::MakeBackend;
 use super::conformance::{check_agreement, check_operator, check_preconditioner, check_solution};
 use super::direct::{DirectFactor, DirectSystem};
 use super::iterative::IterativeSystem;
+use super::laden::laden;
 use super::lattice_product::LatticeProduct;
 use super::operator::{Jacobi, LinearOperator, Preconditioner, RankUpdated};
 use super::options::{LARGE, LinearOptions, LinearSolver};
@@ -85,7 +86,7 @@ fn beam(material: impl Into<Material>) -> Problem {
     Problem::new(body, clamps, vec![gravity], None).unwrap()
 }
 
-fn rubber() -> HyperelasticMaterial {
+pub(crate) fn rubber() -> HyperelasticMaterial {
     HyperelasticMaterial::neo_hookean(60e3, 0.49, 1070.0).unwrap()
 }
 
@@ -107,7 +108,7 @@ pub(crate) fn assembled(problem: &Problem, make: MakeBackend) -> IterativeSystem
 /// Tries a back end on bodies of rubber and of a lattice: the laws of its operator and its preconditioner, the products
 /// of the assembled matrix up to `allowed`, and solutions.
 pub(crate) fn check_backend(make: MakeBackend, allowed: f64) -> Outcome {
-    for problem in [beam(rubber()), beam(lattice())] {
+    for problem in [beam(rubber()), beam(lattice()), laden(60e3)] {
         let system = assembled(&problem, make);
         let (matrix, backend) = system.parts();
         let operator = backend.operator(matrix);

@@ -20,7 +20,7 @@ pub struct ImplicitSettings {
     pub retardation: f64,
     /// Tolerance of rest: of the relative residual force, and of the kinetic energy over the elastic energy.
     pub tolerance: f64,
-    /// Solver of the linear systems of [`crate::Implicit`] steps.
+    /// Solver of the linear systems.
     pub linear: LinearSolver,
     /// Most bytes of the tangent.
     pub memory: u64,

@@ -163,6 +163,37 @@ impl BlockMatrix {
         self.upper.values.block(self.diagonal_place(row))
     }
 
+    /// Half and place of a block; `None` if the row has no such column.
+    fn find(&self, row: usize, column: u32) -> Option<(bool, usize)> {
+        let in_upper = column as usize >= row;
+        let half = if in_upper { &self.upper } else { &self.lower };
+        let place = half.row(row).binary_search(&column).ok()?;
+        Some((in_upper, half.places(row).start + place))
+    }
+
+    /// Block of a row and a column; zero if there is none.
+    pub fn block(&self, row: usize, column: u32) -> Block {
+        match self.find(row, column) {
+            Some((true, place)) => self.upper.values.block(place),
+            Some((false, place)) => self.lower.values.block(place),
+            None => [0.0; 9],
+        }
+    }
+
+    /// Sets the block of a row and a column of the pattern.
+    pub fn set_block(&mut self, row: usize, column: u32, block: &Block) {
+        if let Some((in_upper, place)) = self.find(row, column) {
+            let half = if in_upper {
+                &mut self.upper
+            } else {
+                &mut self.lower
+            };
+            for (k, value) in block.iter().enumerate() {
+                half.values.set(place, k / 3, k % 3, *value);
+            }
+        }
+    }
+
     /// Sets all blocks to zero.
     pub fn clear(&mut self) {
         self.lower.values.clear();

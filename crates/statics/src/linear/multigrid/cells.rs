@@ -101,8 +101,13 @@ pub(crate) fn places_of(cells: &[Cell], nodes: usize) -> Vec<Vec3> {
     places
 }
 
-/// Cells of the next level, the number of its nodes, and the interpolation of `nodes` nodes.
-pub(crate) fn coarsen(cells: &[Cell], nodes: usize) -> (Vec<Cell>, usize, Interpolation) {
+/// Cells of the next level, the number of its nodes, and the interpolation of `nodes` nodes; those of rigid `objects`
+/// are nodes of the next level, too.
+pub(crate) fn coarsen(
+    cells: &[Cell],
+    objects: &[u32],
+    nodes: usize,
+) -> (Vec<Cell>, usize, Interpolation) {
     let (mut coarse, member_of) = group(cells);
 
     // First coarse cell that contains a node, and the node's place in it. Every further one shares the corners that
@@ -149,7 +154,13 @@ pub(crate) fn coarsen(cells: &[Cell], nodes: usize) -> (Vec<Cell>, usize, Interp
         starts: vec![0],
         entries: Vec::with_capacity(4 * nodes),
     };
-    for place in home {
+    let mut kept = vec![None; nodes];
+    for &node in objects {
+        kept[node as usize] = Some(count);
+        count += 1;
+    }
+    for (place, kept) in home.into_iter().zip(kept) {
+        interpolation.entries.extend(kept.map(|own| (own, 1.0)));
         if let Some((owner, place)) = place {
             let corners = &coarse[owner as usize].nodes;
             let hangs_on = weights(place).map(|(corner, weight)| (corners[corner], weight));
@@ -278,7 +289,7 @@ mod tests {
     #[test]
     fn a_block_becomes_a_block_of_half_the_cells() {
         let (cells, nodes) = stitched(&block([5, 4, 2]));
-        let (coarse, count, interpolation) = coarsen(&cells, nodes);
+        let (coarse, count, interpolation) = coarsen(&cells, &[], nodes);
         assert_eq!(coarse.len(), 3 * 2);
         assert_eq!(count, 4 * 3 * 2);
         for node in 0..nodes {
@@ -295,7 +306,7 @@ mod tests {
             .filter(|at| (at[0] * 7 + at[1] * 3 + at[2] * 5) % 4 != 0)
             .collect();
         let (cells, nodes) = stitched(&places);
-        let (coarse, count, interpolation) = coarsen(&cells, nodes);
+        let (coarse, count, interpolation) = coarsen(&cells, &[], nodes);
         let mut fine = vec![[0.0; 3]; nodes];
         let mut large = vec![[0.0; 3]; count];
         for (list, values, side) in [(&cells, &mut fine, 1.0), (&coarse, &mut large, 2.0)] {
@@ -323,7 +334,7 @@ mod tests {
         places.extend(block([1, 8, 8]).into_iter().map(|[x, y, z]| [x + 2, y, z]));
         let (mut cells, mut nodes) = stitched(&places);
         for _ in 0..3 {
-            let (coarse, count, _) = coarsen(&cells, nodes);
+            let (coarse, count, _) = coarsen(&cells, &[], nodes);
             (cells, nodes) = (coarse, count);
             let mut classes = Classes::new(nodes);
             for cell in &cells {

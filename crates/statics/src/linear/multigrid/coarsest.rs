@@ -54,8 +54,13 @@ pub(crate) struct Coarsest {
 }
 
 impl Coarsest {
-    /// Analyzes a level with these cells; `None` if its factor is beyond the budget.
-    pub fn new(cells: &[Cell], matrix: &BlockMatrix, budget: Budget) -> Option<Self> {
+    /// Analyzes a level with these cells and rows of rigid objects; `None` if its factor is beyond the budget.
+    pub fn new(
+        cells: &[Cell],
+        objects: &[u32],
+        matrix: &BlockMatrix,
+        budget: Budget,
+    ) -> Option<Self> {
         if FILL * 9 * matrix.blocks() / 2 > budget.entries {
             return None;
         }
@@ -64,7 +69,9 @@ impl Coarsest {
         let neighbors: Vec<Vec<u32>> = (0..count)
             .map(|row| matrix.columns(row).collect())
             .collect();
-        let order = nested_dissection(&points, &neighbors, &vec![false; count]);
+        let mut is_last = vec![false; count];
+        objects.iter().for_each(|&row| is_last[row as usize] = true);
+        let order = nested_dissection(&points, &neighbors, &is_last);
         let mut places = vec![0u32; count];
         for (place, &node) in order.iter().enumerate() {
             places[node as usize] = place as u32;
@@ -219,7 +226,7 @@ mod tests {
     #[test]
     fn solves_and_keeps_loose_coordinates_apart() {
         let (cells, matrix) = chain(40);
-        let mut coarsest = Coarsest::new(&cells, &matrix, Budget::beside(0)).expect("small");
+        let mut coarsest = Coarsest::new(&cells, &[], &matrix, Budget::beside(0)).expect("small");
         coarsest.take(&matrix);
         let x: Vec<Vec3> = (0..40)
             .map(|k| [1.0, -0.5, if k == 39 { 0.0 } else { 0.1 * k as f64 }])
@@ -241,7 +248,7 @@ mod tests {
         let place = matrix.diagonal_place(20);
         // Below half of the stiffness of the two springs.
         matrix.upper.values.scale(place, 0, 0, 0.4);
-        let mut coarsest = Coarsest::new(&cells, &matrix, Budget::beside(0)).expect("small");
+        let mut coarsest = Coarsest::new(&cells, &[], &matrix, Budget::beside(0)).expect("small");
         coarsest.take(&matrix);
         let side: Vec<Vec3> = (0..40).map(|k| [f64::from(k == 20), 0.0, 0.0]).collect();
         let mut answer = side.clone();
@@ -252,14 +259,14 @@ mod tests {
     #[test]
     fn a_budget_is_kept() {
         let (cells, matrix) = chain(40);
-        let symbolic = Coarsest::new(&cells, &matrix, Budget::LARGEST)
+        let symbolic = Coarsest::new(&cells, &[], &matrix, Budget::LARGEST)
             .expect("small")
             .symbolic;
         let exact = Budget {
             entries: symbolic.len_val().max(FILL * 9 * matrix.blocks() / 2),
             products: products(&symbolic),
         };
-        assert!(Coarsest::new(&cells, &matrix, exact).is_some());
+        assert!(Coarsest::new(&cells, &[], &matrix, exact).is_some());
         for less in [
             Budget {
                 entries: symbolic.len_val() - 1,
@@ -270,7 +277,10 @@ mod tests {
                 ..exact
             },
         ] {
-            assert!(Coarsest::new(&cells, &matrix, less).is_none(), "{less:?}");
+            assert!(
+                Coarsest::new(&cells, &[], &matrix, less).is_none(),
+                "{less:?}"
+            );
         }
     }
 }

@@ -60,8 +60,13 @@ struct Workspace {
 
 impl Hierarchy {
     /// Builds the hierarchy from the cells of the finest level, whose nodes are numbered like the rows of `matrix`,
-    /// which its `coloring` sorts.
-    pub fn new(mut cells: Vec<Cell>, matrix: &BlockMatrix, coloring: Coloring) -> Self {
+    /// which its `coloring` sorts. Rows of rigid `objects` stay as they are on all levels.
+    pub fn new(
+        mut cells: Vec<Cell>,
+        mut objects: Vec<u32>,
+        matrix: &BlockMatrix,
+        coloring: Coloring,
+    ) -> Self {
         let mut hierarchy = Self {
             down: Vec::new(),
             up: Vec::new(),
@@ -73,14 +78,18 @@ impl Hierarchy {
         loop {
             let finer = hierarchy.patterns.last().unwrap_or(matrix);
             let nodes = finer.rows();
-            hierarchy.coarsest = Coarsest::new(&cells, finer, Budget::beside(matrix.rows()));
+            let beside = Budget::beside(matrix.rows());
+            hierarchy.coarsest = Coarsest::new(&cells, &objects, finer, beside);
             if hierarchy.coarsest.is_some() {
                 break;
             }
-            let (mut coarse, count, mut down) = coarsen(&cells, nodes);
+            let (mut coarse, count, mut down) = coarsen(&cells, &objects, nodes);
             if count as f64 > STALLED * nodes as f64 {
-                hierarchy.coarsest = Coarsest::new(&cells, finer, Budget::LARGEST);
+                hierarchy.coarsest = Coarsest::new(&cells, &objects, finer, Budget::LARGEST);
                 break;
+            }
+            for row in &mut objects {
+                *row = down.row(*row as usize)[0].0;
             }
             let draft = finer.coarse_pattern(&down, &transposed(&down, count));
             let (coloring, places) = color(&draft);
@@ -89,6 +98,9 @@ impl Hierarchy {
             }
             for cell in &mut coarse {
                 cell.nodes = cell.nodes.map(|node| places[node as usize]);
+            }
+            for row in &mut objects {
+                *row = places[*row as usize];
             }
             let pattern = draft.renumbered(&places);
             hierarchy.up.push(transposed(&down, count));

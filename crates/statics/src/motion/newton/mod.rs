@@ -34,6 +34,7 @@ pub use self::search::Newton;
 use super::integrator::{Integrator, SAME_TIME, Stop};
 use super::run::{ImplicitSettings, Run};
 use crate::linear::error::FactorError;
+use crate::linear::options::LinearSolver;
 
 /// Settings of implicit dynamics with contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +56,8 @@ pub struct Transient {
     pub record_interval: Option<f64>,
     /// Most bytes of the tangent.
     pub memory: u64,
+    /// Solver of the linear systems.
+    pub linear: LinearSolver,
 }
 
 impl Default for Transient {
@@ -68,6 +71,7 @@ impl Default for Transient {
             max_time: 60.0,
             record_interval: None,
             memory: u64::MAX,
+            linear: LinearSolver::Auto,
         }
     }
 }
@@ -168,7 +172,7 @@ impl Motion {
             retardation: settings.retardation,
             tolerance: settings.tolerance,
             memory: settings.memory,
-            ..ImplicitSettings::default()
+            linear: settings.linear,
         };
         let mut run = Run::new(problem, own, start);
         match Newton::new(&mut run) {

@@ -9,7 +9,7 @@ use voxsoft_solid::{Observer, Problem, Progress, State, Term, elastic};
 
 use crate::inertia::Inertia;
 use crate::linear::error::FactorError;
-use crate::linear::options::{LinearOptions, LinearSolver};
+use crate::linear::options::LinearOptions;
 use crate::motion::integrator::{Asker, InnerSearch, Stop};
 use crate::motion::run::{Now, Run, Step};
 use crate::motion::scheme::Stage;
@@ -28,8 +28,8 @@ pub struct Newton {
     /// Equilibrium of the problem with the forces of inertia.
     equilibrium: Equilibrium,
     inertia: Arc<Inertia>,
-    /// Most bytes of the tangent.
-    memory: u64,
+    /// Solver and memory limit of linear systems.
+    options: LinearOptions,
     /// Forces and energies at the beginning of the step of which the state is the first stage.
     pub(super) begun: Now,
 }
@@ -37,13 +37,16 @@ pub struct Newton {
 impl Newton {
     /// Starts from the state of a run.
     pub(super) fn new(run: &mut Run) -> Result<Self, FactorError> {
-        let memory = run.settings.memory;
+        let options = LinearOptions {
+            solver: run.settings.linear,
+            memory: run.settings.memory,
+        };
         let inertia = Arc::new(Inertia::new(run.problem.body().masses()));
         begin_fluid(run);
         Ok(Self {
-            equilibrium: moving(&run.problem, &inertia, memory)?,
+            equilibrium: moving(&run.problem, &inertia, options)?,
             inertia,
-            memory,
+            options,
             begun: Now::default(),
         })
     }
@@ -156,7 +159,7 @@ impl InnerSearch for Newton {
 
     fn resume(&mut self, run: &mut Run) {
         // A tangent of the size of the last one fits in memory too.
-        if let Ok(equilibrium) = moving(&run.problem, &self.inertia, self.memory) {
+        if let Ok(equilibrium) = moving(&run.problem, &self.inertia, self.options) {
             self.equilibrium = equilibrium;
         }
     }
@@ -261,16 +264,12 @@ fn momentum(run: &Run) -> f64 {
 fn moving(
     problem: &Problem,
     inertia: &Arc<Inertia>,
-    memory: u64,
+    options: LinearOptions,
 ) -> Result<Equilibrium, FactorError> {
     let moving = problem
         .clone()
         .with_term(Arc::clone(inertia) as Arc<dyn Term>);
     let moving = moving.expect("inertia has the vertices of its body");
-    let options = LinearOptions {
-        solver: LinearSolver::Auto,
-        memory,
-    };
     Ok(Equilibrium {
         inertia: Some(Arc::clone(inertia)),
         ..Equilibrium::new(moving, options)?
