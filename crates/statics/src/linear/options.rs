@@ -6,6 +6,10 @@ use crate::linear::multigrid::{BlockMatrix, Cell, Coloring, Hierarchy};
 
 /// Number of vertices from which an equilibrium is solved iteratively: measured with `benchmarks/statics.py`.
 pub(crate) const LARGE: usize = 4_000;
+/// Number beside free rigid objects, whose contact takes more iterations of conjugate gradients: pads of 11,700
+/// vertices that grip a bar took 1.2 times the processor time of a factor, which grows with the power 4/3 to 2 of their
+/// number (`benchmarks/contact_price.py`).
+pub(crate) const LARGE_WITH_OBJECTS: usize = 25_000;
 
 /// Solver of the linear systems of Newton's method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

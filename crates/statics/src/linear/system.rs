@@ -2,13 +2,13 @@
 
 use voxsoft_solid::element::assumed_strain::AssumedStrains;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Load, Problem, Ties};
+use voxsoft_solid::{Load, Problem, Term, Ties};
 
 use crate::linear::direct::{DirectFactor, DirectSystem};
 use crate::linear::error::FactorError;
 use crate::linear::iterative::{IterativeFactor, IterativeSystem};
 use crate::linear::low_rank_update::{LowRankUpdate, UpdateSolutions};
-use crate::linear::options::{LARGE, LinearOptions};
+use crate::linear::options::{LARGE, LARGE_WITH_OBJECTS, LinearOptions};
 
 /// Tangent of a problem, kept with its sparsity pattern for many assemblies.
 ///
@@ -45,7 +45,12 @@ impl System {
         options: LinearOptions,
     ) -> Result<Self, FactorError> {
         let vertices = problem.body().rest().len();
-        let backend = options.solver.backend(vertices, LARGE);
+        let large = if problem.body().attached().all(Term::is_local) {
+            LARGE
+        } else {
+            LARGE_WITH_OBJECTS
+        };
+        let backend = options.solver.backend(vertices, large);
         let tangent = if let Some(make) = backend
             && let Some(system) = IterativeSystem::new(problem, held, options, make)?
         {
