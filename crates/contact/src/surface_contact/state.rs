@@ -129,6 +129,8 @@ pub(super) struct ContactState {
     pub stick: f64,
     /// Largest creep of sticking samples at the last correction, relative to its tolerance.
     pub crept: f64,
+    /// Largest error of gaps and creep at the last correction, relative to its tolerance.
+    pub off: f64,
     /// Corrections since the last accepted state.
     pub corrections: u32,
     /// Remaining searches of all samples before their facing is fixed.

@@ -18,8 +18,8 @@ const STALE: usize = 20;
 const LOOSE: f64 = 1e-3;
 const LEFT: f64 = 0.05;
 /// Precision of friction along a path, where errors of its bounds add up, 0.3 % of the largest one at each vertex
-/// otherwise; and of all contact in an equilibrium under the whole load. In a motion, the gaps of each step are those of
-/// that step alone.
+/// otherwise; and of all contact under the whole load and in a motion, whose balance of energy sees the work on errors of
+/// gaps.
 const PRECISE: f64 = 0.1;
 
 /// Search for an equilibrium with fixed multipliers of contact.
@@ -184,7 +184,7 @@ impl Equilibrium {
             }
         };
         Precision {
-            gaps: choose(is_whole && self.inertia.is_none()),
+            gaps: choose(is_whole),
             friction: choose(is_whole || adds_up),
         }
     }
