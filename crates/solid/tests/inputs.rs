@@ -37,7 +37,7 @@ fn problem(history: &History) -> Problem {
     let material = HyperelasticMaterial::new(Model::NeoHookean { c10: 0.5 }, 20.0, 1.0).unwrap();
     let grown = material.with_eigenstrain(eigenstrain, Eigenstrain::none());
     let body = Body::new(&cube(), &[grown]).unwrap();
-    let mut clamp = Clamp::fixed(vec![0]);
+    let mut clamp = Clamp::fixed(vec![0, 7]);
     clamp.motion = Some(Motion {
         displacement: [0.0, 0.0, 1.0],
         angle: 1.0,
