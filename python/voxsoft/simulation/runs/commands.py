@@ -8,13 +8,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from itertools import accumulate, pairwise
 from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
 
+from voxsoft import _core
 from voxsoft.design import AnyLoad, Design, Dielectric, History, Motion, Tendon
 from voxsoft.design.activation import AnyActivation
 from voxsoft.design.chamber import chosen_cavities
@@ -31,6 +32,8 @@ from voxsoft.design.supply import (
 from voxsoft.errors import DesignError, UnitError
 from voxsoft.records import closest
 from voxsoft.simulation.loads import LoadReading, readings
+from voxsoft.simulation.setup.growth import growths_of
+from voxsoft.simulation.setup.materials import core_materials
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.units import UnitOf, format_quantity
 
@@ -251,6 +254,15 @@ class Commands:
         design = setup.design
         self.setup = Setup(_of_size_one(design), setup.mesh)
         self.all = tuple(_named(list(_drafts(setup, self.setup))))
+
+    @cached_property
+    def problem(self) -> _core.Problem:
+        """Problem of the core with loads of unit size, and growth that is commanded."""
+        one = self.setup
+        if not growths_of(one.design):
+            return one.problem
+        own = core_materials(one.design, one.materials, one.mesh, one.origin, over_time=True)
+        return one.problem.with_materials(own)
 
     @property
     def names(self) -> tuple[str, ...]:

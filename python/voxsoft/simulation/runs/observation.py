@@ -86,7 +86,7 @@ class Moment:
 
 @dataclass(frozen=True, eq=False)
 class Driven:
-    """Drives of a body at one moment, besides what the core remembers.
+    """Drives of a body at one moment, beside the memory of the core.
 
     Attributes
     ----------
@@ -296,8 +296,8 @@ class Observation:
     def work(self) -> Mapping[str, float]:
         """Energy that each drive has given since the reset, J.
 
-        Of tendons by name, what the motor has put in; of supplies by name, the energy of the fluid
-        that they gave, see :class:`~voxsoft.simulation.setup.fluids.ChamberState`; of pressures by
+        Tendons, by name, have the work of the motor; supplies, by name, the energy of the fluid
+        that they gave, see :class:`~voxsoft.simulation.setup.fluids.ChamberState`; pressures, by
         the name of their command, the work on the walls.
         """
         return self._driven.work

@@ -45,7 +45,7 @@ class Sensor(Record):
     Parameters
     ----------
     of
-        What it measures, by group, name and quantity: ``"probes.tip"``, ``"probes.tip.rate"``,
+        The measured quantity, by group, name and quantity: ``"probes.tip"``, ``"probes.tip.rate"``,
         ``"chambers.left.pressure"``, ``"tendons.flexor.length"``, ``"objects.cube.position"``,
         ``"contacts.finger.cube.force"``, ``"commands.left"``, ``"power"``, ``"energy"``. See
         :class:`~voxsoft.simulation.runs.observation.Observation` for shapes and units.

@@ -26,9 +26,7 @@ from voxsoft.simulation.runs.observation import (
     Subject,
 )
 from voxsoft.simulation.runs.sensors import Sensor, Sensors, SensorState
-from voxsoft.simulation.setup.growth import growths_of
 from voxsoft.simulation.setup.large_voxels import evenly_small
-from voxsoft.simulation.setup.materials import core_materials
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
 
@@ -145,7 +143,7 @@ class Simulator:
         self._subject = Subject(
             setup,
             commands,
-            _problem(commands.setup),
+            commands.problem,
             commands.pressures(setup),
             self._settings.time_step,
         )
@@ -485,14 +483,6 @@ class Simulator:
         if report.status == _core.LiveStatus.AT_REST:
             return "at-rest", f"at rest, residual {report.residual:.2g} of the load"
         return "moving", "moving"
-
-
-def _problem(one: Setup) -> _core.Problem:
-    """Return the problem of a design whose loads have unit size, with growth that is commanded."""
-    if not growths_of(one.design):
-        return one.problem
-    own = core_materials(one.design, one.materials, one.mesh, one.origin, over_time=True)
-    return one.problem.with_materials(own)
 
 
 def _with(
