@@ -293,6 +293,7 @@ def test_sensors_are_late_noisy_and_repeat():
     assert late[:2] == [vs.Simulator(design).state.chambers[0].pressure] * 2
     off = np.array([float(each.sensors["noisy"]) for each in seen]) - exact
     assert 5.0 < np.abs(off).max() < 250.0
+    assert len(set(off.round(3))) == len(off)
     top = seen[-1].sensors["top"]
     assert top / 10e-6 == pytest.approx(np.round(top / 10e-6), abs=1e-6)
     simulator.restore(seen[2])
