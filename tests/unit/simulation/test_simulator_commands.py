@@ -125,6 +125,8 @@ def test_a_drive_is_off_until_it_is_commanded_and_repeats_to_the_bit(name):
     later = [*run(simulator, None, 2), *run(simulator, other, 3), *run(simulator, None, 2)]
     assert simulator.restore(mid) is mid is simulator.state is simulator.observation
     copied = simulator.copy()
+    # Forces of the last step too, by which the energy of the next one is judged.
+    assert copied._live.memory() == mid._moment.memory
     again = [*run(simulator, None, 2), *run(simulator, other, 3), *run(simulator, None, 2)]
     assert [bits(each) for each in again] == [bits(each) for each in later]
     also = [*run(copied, None, 2), *run(copied, other, 3), *run(copied, None, 2)]
@@ -381,3 +383,20 @@ def test_shorter_steps_bring_a_vibration_nearer_to_the_true_one():
     true = swing(0.5e-3, 320)[39::40]
     coarse, fine = swing(0.02, 8), swing(0.02, 8, accuracy=1e-4)
     assert np.abs(fine - true).max() < 0.3 * np.abs(coarse - true).max()
+
+
+@pytest.mark.parametrize("name", ["tension", "pressure"])
+def test_a_body_at_rest_rests_after_it_is_restored(name):
+    design, commands = DRIVES[name]
+    simulator = vs.Simulator(design)
+    seen = simulator.step(commands)
+    while seen.status == "moving":
+        seen = simulator.step()
+    plain = [bits(each) for each in run(simulator, None, 2)]
+    assert plain[-1][2] == seen.positions.tobytes()
+    simulator.restore(seen)
+    assert [bits(each) for each in run(simulator, None, 2)] == plain
+    moved = [bits(each) for each in run(simulator, simulator.targets, 2)]
+    simulator.restore(seen)
+    run(simulator, None, 2)
+    assert [bits(each) for each in run(simulator, simulator.targets, 2)] == moved
