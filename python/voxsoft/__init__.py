@@ -114,6 +114,7 @@ if TYPE_CHECKING:
     )
     from voxsoft.simulation import (
         Result,
+        Sensor,
         Simulator,
         follow,
         modes,
@@ -194,6 +195,7 @@ _HOMES = {
     ),
     "voxsoft.simulation": (
         "Result",
+        "Sensor",
         "Simulator",
         "check",
         "follow",

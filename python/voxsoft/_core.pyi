@@ -250,10 +250,10 @@ class Material:
     def with_growth(
         self,
         of_material: Sequence[
-            tuple[Sequence[float], Sequence[float], float, NDArray[np.float64] | None]
+            tuple[int, Sequence[float], Sequence[float], float, NDArray[np.float64] | None]
         ],
         of_fibers: Sequence[
-            tuple[Sequence[float], Sequence[float], float, NDArray[np.float64] | None]
+            tuple[int, Sequence[float], Sequence[float], float, NDArray[np.float64] | None]
         ],
     ) -> Material: ...
     def with_prony(self, branches: Sequence[tuple[float, float]]) -> Material:
@@ -472,6 +472,8 @@ class Contact:
     def gap(self) -> float: ...
     @property
     def slipping(self) -> float: ...
+    @property
+    def place(self) -> list[float] | None: ...
 
 @final
 class ObjectPose:
@@ -753,6 +755,7 @@ class Problem:
         time: float,
         memory: Memory,
         residual: float,
+        inputs: Sequence[tuple[str, int, int, Sequence[float], Sequence[float]]] = ...,
     ) -> Answer:
         """Measure a moving state of all vertices, objects included; nothing is solved."""
 
@@ -1003,9 +1006,12 @@ class Live:
         tolerance: float = 1e-4,
         deterministic: bool = False,
         converged: bool = False,
+        accuracy: float = ...,
         memory: int = ...,
     ) -> Live:
         """Steps converge, with contact and fluids settled, if ``converged``.
+
+        These are halved where their error is above ``accuracy``, in shortest edges.
 
         Implicit steps take no more ``memory`` [bytes] for their tangent: a `MemoryError` of
         `advance` tells how much they would.
@@ -1019,8 +1025,14 @@ class Live:
         """Ask for steps of another length; explicit ones are as long as they can be."""
 
     def advance(self, substeps: int) -> Advance: ...
+    def advance_to(self, time: float) -> Advance: ...
     def advance_for(self, seconds: float, max_substeps: int = ...) -> Advance: ...
     def set_load(self, load: int, factor: float | None) -> None: ...
+    def command(
+        self, inputs: Sequence[tuple[str, int, int, Sequence[float], Sequence[float]]]
+    ) -> None:
+        """Replace the courses of inputs: kind, index, number of the quantity, times, values."""
+
     def grab(self, number: int, vertex: int, target: Sequence[float], stiffness: float) -> None: ...
     def release(self, number: int) -> bool: ...
     def grabs(self) -> list[tuple[int, int, list[float], list[float], float]]:

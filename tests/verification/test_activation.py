@@ -357,10 +357,6 @@ def test_a_history_that_leaves_nothing_is_refused():
         Strain(part="gel", value=0.6, history=fall)
     with pytest.raises(DesignError, match=r"history: has the factor -2: that is -1"):
         Thermal(part="gel", value="500 K", expansion="3e-4 1/K", history=fall)
-    with pytest.raises(
-        DesignError, match=r"activations\[0\].history: is not used by the simulator"
-    ):
-        vs.Simulator(bilayer(0.0, activations=[Strain(part="upper", value=0.1, history=RAMP)]))
 
 
 HEATING, COOLING = (340.0, 350.0), (330.0, 310.0)

@@ -24,18 +24,24 @@ pub fn stepper(problem: Problem, settings: Dynamics) -> Box<dyn Stepper> {
     Box::new(Implicit::new(problem, settings))
 }
 
-/// Makes a stepper whose steps converge, with contact settled and gas and liquid in chambers.
+/// Makes a stepper whose steps converge, with contact settled and gas and liquid in chambers, and with an error of at
+/// most `accuracy` ([`ImplicitSettings::accuracy`]).
 ///
 /// # Errors
 ///
 /// The status of a problem whose tangent cannot be made: out of memory.
-pub fn converging(problem: Problem, settings: Dynamics) -> Result<Box<dyn Stepper>, Status> {
+pub fn converging(
+    problem: Problem,
+    settings: Dynamics,
+    accuracy: f64,
+) -> Result<Box<dyn Stepper>, Status> {
     let settings = Transient {
         step: settings.time_step,
         damping: settings.damping,
         retardation: settings.retardation,
         tolerance: settings.tolerance,
         memory: settings.memory,
+        accuracy,
         ..Transient::default()
     };
     Ok(Box::new(Motion::new(problem, settings)?))

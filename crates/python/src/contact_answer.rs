@@ -28,6 +28,8 @@ pub struct PyContact {
     pub gap: f64,
     /// Fraction of the pressure under which the surfaces slip.
     pub slipping: f64,
+    /// Mean place of the pressure, m; none where nothing presses.
+    pub place: Option<Vec3>,
 }
 
 /// Pose of a rigid object.
@@ -64,6 +66,7 @@ pub(crate) fn to_python(py: Python<'_>, pairs: Vec<PairReport>) -> PyResult<Vec<
             bonded: pair.bonded,
             gap: pair.gap,
             slipping: pair.slipping,
+            place: pair.place,
         };
         Py::new(py, contact)
     });

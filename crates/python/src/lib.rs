@@ -15,6 +15,7 @@ mod errors;
 mod fields;
 mod gate;
 mod handle;
+mod inputs;
 mod live;
 mod materials;
 mod mesh;

@@ -11,7 +11,7 @@ use pyo3::types::PyBytes;
 use voxsoft_frames::FrameHead;
 use voxsoft_player::{converging, stepper};
 use voxsoft_solid::vector::{Vec3, norm, sub};
-use voxsoft_solid::{Ask, Grab, Method, Problem, State, Stepper};
+use voxsoft_solid::{Ask, Grab, Look, Method, Problem, State, Stepper};
 use voxsoft_xpbd::Dynamics;
 
 use crate::answer::PyAdvance;
@@ -20,6 +20,7 @@ use crate::display::{PyDisplay, field as field_of};
 use crate::errors::to_python;
 use crate::gate;
 use crate::handle::PyMemory;
+use crate::inputs::{InputArgument, inputs_of};
 use crate::player::dynamics;
 use crate::simulate::PyProblem;
 
@@ -54,21 +55,18 @@ impl PyLive {
     fn report(
         &self,
         py: Python<'_>,
-        go_on: impl Fn() -> bool + Sync,
-        substeps: u32,
+        advance: impl Fn(&mut dyn Stepper, &mut dyn FnMut(Ask) -> bool) -> Look + Sync,
     ) -> PyResult<PyAdvance> {
         let started = Instant::now();
         let mut guard = self.lock(py)?;
         let live = guard.as_mut();
         let (look, taken) = gate::run(py, |cancel| {
             let mut taken = 0;
-            let look = live.advance_while(substeps, &mut |ask| {
-                let stop = cancel.load(Ordering::Relaxed);
-                if ask == Ask::Within {
-                    return !stop;
+            let look = advance(live, &mut |ask| {
+                if ask == Ask::After {
+                    taken += 1;
                 }
-                taken += 1;
-                !stop && go_on()
+                !cancel.load(Ordering::Relaxed)
             });
             (look, taken)
         })?;
@@ -84,7 +82,8 @@ type PyGrab = (u32, u32, Vec3, Vec3, f64);
 impl PyLive {
     #[new]
     #[pyo3(signature = (problem, triangles, tags, voxel_size, *, time_step=0.01, substeps=None, iterations=1,
-        damping=None, retardation=0.0, tolerance=1e-4, deterministic=false, converged=false, memory=u64::MAX))]
+        damping=None, retardation=0.0, tolerance=1e-4, deterministic=false, converged=false,
+        accuracy=f64::INFINITY, memory=u64::MAX))]
     #[expect(
         clippy::too_many_arguments,
         reason = "keyword arguments of one Python call"
@@ -103,6 +102,7 @@ impl PyLive {
         tolerance: f64,
         deterministic: bool,
         converged: bool,
+        accuracy: f64,
         memory: u64,
     ) -> PyResult<Self> {
         let settings = Dynamics {
@@ -117,7 +117,7 @@ impl PyLive {
         let live = gate::run(py, |_| {
             let problem = Problem::clone(&problem);
             if converged {
-                converging(problem, settings)
+                converging(problem, settings, accuracy)
             } else {
                 Ok(stepper(problem, settings))
             }
@@ -157,7 +157,12 @@ impl PyLive {
 
     /// Takes `substeps` substeps, fewer at rest or after a breakdown.
     fn advance(&self, py: Python<'_>, substeps: u32) -> PyResult<PyAdvance> {
-        self.report(py, || true, substeps)
+        self.report(py, |live, go_on| live.advance_while(substeps, go_on))
+    }
+
+    /// Takes substeps until a time in s, fewer at rest or after a breakdown.
+    fn advance_to(&self, py: Python<'_>, time: f64) -> PyResult<PyAdvance> {
+        self.report(py, |live, go_on| live.advance_to(time, go_on))
     }
 
     /// Takes substeps for `seconds` of wall-clock time, at least one and at most `max_substeps`.
@@ -167,13 +172,25 @@ impl PyLive {
             PyValueError::new_err(format!("seconds must be zero or more, got {seconds}"))
         })?;
         let started = Instant::now();
-        self.report(py, || started.elapsed() < budget, max_substeps)
+        self.report(py, |live, go_on| {
+            live.advance_while(max_substeps, &mut |ask| {
+                let more = go_on(ask);
+                more && (ask == Ask::Within || started.elapsed() < budget)
+            })
+        })
     }
 
     /// Sets a load to `factor` times its final value; `None` restores its load history.
     #[pyo3(signature = (load, factor))]
     fn set_load(&self, py: Python<'_>, load: usize, factor: Option<f64>) -> PyResult<()> {
         self.with(py, |live| live.set_load(load, factor))?
+            .map_err(to_python)
+    }
+
+    /// Replaces the courses of inputs over time: times in s and values, constant outside of them.
+    fn command(&self, py: Python<'_>, inputs: Vec<InputArgument>) -> PyResult<()> {
+        let inputs = inputs_of(inputs)?;
+        self.with(py, |live| live.command(&inputs))?
             .map_err(to_python)
     }
 

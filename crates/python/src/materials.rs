@@ -11,7 +11,13 @@ use crate::arrays::rows;
 use crate::errors::{exception, to_python};
 
 /// A growth factor: times (s), stretches, their exponent, and the share of each block if it is a field.
-type Factor<'py> = (Vec<f64>, Vec<f64>, f64, Option<PyReadonlyArray2<'py, f64>>);
+type Factor<'py> = (
+    usize,
+    Vec<f64>,
+    Vec<f64>,
+    f64,
+    Option<PyReadonlyArray2<'py, f64>>,
+);
 
 /// A family of fibers: a unit vector, a modulus in Pa, resistance to compression (or tension only), and the stretch at
 /// which they are free of stress.
@@ -178,7 +184,7 @@ impl PyMaterial {
         of_material: Vec<Factor<'_>>,
         of_fibers: Vec<Factor<'_>>,
     ) -> PyResult<Self> {
-        let factor = |(times, stretches, power, field): Factor<'_>| {
+        let factor = |(number, times, stretches, power, field): Factor<'_>| {
             let share = match field {
                 None => Share::Whole,
                 Some(field) => Share::Field(rows("field", &field)?.into()),
@@ -188,6 +194,7 @@ impl PyMaterial {
                 history,
                 power,
                 share,
+                number,
             })
         };
         let growth = |factors: Vec<Factor<'_>>| {

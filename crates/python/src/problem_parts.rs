@@ -53,6 +53,7 @@ fn motion(
         angle,
         center,
         history,
+        courses: None,
     }))
 }
 

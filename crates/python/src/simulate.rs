@@ -20,6 +20,7 @@ use crate::arrays::{from_rows, rows};
 use crate::errors::to_python;
 use crate::gate;
 use crate::handle::{Handle, PyMemory};
+use crate::inputs::{InputArgument, inputs_of};
 use crate::materials::PyMaterial;
 use crate::problem_parts::PyProblemParts;
 use crate::surface_contact::{Touching, contact_of};
@@ -253,7 +254,10 @@ impl PyProblem {
         tendons(py, &problem, &positions, &factor_of)
     }
 
-    /// Measures a moving state of all vertices, objects included, under the loads at its time: nothing is solved.
+    /// Measures a moving state of all vertices, objects included, under the loads at its time, and inputs that replace
+    /// those of the problem: nothing is solved.
+    #[pyo3(signature = (positions, velocities, time, memory, residual, inputs=vec![]))]
+    #[expect(clippy::too_many_arguments, reason = "arguments of one Python call")]
     fn measure(
         &self,
         py: Python<'_>,
@@ -262,6 +266,7 @@ impl PyProblem {
         time: f64,
         memory: &PyMemory,
         residual: f64,
+        inputs: Vec<InputArgument>,
     ) -> PyResult<PyAnswer> {
         let positions = self.positions(&positions)?;
         let velocities = rows("velocities", &velocities)?;
@@ -273,7 +278,15 @@ impl PyProblem {
             );
             return Err(PyValueError::new_err(message));
         }
-        let there = self.with(|problem| problem.remember(&memory.0));
+        let mut outcome = Ok(());
+        let inputs = inputs_of(inputs)?;
+        let there = self.with(|problem| {
+            outcome =
+                (inputs.into_iter()).try_for_each(|(input, course)| problem.command(input, course));
+            problem.remember(&memory.0);
+            problem.begin(time);
+        });
+        outcome.map_err(to_python)?;
         let answer = Answer {
             state: State {
                 positions,

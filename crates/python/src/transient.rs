@@ -44,6 +44,7 @@ pub fn transient(
         damping: damping.map_or(Damping::Critical, Damping::Rate),
         retardation,
         tolerance,
+        accuracy: f64::INFINITY,
         end_time,
         max_time,
         record_interval,

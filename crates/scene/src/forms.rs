@@ -468,6 +468,7 @@ impl TryFrom<Clamp> for solid::Clamp {
                 angle: motion.angle,
                 center: motion.center,
                 history: motion.history.try_into()?,
+                courses: None,
             })
         };
         Ok(Self {

@@ -135,6 +135,7 @@ fn full() -> Scene {
         angle: 0.1,
         center: [0.0; 3],
         history: ramp.clone(),
+        courses: None,
     };
     let pressure = Pressure {
         triangles: triangles.clone(),

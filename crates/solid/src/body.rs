@@ -26,8 +26,8 @@ use crate::term::Term;
 use crate::terms::{Attachment, Edge, Edges, Hex8s, Membranes, Tet, Tets};
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use crate::{
-    Contact, Eigenstrain, Filling, Hex8, HyperelasticMaterial, LatticeMaterial, Material, Membrane,
-    ProblemError, WarpingModes, element::free_faces, lattice::cube,
+    Contact, Eigenstrain, Filling, Hex8, History, HyperelasticMaterial, LatticeMaterial, Material,
+    Membrane, ProblemError, WarpingModes, element::free_faces, lattice::cube,
 };
 
 /// The six edges of a tetrahedron and, for each, the two vertices opposite to it.
@@ -346,6 +346,19 @@ impl Body {
     /// Sets the response of hyperelastic voxels within a time step; `None` for the elastic response.
     pub(crate) fn set_within(&mut self, within: Option<Vec<Within>>) {
         self.hex8s.set_within(within);
+    }
+
+    /// Replaces the history of the free stretches with a number; returns whether there are any.
+    pub(crate) fn set_growth(
+        &mut self,
+        number: usize,
+        history: &History,
+    ) -> Result<bool, ProblemError> {
+        let mut found = false;
+        for material in &mut self.hex8s.materials {
+            found |= material.set_history(number, history)?;
+        }
+        Ok(found)
     }
 
     /// Sets the free stretch of all materials to that of a time (s).

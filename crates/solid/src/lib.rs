@@ -89,7 +89,7 @@ pub use loads::{
     Tendon, TendonMemory, TendonState, enclosed_volume,
 };
 pub use material::Material;
-pub use problem::{Memory, Past, Problem};
+pub use problem::{Input, Memory, Past, Problem};
 pub use rigid::Rigid;
 pub use solver::{Observer, Progress, Solution, Solver, Status};
 pub use state::State;

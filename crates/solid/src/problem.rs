@@ -1,4 +1,5 @@
 mod creep;
+mod input;
 mod memory;
 
 use std::borrow::Cow;
@@ -12,6 +13,7 @@ use crate::{
     Body, Clamp, Contact, Floor, Fluid, History, Load, LoadKind, ProblemError, Rigid, Term,
 };
 
+pub use input::Input;
 pub use memory::{Memory, Past};
 
 /// A body with clamps, loads, and optionally a floor, fluid or contact.

@@ -3,7 +3,7 @@
 use crate::breakdown::Breakdown;
 use crate::loads::grabs::Grab;
 use crate::vector::Vec3;
-use crate::{Memory, Problem, ProblemError, State};
+use crate::{History, Input, Memory, Problem, ProblemError, State};
 
 /// Damping of the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,6 +93,10 @@ pub trait Stepper: Send {
     /// Takes up to so many steps, fewer if it comes to rest or diverges, or as soon as `go_on` returns `false`.
     fn advance_while(&mut self, steps: u32, go_on: &mut dyn FnMut(Ask) -> bool) -> Look;
 
+    /// Takes steps until a time (s), which the last one meets exactly unless stability sets their length; fewer if it
+    /// comes to rest or diverges, or as soon as `go_on` returns `false`.
+    fn advance_to(&mut self, time: f64, go_on: &mut dyn FnMut(Ask) -> bool) -> Look;
+
     /// Takes up to so many steps, fewer if it comes to rest or diverges.
     fn advance(&mut self, steps: u32) -> Look {
         self.advance_while(steps, &mut |_| true)
@@ -100,6 +104,9 @@ pub trait Stepper: Send {
 
     /// Sets a load to `factor` times its final value, at once and for good; `None` restores its own history.
     fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError>;
+
+    /// Replaces the courses of inputs over time, from the next step on. After an error some may have been replaced.
+    fn command(&mut self, inputs: &[(Input, History)]) -> Result<(), ProblemError>;
 
     /// Pulls a vertex toward a point (m) by a spring of the given stiffness (N/m), any above zero. A grab
     /// of the same number takes a new target and a new stiffness, or a new vertex.

@@ -28,6 +28,7 @@ fn problem(model: Model, strain: f64, power: f64, shares: [[f64; 4]; 2]) -> Prob
         history: History::new(vec![0.0], vec![1.0 + strain]).unwrap(),
         power,
         share: Share::Field(shares.into()),
+        number: 0,
     };
     let eigenstrain = Eigenstrain::new(vec![factor]).unwrap();
     let material = HyperelasticMaterial::new(model, 20.0, 1.0).unwrap();

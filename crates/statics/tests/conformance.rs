@@ -10,8 +10,8 @@ use voxsoft_solid::conformance::{Law, check_solver, check_stepper};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Ask, Attachment, History, LatticeMaterial, PointForces, Spring, Springs};
 use voxsoft_solid::{
-    Body, Clamp, Damping, Floor, Grab, Load, Look, Memory, Method, Motion, Observer, Problem,
-    ProblemError, Solution, Solver, State, Status, Stepper,
+    Body, Clamp, Damping, Floor, Grab, Input, Load, Look, Memory, Method, Motion, Observer,
+    Problem, ProblemError, Solution, Solver, State, Status, Stepper,
 };
 use voxsoft_statics::{Control, Implicit, ImplicitSettings, LinearSolver, Settings, Transient};
 
@@ -31,6 +31,7 @@ fn turned() -> Problem {
         angle: 0.2,
         center: [0.0, 0.0075, 0.005],
         history: History::constant(),
+        courses: None,
     };
     let clamp = Clamp {
         vertices: end,
@@ -229,9 +230,17 @@ impl Stepper for FaultyStepper {
         self.0.advance_while(steps, &mut |ask| go_on(ask) || deaf)
     }
 
+    fn advance_to(&mut self, time: f64, go_on: &mut dyn FnMut(Ask) -> bool) -> Look {
+        self.0.advance_to(time, go_on)
+    }
+
     fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError> {
         let factor = factor.map(|f| if self.1 == Law::Changes { f + 0.1 } else { f });
         self.0.set_load(load, factor)
+    }
+
+    fn command(&mut self, inputs: &[(Input, History)]) -> Result<(), ProblemError> {
+        self.0.command(inputs)
     }
 
     fn grab(&mut self, n: u32, vertex: u32, to: Vec3, stiffness: f64) -> Result<(), ProblemError> {

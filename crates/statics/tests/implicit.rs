@@ -25,6 +25,7 @@ const SWING: ImplicitSettings = ImplicitSettings {
     damping: Damping::Rate(0.0),
     retardation: 0.0,
     tolerance: 1e-30,
+    accuracy: f64::INFINITY,
     linear: LinearSolver::Auto,
     memory: u64::MAX,
 };

@@ -119,6 +119,7 @@ fn leaves() -> Problem {
             angle: 0.0,
             center: [0.0; 3],
             history: History::constant(),
+            courses: None,
         }),
     };
     let clamps = vec![

@@ -267,6 +267,7 @@ fn pinched() -> Problem {
                 angle: 0.0,
                 center: [0.0; 3],
                 history: History::new(vec![0.0, 0.1], vec![0.0, 1.0]).unwrap(),
+                courses: None,
             }),
         });
     }

@@ -59,6 +59,7 @@ pub(crate) fn problems() -> Vec<Problem> {
             angle: 0.1,
             center: [7.0 * SIDE, 0.0, 0.0],
             history: History::constant(),
+            courses: None,
         }),
     };
     let pull = Load::constant(PointForces {

@@ -147,6 +147,7 @@ fn prescribed_stretch_matches_closed_form() {
         angle: 0.0,
         center: [0.0; 3],
         history: History::constant(),
+        courses: None,
     };
     let left = where_(&mesh, |p| p[0] < 1e-9);
     let right = where_(&mesh, |p| p[0] > length - 1e-9);

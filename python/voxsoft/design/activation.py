@@ -27,6 +27,10 @@ class _OfItsValue(Activation):
     def base(self, factor: float) -> float:
         """Ratio by which the part is longer, or larger, at a factor of its history."""
 
+    @abstractmethod
+    def base_at(self, value: float) -> float:
+        """Ratio by which the part is longer, or larger, at another value."""
+
     @property
     def growth(self) -> Growth:
         """Ratio by which the part is longer over time when it is free of stress."""
@@ -55,6 +59,10 @@ class _Growing(_OfItsValue):
     def base(self, factor: float) -> float:
         """Ratio by which the part is longer, or larger, at a factor of its history."""
         return 1.0 + factor * self.value
+
+    def base_at(self, value: float) -> float:
+        """Ratio by which the part is longer, or larger, at another value."""
+        return 1.0 + value
 
     def share(self, part: float) -> Self:
         """Scale its final strain by a factor, without a history."""
@@ -145,8 +153,8 @@ class Thermal(_OfItsValue):
     @model_validator(mode="after")
     def _leaves_something(self) -> Self:
         for factor in (1.0, *(self.history.factors if self.history else ())):
-            if self._temperature(factor) <= 0.0:
-                what = f"has the factor {factor:g}: that is {self._temperature(factor):g} K"
+            if self.temperature(factor) <= 0.0:
+                what = f"has the factor {factor:g}: that is {self.temperature(factor):g} K"
                 hint = "0 is the reference temperature, and 1 that of the value"
                 raise DesignError("history", what, hint)
             if self.base(factor) <= 0.0:
@@ -156,16 +164,21 @@ class Thermal(_OfItsValue):
                 raise DesignError("expansion", what, hint)
         return self
 
-    def _temperature(self, factor: float) -> float:
+    def temperature(self, factor: float) -> float:
+        """Temperature in kelvin at a factor of its history."""
         return self.reference + factor * (self.value - self.reference)
 
     def base(self, factor: float) -> float:
         """Ratio by which the part is longer at a factor of its history."""
-        return 1.0 + self.expansion * (self._temperature(factor) - self.reference)
+        return self.base_at(self.temperature(factor))
+
+    def base_at(self, value: float) -> float:
+        """Ratio by which the part is longer at another temperature in kelvin."""
+        return 1.0 + self.expansion * (value - self.reference)
 
     def share(self, part: float) -> Self:
         """A part of the way from the reference to its last temperature, without a history."""
-        return self.replace(value=self._temperature(part * self.factor), history=None)
+        return self.replace(value=self.temperature(part * self.factor), history=None)
 
 
 class FiberStrain(_Growing):

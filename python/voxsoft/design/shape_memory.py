@@ -93,8 +93,8 @@ class ShapeMemory(Activation):
             hint = "it starts at most where heating finishes, and finishes where that starts"
             raise DesignError("cooling", what, hint)
         for factor in self.history.factors if self.history else ():
-            if self._temperature(factor) <= 0.0:
-                what = f"has the factor {factor:g}: that is {self._temperature(factor):g} K"
+            if self.temperature(factor) <= 0.0:
+                what = f"has the factor {factor:g}: that is {self.temperature(factor):g} K"
                 hint = "0 is the reference temperature, and 1 that of the value"
                 raise DesignError("history", what, hint)
         return self
@@ -115,7 +115,7 @@ class ShapeMemory(Activation):
         """A part of the strain that it comes to in the end, without a history."""
         return self.replace(
             strain=part * self.strain,
-            value=self._temperature(self.factor),
+            value=self.temperature(self.factor),
             transformed=self._states()[-1].share,
             history=None,
         )
@@ -137,11 +137,12 @@ class ShapeMemory(Activation):
         """Go on from the final state of another."""
         return self.replace(transformed=_part(before._states()[-1].share))
 
-    def _temperature(self, factor: float) -> float:
+    def temperature(self, factor: float) -> float:
+        """Temperature in kelvin at a factor of its history."""
         return self.reference + factor * (self.value - self.reference)
 
-    def _next(self, share: float, temperature: float) -> float:
-        """The play operator."""
+    def transformed_at(self, share: float, temperature: float) -> float:
+        """Part that is transformed at a temperature in kelvin, by that before: a play operator."""
         (start, finish), (down, cold) = self.heating, self.cooling
         heated = (temperature - start) / (finish - start)
         cooled = (temperature - cold) / (down - cold)
@@ -150,10 +151,10 @@ class ShapeMemory(Activation):
     def _states(self) -> list[_State]:
         """Transformed parts at all instants between which they are linear in time."""
         if self.history is None:
-            return [_State(0.0, self._next(self.transformed, self.value))]
-        temperatures = [self._temperature(factor) for factor in self.history.factors]
+            return [_State(0.0, self.transformed_at(self.transformed, self.value))]
+        temperatures = [self.temperature(factor) for factor in self.history.factors]
         times = self.history.times
-        found = [_State(times[0], self._next(self.transformed, temperatures[0]))]
+        found = [_State(times[0], self.transformed_at(self.transformed, temperatures[0]))]
         for (begun, ended), (low, high) in zip(
             pairwise(times), pairwise(temperatures), strict=True
         ):
@@ -162,8 +163,8 @@ class ShapeMemory(Activation):
                 if min(low, high) < corner < max(low, high):
                     instant = begun + (ended - begun) * (corner - low) / (high - low)
                     if found[-1].time < instant < ended:
-                        found.append(_State(instant, self._next(share, corner)))
-            found.append(_State(ended, self._next(share, high)))
+                        found.append(_State(instant, self.transformed_at(share, corner)))
+            found.append(_State(ended, self.transformed_at(share, high)))
         return found
 
     def _corners(self, share: float, *, rising: bool) -> tuple[float, float]:

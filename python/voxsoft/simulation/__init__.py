@@ -15,11 +15,13 @@ if TYPE_CHECKING:
     from voxsoft.simulation.diagnostic import Diagnostic
     from voxsoft.simulation.results.result import Recording, Result, Status
     from voxsoft.simulation.results.vibration import Modes, modes
+    from voxsoft.simulation.runs.commands import Command
     from voxsoft.simulation.runs.load_path import LoadPath, follow
     from voxsoft.simulation.runs.many import Ensemble, Settled, simulate_many
     from voxsoft.simulation.runs.observation import ChamberState, Observation
     from voxsoft.simulation.runs.over import Over
     from voxsoft.simulation.runs.run import ProgressCallback, balance, relax, simulate
+    from voxsoft.simulation.runs.sensors import Sensor
     from voxsoft.simulation.runs.simulator import Simulator
     from voxsoft.simulation.runs.workspace import Workspace, workspace
     from voxsoft.simulation.setup.setup import Setup, named_regions
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ChamberState",
     "CheckReport",
+    "Command",
     "Diagnostic",
     "Ensemble",
     "LoadPath",
@@ -41,6 +44,7 @@ __all__ = [
     "ProgressCallback",
     "Recording",
     "Result",
+    "Sensor",
     "Settled",
     "Setup",
     "Simulator",
@@ -69,6 +73,7 @@ __getattr__, __dir__ = lazy_names(
     {
         "ChamberState": "voxsoft.simulation.runs.observation",
         "CheckReport": "voxsoft.simulation.checks.check",
+        "Command": "voxsoft.simulation.runs.commands",
         "Diagnostic": "voxsoft.simulation.diagnostic",
         "Ensemble": "voxsoft.simulation.runs.many",
         "LoadPath": "voxsoft.simulation.runs.load_path",
@@ -82,6 +87,7 @@ __getattr__, __dir__ = lazy_names(
         "Recording": "voxsoft.simulation.results.result",
         "Result": "voxsoft.simulation.results.result",
         "Settled": "voxsoft.simulation.runs.many",
+        "Sensor": "voxsoft.simulation.runs.sensors",
         "Setup": "voxsoft.simulation.setup.setup",
         "Simulator": "voxsoft.simulation.runs.simulator",
         "Status": "voxsoft.simulation.results.result",

@@ -123,10 +123,6 @@ _PEAKS_AT_REST: Final = Reason(
     "changes what a part is at rest, and what softening voxels remember is not known then",
     "leave it out, or leave mullins out of the materials",
 )
-_KEPT: Final = Reason(
-    "is not used by {who}, which keeps activations as they are",
-    "leave it out, or use vs.simulate",
-)
 _GROWTH_OVER_TIME: Final = Reason(
     "is not followed by {who}", "leave it out, or run the design over time"
 )
@@ -289,16 +285,6 @@ _REFUSED: Final[tuple[tuple[str, tuple[str, ...], Reason], ...]] = (
             "use the neo-Hookean material of the same Young's modulus",
         ),
     ),
-    (
-        "load over time",
-        ("simulator",),
-        Reason(
-            "is not used by {who}, whose commands are the history",
-            "leave it out, or use vs.simulate",
-        ),
-    ),
-    ("activations over time", ("simulator",), _KEPT),
-    ("dielectrics over time", ("simulator",), _KEPT),
 )
 
 #: Reason of each refusal, by feature and use.

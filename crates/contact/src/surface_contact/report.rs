@@ -35,6 +35,8 @@ pub struct PairReport {
     pub gap: f64,
     /// Fraction of the pressure under which the surfaces slip.
     pub slipping: f64,
+    /// Mean place of the pressure in m; `None` where nothing presses.
+    pub place: Option<Vec3>,
 }
 
 impl PairReport {
@@ -51,6 +53,7 @@ impl PairReport {
             bonded: 0.0,
             gap: f64::INFINITY,
             slipping: 0.0,
+            place: None,
         }
     }
 }
@@ -98,6 +101,8 @@ impl SurfaceContact {
             }
             report.gap = report.gap.min(meeting.gap);
             report.slipping += slipping;
+            let place = report.place.get_or_insert([0.0; 3]);
+            axpy(place, pressure, self.place(meeting.sample, 0.5, points));
         });
         for (point, twin) in self.twins.iter().enumerate() {
             pressed_samples[point] = pressed_samples[*twin as usize];
@@ -121,6 +126,9 @@ impl SurfaceContact {
         let each = found.into_values().map(|(mut report, areas)| {
             if report.pressure > 0.0 {
                 report.slipping /= report.pressure;
+                report.place = report.place.map(|sum| scale(1.0 / report.pressure, sum));
+            } else {
+                report.place = None;
             }
             // Both sides see the contact, the coarser one less sharply; a surface with itself counts twice.
             report.area = match report.of {

@@ -11,6 +11,7 @@
 //! The first part couples neighbors, as that of a pressure does; the second one, of the rank of the number of chambers,
 //! couples all of a chamber's wall, and solvers treat it separately ([`Coupling`]).
 
+mod input;
 mod line;
 mod medium;
 mod motion;
@@ -27,6 +28,7 @@ use crate::loads::external_force::{ExternalForce, Vertices};
 use crate::vector::{Vec3, axpy};
 use crate::{History, Load, LoadKind, PointForces, ProblemError};
 
+pub use input::FluidInput;
 pub use line::{Curve, Flow, Line, Tube, Valve};
 pub use medium::Medium;
 pub use motion::Reading;

@@ -4,7 +4,7 @@ use super::softening::Softening;
 use super::winding::Winding;
 use crate::matrix::Mat3;
 use crate::vector::{Vec3, norm};
-use crate::{Eigenstrain, ProblemError};
+use crate::{Eigenstrain, History, ProblemError};
 
 /// A hyperelastic material, with fibers if it has any.
 #[derive(Debug, Clone, PartialEq)]
@@ -182,6 +182,17 @@ impl HyperelasticMaterial {
     /// The eigenstrain of the material and that of its fibers.
     pub fn eigenstrains(&self) -> [&Eigenstrain; 2] {
         [&self.eigenstrain, &self.fiber_eigenstrain]
+    }
+
+    /// Replaces the history of free stretches with a number; returns whether there are any.
+    pub(crate) fn set_history(
+        &mut self,
+        number: usize,
+        history: &History,
+    ) -> Result<bool, ProblemError> {
+        let own = self.eigenstrain.set_history(number, history)?;
+        let of_fibers = self.fiber_eigenstrain.set_history(number, history)?;
+        Ok(own || of_fibers)
     }
 
     /// Sets the free stretches of the material and its fibers to those at a time in s.

@@ -25,6 +25,47 @@ pub struct Motion {
     pub center: Vec3,
     /// The factor over time on translation and angle.
     pub history: History,
+    /// Translation along x, y and z (m) and angle (rad) over time, which replace all of these; `None` unless they are
+    /// commanded.
+    pub courses: Option<Box<[History; 4]>>,
+}
+
+impl Motion {
+    /// A motion by commands alone, at rest until the first.
+    pub fn commanded() -> Self {
+        Self {
+            displacement: [0.0; 3],
+            axis: [0.0, 0.0, 1.0],
+            angle: 0.0,
+            center: [0.0; 3],
+            history: History::constant(),
+            courses: None,
+        }
+    }
+
+    /// Translation (m) and angle (rad) at `time` (s), scaled by `ramp` (0 to 1).
+    fn at(&self, time: f64, ramp: f64) -> (Vec3, f64) {
+        if let Some([x, y, z, angle]) = self.courses.as_deref() {
+            let displacement = [x, y, z].map(|each| ramp * each.at(time));
+            return (displacement, ramp * angle.at(time));
+        }
+        let factor = ramp * self.history.at(time);
+        (scale(factor, self.displacement), factor * self.angle)
+    }
+
+    /// Courses of translation and angle, to be replaced one by one: it stays as it is at `time` (s) if it has none yet.
+    pub(crate) fn courses_mut(&mut self, time: f64) -> &mut [History; 4] {
+        let ([x, y, z], angle) = self.at(time, 1.0);
+        self.courses
+            .get_or_insert_with(|| Box::new([x, y, z, angle].map(History::always)))
+    }
+
+    /// Histories that it follows.
+    pub fn histories(&self) -> impl Iterator<Item = &History> {
+        let courses = self.courses.as_deref().map_or(&[][..], |all| &all[..]);
+        let own = self.courses.is_none().then_some(&self.history);
+        courses.iter().chain(own)
+    }
 }
 
 impl Clamp {
@@ -43,11 +84,8 @@ impl Clamp {
         let Some(motion) = &self.motion else {
             return rest;
         };
-        let factor = ramp * motion.history.at(time);
-        let turned = rotate(sub(rest, motion.center), motion.axis, factor * motion.angle);
-        add(
-            add(motion.center, turned),
-            scale(factor, motion.displacement),
-        )
+        let (displacement, angle) = motion.at(time, ramp);
+        let turned = rotate(sub(rest, motion.center), motion.axis, angle);
+        add(add(motion.center, turned), displacement)
     }
 }

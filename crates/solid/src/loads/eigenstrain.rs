@@ -26,6 +26,8 @@ pub struct EigenstrainFactor {
     pub power: f64,
     /// The share of a place.
     pub share: Share,
+    /// The number by which it is commanded: of one activation, which may act on several materials.
+    pub number: usize,
 }
 
 impl EigenstrainFactor {
@@ -176,6 +178,25 @@ impl Eigenstrain {
             .product()
     }
 
+    /// Replaces the history of the factors with a number; returns whether there are any.
+    pub(crate) fn set_history(
+        &mut self,
+        number: usize,
+        history: &History,
+    ) -> Result<bool, ProblemError> {
+        let mut found = false;
+        for factor in self.factors.iter_mut().filter(|f| f.number == number) {
+            let new = EigenstrainFactor {
+                history: history.clone(),
+                ..factor.clone()
+            };
+            new.check()?;
+            *factor = new;
+            found = true;
+        }
+        Ok(found)
+    }
+
     /// Sets the present stretch to that at a time in s.
     pub fn begin(&mut self, time: f64) {
         let (mut stretch, mut bent) = (1.0, [0.0; 3]);
@@ -222,6 +243,7 @@ mod tests {
             history: History::new(vec![0.0, 2.0], vec![1.0, end]).unwrap(),
             power,
             share: Share::Whole,
+            number: 0,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Interaction with a problem in motion: springs that pull vertices, and loads that are set by hand.
 
 use crate::vector::{Vec3, axpy, norm, scale, sub};
-use crate::{Fluid, History, Problem, ProblemError, State};
+use crate::{Fluid, History, Motion, Problem, ProblemError, State};
 
 /// A spring between a vertex and a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -190,7 +190,8 @@ pub fn checked_state(problem: &Problem, state: State) -> Result<State, ProblemEr
 pub fn loads_end(problem: &Problem) -> f64 {
     let loads = problem.loads().iter().map(|load| &load.history);
     let clamps = problem.clamps().iter();
-    let motions = clamps.filter_map(|clamp| Some(&clamp.motion.as_ref()?.history));
+    let motions = clamps.filter_map(|clamp| clamp.motion.as_ref());
+    let motions = motions.flat_map(Motion::histories);
     let of_fluid = problem.fluid().map_or(0.0, Fluid::end);
     let of_growth = problem.body().eigenstrain_end();
     loads

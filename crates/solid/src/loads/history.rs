@@ -11,9 +11,14 @@ pub struct History {
 impl History {
     /// A factor of one at all times.
     pub fn constant() -> Self {
+        Self::always(1.0)
+    }
+
+    /// A finite factor that never changes.
+    pub fn always(factor: f64) -> Self {
         Self {
             times: vec![0.0],
-            factors: vec![1.0],
+            factors: vec![factor],
         }
     }
 

@@ -72,7 +72,7 @@ impl Problem {
     pub fn next_corner(&self, time: f64) -> f64 {
         let motions = self.clamps.iter().filter_map(|clamp| clamp.motion.as_ref());
         let loads = self.loads.iter().map(|load| &load.history);
-        let histories = loads.chain(motions.map(|motion| &motion.history));
+        let histories = loads.chain(motions.flat_map(crate::Motion::histories));
         let times = histories.flat_map(|history| history.times().iter().copied());
         let grown = self.body.eigenstrain_times();
         let fluid = self.fluid.iter().flat_map(|fluid| fluid.times());

@@ -43,8 +43,18 @@ pub struct Past {
     pub within: Option<Vec<Within>>,
     /// Internal forces at the state, N.
     pub internal: Vec<Vec3>,
+    /// Their viscous part, N; empty without viscous stress.
+    pub viscous: Vec<Vec3>,
+    /// Loads at the state, N.
+    pub external: Vec<Vec3>,
+    /// Reactions of supports at the state, inertia included, N.
+    pub reactions: Vec<Vec3>,
     /// Elastic energy at the state, J.
     pub elastic: f64,
+    /// Relative residual of the equilibrium at the state.
+    pub residual: f64,
+    /// True for a body at rest, which stays there until an input changes.
+    pub at_rest: bool,
 }
 
 impl Problem {

@@ -5,7 +5,7 @@
 //! length if it fails.
 
 use voxsoft_solid::breakdown::Breakdown;
-use voxsoft_solid::vector::{Vec3, scale, sub};
+use voxsoft_solid::vector::{Vec3, dot, scale, sub};
 use voxsoft_solid::{Damping, Load, Problem, Progress, State};
 
 use super::run::{Now, Run, Step};
@@ -22,6 +22,13 @@ const ANCHOR_SPEED: f64 = 60.0;
 const MAX_BACK_OFFS: u32 = 10;
 /// Successful steps after which a halved one is doubled again.
 const PATIENCE: u32 = 3;
+/// Most parts into which the error of a step divides it: an impact has an error that falls with the step alone.
+const MOST_PARTS: f64 = 8.0;
+/// Error of a step over the distance of its end from the extrapolation with the acceleration: 2/9 h³ x‴ of the
+/// second-order formula over that and 5/12 h³ x‴ of the extrapolation, for equal steps.
+const ERROR_OVER_DISTANCE: f64 = 8.0 / 23.0;
+/// Part of the allowed error below which a step is doubled: its error grows with the cube of its length.
+const SMALL_ERROR: f64 = 1.0 / 8.0;
 /// Relative distance from the next record within which a step is extended to it.
 pub(super) const SAME_TIME: f64 = 1e-9;
 
@@ -32,6 +39,8 @@ pub type Asker<'a> = dyn FnMut(Option<&Progress<'_>>) -> bool + 'a;
 pub enum Stop {
     /// Its end was not found.
     Lost,
+    /// Its error is larger than allowed.
+    Coarse,
     /// A body has moved too far away.
     Gone(Breakdown),
     /// The tangent takes more memory than available, in bytes.
@@ -136,6 +145,9 @@ impl<S: InnerSearch> Integrator<S> {
         self.run.start_from(start);
         self.search.start(&mut self.run, at_rest);
         self.search.wake(&mut self.run);
+        if !self.run.now.external.is_empty() {
+            self.run.residual = self.run.residual();
+        }
     }
 
     /// Wakes the run after a change of loads or grabs: the body may move again.
@@ -144,10 +156,14 @@ impl<S: InnerSearch> Integrator<S> {
         self.search.wake(&mut self.run);
     }
 
-    /// Takes a whole step, the first one of a motion in its two stages.
-    pub(super) fn take_whole_step(&mut self, asker: &mut Asker<'_>) -> Result<(), Stop> {
+    /// Takes a whole step that does not pass the time `limit` (s), the first one of a motion in its two stages.
+    pub(super) fn take_whole_step(
+        &mut self,
+        limit: f64,
+        asker: &mut Asker<'_>,
+    ) -> Result<(), Stop> {
         loop {
-            self.take_step(f64::INFINITY, asker)?;
+            self.take_step(limit, asker)?;
             if self.run.stage != Stage::Second {
                 return Ok(());
             }
@@ -162,15 +178,21 @@ impl<S: InnerSearch> Integrator<S> {
         loop {
             self.run.steps += 1;
             let (whole, length) = self.next_step(limit);
-            let Err(stop) = self.try_step(length, asker) else {
-                self.lengthen();
-                return Ok(());
+            let stop = match self.try_step(length, asker) {
+                Ok(error) => {
+                    self.lengthen(error);
+                    return Ok(());
+                }
+                Err(stop) => stop,
             };
             self.run.rollback();
             if let Stop::Memory(_) | Stop::Cancelled = stop {
                 return Err(stop);
             }
             self.shorten(whole);
+            if let Stop::Coarse = stop {
+                continue;
+            }
             if self.run.step < least {
                 return Err(stop);
             }
@@ -197,11 +219,11 @@ impl<S: InnerSearch> Integrator<S> {
         (whole, if begins { FIRST_PART * whole } else { whole })
     }
 
-    /// Doubles a halved step after some successful ones.
-    fn lengthen(&mut self) {
+    /// Doubles a halved step after some successful ones, if the error of the last, as a part of the allowed one, lets it.
+    fn lengthen(&mut self, error: f64) {
         let run = &mut self.run;
         run.good += 1;
-        if run.good >= PATIENCE && run.step < run.settings.step {
+        if error <= SMALL_ERROR && run.good >= PATIENCE && run.step < run.settings.step {
             run.step = (2.0 * run.step).min(run.settings.step);
             run.good = 0;
         }
@@ -223,8 +245,9 @@ impl<S: InnerSearch> Integrator<S> {
         }
     }
 
-    /// Takes a step by the second-order formula, or again by backward Euler if the search asks for that.
-    fn try_step(&mut self, length: f64, asker: &mut Asker<'_>) -> Result<(), Stop> {
+    /// Takes a step by the second-order formula, or again by backward Euler if the search asks for that; returns its
+    /// error as a part of the allowed one.
+    fn try_step(&mut self, length: f64, asker: &mut Asker<'_>) -> Result<f64, Stop> {
         if self.run.before.is_some() && self.search.may_look_back() {
             let outcome = self.find(length, true, asker);
             if !self.search.takes_again(&self.run, &outcome) {
@@ -235,6 +258,26 @@ impl<S: InnerSearch> Integrator<S> {
         }
         let (next, found) = self.find(length, false, asker)?;
         self.accept(next, found)
+    }
+
+    /// Error of a step as a part of the allowed one; zero where the past does not tell it.
+    fn error(&self, next: &State, length: f64) -> f64 {
+        let run = &self.run;
+        let (Stage::Later, Some(before)) = (run.stage, &run.before) else {
+            return 0.0;
+        };
+        if run.settings.accuracy.is_infinite() {
+            return 0.0;
+        }
+        let expected = run.extrapolated(length, Some(before));
+        let masses = run.problem.body().masses();
+        let mut sum = 0.0;
+        for ((x, y), mass) in next.positions.iter().zip(&expected).zip(masses) {
+            let off = sub(*x, *y);
+            sum += mass * dot(off, off);
+        }
+        let all: f64 = masses.iter().sum();
+        ERROR_OVER_DISTANCE * (sum / all).sqrt() / (run.settings.accuracy * run.shortest_edge)
     }
 
     /// Finds the end of a step from the state, by the second-order formula or by backward Euler.
@@ -274,8 +317,14 @@ impl<S: InnerSearch> Integrator<S> {
         Ok((next, found))
     }
 
-    /// Accepts the end of a step, if contact is sound there.
-    fn accept(&mut self, next: State, found: Now) -> Result<(), Stop> {
+    /// Accepts the end of a step, if it is accurate and contact is sound there; returns its error as a part of the allowed
+    /// one.
+    fn accept(&mut self, next: State, found: Now) -> Result<f64, Stop> {
+        let length = next.time - self.run.state.time;
+        let error = self.error(&next, length);
+        if error > 1.0 && length > self.run.settings.step * (1.0 + SAME_TIME) / MOST_PARTS {
+            return Err(Stop::Coarse);
+        }
         let run = &mut self.run;
         if !self.search.accept_contact(&mut run.problem, &next) {
             return Err(Stop::Lost);
@@ -300,6 +349,6 @@ impl<S: InnerSearch> Integrator<S> {
             Stage::First => Stage::Second,
             Stage::Second | Stage::Later => Stage::Later,
         };
-        Ok(())
+        Ok(error)
     }
 }

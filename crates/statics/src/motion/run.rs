@@ -20,6 +20,9 @@ pub struct ImplicitSettings {
     pub retardation: f64,
     /// Tolerance of rest: of the relative residual force, and of the kinetic energy over the elastic energy.
     pub tolerance: f64,
+    /// Allowed error of a step, as the root of the mean square over all mass, in shortest edges of the body; steps with
+    /// more are halved, down to an eighth. Infinite for steps that are never halved for it.
+    pub accuracy: f64,
     /// Solver of the linear systems.
     pub linear: LinearSolver,
     /// Most bytes of the tangent.
@@ -33,6 +36,7 @@ impl Default for ImplicitSettings {
             damping: Damping::Critical,
             retardation: 0.0,
             tolerance: 1e-4,
+            accuracy: f64::INFINITY,
             linear: LinearSolver::Auto,
             memory: u64::MAX,
         }
@@ -147,7 +151,12 @@ impl Run {
             good: self.good,
             within: self.problem.body().hex8_term().within().map(<[_]>::to_vec),
             internal: self.now.internal.clone(),
+            viscous: self.now.viscous.clone(),
+            external: self.now.external.clone(),
+            reactions: self.now.reactions.clone(),
             elastic: self.now.elastic,
+            residual: self.residual,
+            at_rest: self.status == LiveStatus::AtRest,
         }
     }
 
@@ -158,12 +167,23 @@ impl Run {
         self.damping_rate = past.damping_rate;
         (self.step, self.good) = (past.step.min(self.settings.step), past.good);
         self.problem.set_within(past.within.clone());
+        self.take_forces(past);
+    }
+
+    /// Takes over the forces of another run at the state, and whether it is at rest there.
+    pub fn take_forces(&mut self, past: &Past) {
         self.now = Now {
             internal: past.internal.clone(),
+            viscous: past.viscous.clone(),
+            external: past.external.clone(),
+            reactions: past.reactions.clone(),
             elastic: past.elastic,
             kinetic: self.state.kinetic_energy(self.problem.body().masses()),
-            ..Now::default()
         };
+        self.residual = past.residual;
+        if past.at_rest {
+            self.status = LiveStatus::AtRest;
+        }
     }
 
     /// Wakes the run after a change of loads or grabs: the body may move again.

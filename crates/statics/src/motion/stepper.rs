@@ -1,13 +1,14 @@
 //! Stepper interface of implicit motions.
 
-use voxsoft_solid::breakdown::Breakdown;
+use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::loads::grabs::{checked_state, still_state};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Ask, Grab, LiveStatus, Look, Memory, Method, Problem, ProblemError, State, Stepper,
+    Ask, Grab, History, Input, LiveStatus, Look, Memory, Method, Problem, ProblemError, State,
+    Stepper,
 };
 
-use super::integrator::{InnerSearch, Integrator, Stop};
+use super::integrator::{InnerSearch, Integrator, SAME_TIME, Stop};
 use super::run::Run;
 use super::scheme::Stage;
 
@@ -41,35 +42,16 @@ impl<S: InnerSearch> Stepper for Integrator<S> {
 
     fn advance_while(&mut self, steps: u32, go_on: &mut dyn FnMut(Ask) -> bool) -> Look {
         for _ in 0..steps {
-            if self.run.status != LiveStatus::Moving {
-                break;
-            }
-            match self.take_whole_step(&mut |_| go_on(Ask::Within)) {
-                Ok(()) => self.judge(),
-                Err(Stop::Cancelled) => break,
-                Err(Stop::Memory(bytes)) => self.run.status = LiveStatus::OutOfMemory(bytes),
-                Err(stop) => {
-                    self.run.status = LiveStatus::Diverged;
-                    self.run.breakdown = Some(self.run.place_of(&stop));
-                }
-            }
-            if !go_on(Ask::After) {
+            if !self.go_on(f64::INFINITY, go_on) {
                 break;
             }
         }
-        let run = &self.run;
-        Look {
-            status: run.status,
-            time: run.state.time,
-            substep: run.step,
-            substeps: run.steps,
-            back_offs: run.back_offs,
-            residual: run.residual,
-            elastic: run.now.elastic,
-            kinetic: run.now.kinetic,
-            breakdown: run.breakdown,
-            settled: self.search.settled(),
-        }
+        self.look()
+    }
+
+    fn advance_to(&mut self, time: f64, go_on: &mut dyn FnMut(Ask) -> bool) -> Look {
+        while self.run.state.time < time * (1.0 - SAME_TIME) && self.go_on(time, go_on) {}
+        self.look()
     }
 
     fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError> {
@@ -78,6 +60,18 @@ impl<S: InnerSearch> Stepper for Integrator<S> {
         if let Some(copy) = self.search.copy() {
             run.grabs.set_load(copy, load, factor)?;
         }
+        self.wake();
+        Ok(())
+    }
+
+    fn command(&mut self, inputs: &[(Input, History)]) -> Result<(), ProblemError> {
+        for (input, course) in inputs {
+            self.run.problem.command(*input, course.clone())?;
+            if let Some(copy) = self.search.copy() {
+                copy.command(*input, course.clone())?;
+            }
+        }
+        self.run.travel_limit = travel_limit(&self.run.problem);
         self.wake();
         Ok(())
     }
@@ -146,7 +140,47 @@ impl<S: InnerSearch> Stepper for Integrator<S> {
         }
         self.search.resume(run);
         self.search.wake(run);
+        if let Some(past) = &memory.past {
+            // Forces with inertia, and with contact before it was accepted.
+            run.take_forces(past);
+        }
         Ok(())
+    }
+}
+
+impl<S: InnerSearch> Integrator<S> {
+    /// Takes a step that does not pass the time `limit` (s); returns whether to take another one.
+    fn go_on(&mut self, limit: f64, go_on: &mut dyn FnMut(Ask) -> bool) -> bool {
+        if self.run.status != LiveStatus::Moving {
+            return false;
+        }
+        match self.take_whole_step(limit, &mut |_| go_on(Ask::Within)) {
+            Ok(()) => self.judge(),
+            Err(Stop::Cancelled) => return false,
+            Err(Stop::Memory(bytes)) => self.run.status = LiveStatus::OutOfMemory(bytes),
+            Err(stop) => {
+                self.run.status = LiveStatus::Diverged;
+                self.run.breakdown = Some(self.run.place_of(&stop));
+            }
+        }
+        go_on(Ask::After)
+    }
+
+    /// Summary of the run.
+    fn look(&self) -> Look {
+        let run = &self.run;
+        Look {
+            status: run.status,
+            time: run.state.time,
+            substep: run.step,
+            substeps: run.steps,
+            back_offs: run.back_offs,
+            residual: run.residual,
+            elastic: run.now.elastic,
+            kinetic: run.now.kinetic,
+            breakdown: run.breakdown,
+            settled: self.search.settled(),
+        }
     }
 }
 

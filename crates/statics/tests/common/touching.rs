@@ -41,6 +41,7 @@ pub fn moved(vertices: Vec<u32>, axes: [bool; 3], displacement: Vec3) -> Clamp {
             angle: 0.0,
             center: [0.0; 3],
             history: History::constant(),
+            courses: None,
         }),
     }
 }

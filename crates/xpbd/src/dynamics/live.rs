@@ -4,7 +4,8 @@ use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::loads::grabs::{Grabs, checked_state, loads_end, shortest_edge, still_state};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Ask, Grab, LiveStatus, Look, Memory, Method, Problem, ProblemError, State, Stepper, elastic,
+    Ask, Grab, History, Input, LiveStatus, Look, Memory, Method, Problem, ProblemError, State,
+    Stepper, elastic,
 };
 
 use super::stiff_inertia::StiffInertia;
@@ -238,8 +239,22 @@ impl Stepper for Live {
         }
     }
 
+    fn advance_to(&mut self, time: f64, go_on: &mut dyn FnMut(Ask) -> bool) -> Look {
+        let steps = ((time - self.arrays.time()) / self.substep).round();
+        self.advance_while(steps.max(0.0) as u32, go_on)
+    }
+
     fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError> {
         self.grabs.set_load(&mut self.problem, load, factor)?;
+        self.arrays.renew_loads(&self.problem);
+        self.wake();
+        Ok(())
+    }
+
+    fn command(&mut self, inputs: &[(Input, History)]) -> Result<(), ProblemError> {
+        for (input, course) in inputs {
+            self.problem.command(*input, course.clone())?;
+        }
         self.arrays.renew_loads(&self.problem);
         self.wake();
         Ok(())

@@ -1,177 +1,827 @@
-"""Loads that are commanded while a body moves: their names, values, and parts in the core."""
+"""Commands of a body in motion: all that drives it, by names, with units and bounds.
+
+Long because each way to drive a design has its own list of commands here.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from itertools import accumulate, pairwise
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
-from voxsoft.design import AnyLoad, Design
+from voxsoft import _core
+from voxsoft.design import AnyLoad, Design, Dielectric, History, Motion, Tendon
+from voxsoft.design.activation import AnyActivation
 from voxsoft.design.chamber import chosen_cavities
-from voxsoft.errors import DesignError
+from voxsoft.design.clamp import clamp_names
+from voxsoft.design.fluid import ATMOSPHERE
+from voxsoft.design.shape_memory import ShapeMemory
+from voxsoft.design.supply import (
+    AnySupply,
+    FlowSupply,
+    MassSupply,
+    PressureSupply,
+    VolumeSupply,
+)
+from voxsoft.errors import DesignError, UnitError
 from voxsoft.records import closest
 from voxsoft.simulation.loads import LoadReading, readings
+from voxsoft.simulation.setup.growth import growths_of
+from voxsoft.simulation.setup.materials import core_materials
 from voxsoft.simulation.setup.setup import Setup
+from voxsoft.units import UnitOf, format_quantity
 
-#: A load's value in SI units: one number, or three components.
+#: A commanded value in SI units: one number, or three components.
 Value = float | tuple[float, float, float]
-#: Name of a load: one of :attr:`LoadCommands.names`, its place in the design, or its index.
-LoadName = str | int
+#: Name of a command: one of :attr:`Commands.names`, a place in the design, or the index of a load.
+CommandName = str | int
+#: Input of the core: its kind, the index of its place, the number of the quantity there, a value.
+Input = tuple[str, int, int, float]
+#: Input with a course over time: times in s and values.
+Course = tuple[str, int, int, list[float], list[float]]
+
+_INFINITE: Final = math.inf
+#: Lowest gauge pressure in Pa that a gas is given: a pascal above a perfect vacuum.
+_VACUUM: Final = 1.0 - ATMOSPHERE
+#: Length in m by which a tendon of unit size is drawn in: less than any tendon is long.
+_DRAWN: Final = 1e-6
+#: Part of a tendon that may be drawn in.
+_ALMOST_ALL: Final = 1.0 - 1e-6
+_SI: Final = MappingProxyType(
+    {
+        "acceleration": "m/s^2",
+        "force": "N",
+        "pressure": "Pa",
+        "magnetic field": "T",
+        "length": "m",
+        "angle": "rad",
+        "volume": "m^3",
+        "mass": "kg",
+        "temperature": "K",
+        "electric field": "V/m",
+        "number": "1",
+    }
+)
 
 
-class LoadCommands:
-    """The loads of a design as commands: from names and values to factors of the core's loads.
+@dataclass(frozen=True)
+class Command:
+    """A quantity that a simulator takes.
+
+    Attributes
+    ----------
+    name
+        Its name.
+    place
+        Its place in the design, which is accepted for the name: ``"tendons[0].tension"``.
+    kind
+        Kind of quantity, a key of :data:`voxsoft.units.KINDS`.
+    shape
+        ``()`` for one number, ``(3,)`` for three components along x, y, z.
+    low, high
+        Bounds of each number in SI units that the physics sets; infinite without one.
+    first
+        Its value after a reset: zero or the state in which nothing is driven; of gravity, that of
+        the design; with a history, the beginning of that.
+    design
+        Its value in the design, at the end of a history.
+    evenly
+        True if it goes evenly to a new value over a step, as places and amounts do; False if it has
+        the new value from the beginning of the step on, as forces and pressures do.
+    """
+
+    name: str
+    place: str
+    kind: str
+    shape: tuple[int, ...]
+    low: float
+    high: float
+    first: Value
+    design: Value
+    evenly: bool
+    #: From a value, and the remembered state of its material, to inputs of the core.
+    _inputs: Callable[[Value, float], Sequence[Input]] = field(repr=False, compare=False)
+    #: The design with a value of it, as it then acts.
+    _put: Callable[[Design, Value], Design] = field(repr=False, compare=False)
+    #: Times [s] and values that it follows until it is commanded.
+    history: tuple[tuple[float, ...], tuple[Value, ...]] | None = field(default=None, repr=False)
+    #: Other names of it.
+    _aliases: tuple[str, ...] = field(default=(), repr=False, compare=False)
+    #: Activation with a state of its own.
+    _memory: ShapeMemory | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def unit(self) -> str:
+        """SI unit of its numbers; ``"1"`` for one without."""
+        return _SI[self.kind]
+
+    def read(self, given: Any, where: str) -> Value:  # noqa: ANN401 - from outside
+        """Read a value: numbers in SI units, texts with units, or pint quantities.
+
+        Raises
+        ------
+        DesignError
+            A value of another unit or shape, not finite, or out of bounds.
+        """
+        if isinstance(given, np.generic):
+            given = given.item()
+        elif isinstance(given, np.ndarray):
+            given = given.tolist()
+        many = isinstance(given, (list, tuple))
+        if self.shape:
+            if not many:
+                what = f"{given!r} is not three components"
+                raise DesignError(where, what, "give x, y and z")
+            if len(given) != 3:
+                raise DesignError(where, f"has {len(given)} components", "give x, y and z")
+            x, y, z = (self._number(each, where) for each in given)
+            return x, y, z
+        if many:
+            raise DesignError(where, f"{given!r} is not a quantity", "give one number")
+        return self._number(given, where)
+
+    def _number(self, given: Any, where: str) -> float:  # noqa: ANN401 - from outside
+        try:
+            number = UnitOf(self.kind).read(given)
+        except UnitError as error:
+            raise DesignError(where, error.what, error.hint) from None
+        if not self.low <= number <= self.high:
+            shown, low, high = (
+                format_quantity(each, self.kind) for each in (number, self.low, self.high)
+            )
+            if number < self.low:
+                raise DesignError(where, f"{shown} is below {low}", f"give {low} or more")
+            raise DesignError(where, f"{shown} is above {high}", f"give {high} or less")
+        return number
+
+    def at(self, time: float) -> Value:
+        """Value of its history at a time in s, or the first value."""
+        if self.history is None:
+            return self.first
+        times, values = self.history
+        rows = np.array(values, dtype=np.float64)
+        if rows.ndim == 1:
+            return float(np.interp(time, times, rows))
+        x, y, z = (float(np.interp(time, times, column)) for column in rows.T)
+        return x, y, z
+
+    def memory_at(self, time: float) -> float:
+        """State of its material at a time in s, until it is commanded."""
+        return 0.0 if self._memory is None else self._memory.at(time).transformed
+
+    def memory_after(self, memory: float, value: Value) -> float:
+        """State of its material after another value."""
+        if self._memory is None:
+            return memory
+        assert isinstance(value, float)
+        return self._memory.transformed_at(memory, value)
+
+    def course(self) -> list[Course]:
+        """Inputs of the core until it is commanded."""
+        if self._memory is not None and self.history is not None:
+            growth = self._memory.growth
+            [(kind, index, number, _)] = self._inputs(self.first, 0.0)
+            return [(kind, index, number, list(growth.times), list(growth.bases))]
+        if self.history is None:
+            return self.held(self.first, self.memory_after(0.0, self.first))
+        times, values = self.history
+        each = [self._inputs(value, 0.0) for value in values]
+        return [
+            (kind, index, number, list(times), [row[column][3] for row in each])
+            for column, (kind, index, number, _) in enumerate(each[0])
+        ]
+
+    def held(self, value: Value, memory: float) -> list[Course]:
+        """Inputs of the core for a constant value."""
+        return [
+            (kind, index, number, [0.0], [size])
+            for kind, index, number, size in self._inputs(value, memory)
+        ]
+
+    def ramped(self, before: Value, value: Value, span: tuple[float, float]) -> list[Course]:
+        """Inputs of the core that go evenly from one value to another over a time span in s."""
+        pairs = zip(self._inputs(before, 0.0), self._inputs(value, 0.0), strict=True)
+        return [
+            (kind, index, number, [*span], [start, end])
+            for (kind, index, number, start), (*_, end) in pairs
+        ]
+
+    def put(self, design: Design, value: Value) -> Design:
+        """Return the design with a value of it."""
+        return self._put(design, value)
+
+
+class Commands:
+    """All commands of a design.
 
     Parameters
     ----------
     design
-        A design whose loads have no histories: the commands take their place.
+        The design.
 
     Attributes
     ----------
-    names
-        Name of each load: the chamber of a pressure, else its kind, ``"pressure"``; where several
-        share one name, their places, ``"loads[0]"``. Places and indices are accepted for every
-        load.
+    setup
+        The design with loads, tendons and dielectrics of unit size, whose problem is driven.
+    all
+        All commands: loads, supplies, connections, tendons, activations, clamps, objects.
 
-    Raises
-    ------
-    DesignError
-        A load or an activation with a history.
+    Notes
+    -----
+    A command is called by the thing that it drives: the chamber or the kind of a load, the supply,
+    the tendon, the part that is activated, the clamp, the object. Where a thing has several
+    quantities, or several things share a name, the quantity is added, ``"left.valve"``, or the
+    place is the name, ``"loads[0]"``. Places are accepted for all, and so is the quantity behind
+    any name.
 
     Examples
     --------
     >>> from voxsoft.design import families
-    >>> commands = LoadCommands(families.cylinder())
+    >>> commands = Commands(Setup.of(families.cylinder()))
     >>> commands.names
     ('pressure',)
     >>> commands.read({"pressure": "2 kPa"})
     {0: 2000.0}
     """
 
-    def __init__(self, design: Design) -> None:
-        self._readings = readings(design)
-        self._tendons = [tendon.name for tendon in design.tendons]
-        self._loads: tuple[AnyLoad, ...] = tuple(design.loads)
-        self.names = _names(self._readings)
+    def __init__(self, setup: Setup) -> None:
+        design = setup.design
+        self.setup = Setup(_of_size_one(design), setup.mesh)
+        self.all = tuple(_named(list(_drafts(setup, self.setup))))
+
+    @cached_property
+    def problem(self) -> _core.Problem:
+        """Problem of the core with loads of unit size, and growth that is commanded."""
+        one = self.setup
+        if not growths_of(one.design):
+            return one.problem
+        own = core_materials(one.design, one.materials, one.mesh, one.origin, over_time=True)
+        return one.problem.with_materials(own)
 
     @property
-    def at_first(self) -> dict[int, Value]:
-        """Values before any command: gravity as the design says, zero for all other loads."""
-        return {
-            index: reading.size if reading.quantity == "acceleration" else _zero(reading)
-            for index, reading in enumerate(self._readings)
-        }
+    def names(self) -> tuple[str, ...]:
+        """Name of each command."""
+        return tuple(command.name for command in self.all)
 
-    def read(self, given: Mapping[LoadName, Any]) -> dict[int, Value]:
-        """Read commands: SI values by the index of the load.
+    @property
+    def of_loads(self) -> tuple[str, ...]:
+        """Names of the commands that are loads, which come first."""
+        return tuple(each.name for each in self.all if each.place.startswith("loads["))
+
+    def read(self, given: Mapping[CommandName, Any]) -> dict[int, Value]:
+        """Read commands: SI values by the index of the command.
 
         Parameters
         ----------
         given
-            Values by name or index: a number in SI units, text with a unit, or a pint quantity;
-            three of them for a force, and for a traction that has three in the design.
+            Values by name: a number in SI units, text with a unit, or a pint quantity; three of
+            them for a vector.
 
         Raises
         ------
         DesignError
-            An unknown load, or one named twice; a value of another unit or shape, or not finite.
+            An unknown command, or one named twice; a value of another unit or shape, not finite, or
+            out of bounds.
         """
         if not isinstance(given, Mapping):
-            what = f"{given!r} is no mapping"
-            hint = f'write {{"{self.names[0]}": 1.0}}' if self.names else ""
-            raise DesignError("loads", what, hint)
+            hint = f'write {{"{self.names[0]}": ...}}' if self.all else ""
+            raise DesignError("commands", f"{given!r} is no mapping", hint)
         found: dict[int, Value] = {}
         for name, value in given.items():
             index = self._index(name)
+            where = f"commands[{name!r}]"
             if index in found:
-                raise DesignError(f"loads[{name!r}]", "is commanded twice", "give one name of it")
-            found[index] = self._value(index, name, value)
+                raise DesignError(where, "is commanded twice", "give one name of it")
+            found[index] = self.all[index].read(value, where)
         return found
-
-    def named(self, values: Mapping[int, Value]) -> Mapping[str, Value]:
-        """Name values by their loads."""
-        return MappingProxyType({self.names[index]: value for index, value in values.items()})
-
-    def under(self, design: Design, values: Mapping[int, Value]) -> Design:
-        """Return the design with loads of these values."""
-        loads = [load.replace(value=values[index]) for index, load in enumerate(self._loads)]
-        return design.replace(loads=loads)
-
-    def of_size_one(self, design: Design) -> Design:
-        """Return the design with each load of unit size, and one for each axis of a vector."""
-        pairs = zip(self._loads, self._readings, strict=True)
-        loads = [one for load, reading in pairs for one in _ones(load, reading)]
-        return design.replace(loads=loads)
-
-    def core_loads(self, of_size_one: Setup) -> list[list[range]]:
-        """Return the index range of the core's loads for each load and component of size one."""
-        ends = [0, *accumulate(len(load.actions) for load in of_size_one.loads)]
-        ranges = iter([range(first, end) for first, end in pairwise(ends)])
-        return [[next(ranges) for _ in reading.components] for reading in self._readings]
 
     def pressures(self, setup: Setup) -> list[tuple[int, list[int]]]:
         """Return the index of each pressure in cavities, and the cavities."""
         return [
             (index, [*chosen_cavities(reading.cavity, setup.mesh, f"loads[{index}].cavity")])
-            for index, reading in enumerate(self._readings)
+            for index, reading in enumerate(readings(setup.design))
             if reading.cavity is not None
         ]
 
-    def _index(self, name: LoadName) -> int:
+    def under(self, design: Design, values: Sequence[Value]) -> Design:
+        """Return a design with these values, constant over time."""
+        for command, value in zip(self.all, values, strict=True):
+            design = command.put(design, value)
+        return design
+
+    def _index(self, name: CommandName) -> int:
         if isinstance(name, int) and not isinstance(name, bool):
-            if 0 <= name < len(self._loads):
+            count = len(self.of_loads)
+            if 0 <= name < count:
                 return name
-            what = f"{name} is no load; there are {len(self._loads)}, from 0"
-            raise DesignError("loads", what)
-        places = [f"loads[{index}]" for index in range(len(self._loads))]
-        for known in ([*self.names], places):
-            if isinstance(name, str) and name in known:
-                return known.index(name)
-        if name in self._tendons:
-            what = f'"{name}" is a tendon, and a simulator commands loads'
-            hint = "it pulls as the design says; a history of it is followed by vs.simulate"
-            raise DesignError("loads", what, hint)
-        if not self._loads:
-            raise DesignError("loads", f'"{name}" is no load: the design has none', "call step()")
-        raise DesignError("loads", f'"{name}" is no load', closest(str(name), self.names))
-
-    def _value(self, index: int, name: LoadName, value: object) -> Value:
-        try:
-            if isinstance(value, np.generic):
-                value = value.item()
-            elif isinstance(value, np.ndarray):
-                value = value.tolist()
-            read = self._loads[index].replace(value=value)
-        except DesignError as error:
-            where = f"loads[{name!r}]"
-            raise DesignError(where, error.what, error.hint) from None
-        found: Value = read.value
-        due_three = len(self._readings[index].components) > 1
-        if isinstance(found, tuple) != due_three:
-            due = "three components" if due_three else "a number"
-            raise DesignError(f"loads[{name!r}]", f"{value!r} is not {due}", "as in the design")
-        return found
+            raise DesignError("commands", f"{name} is no load; there are {count}, from 0")
+        if isinstance(name, str):
+            if name in self.names:
+                return self.names.index(name)
+            for index, command in enumerate(self.all):
+                if name in command._aliases:
+                    return index
+        if not self.all:
+            what = f'"{name}" is no command: the design has none'
+            raise DesignError("commands", what, "call step()")
+        raise DesignError("commands", f'"{name}" is no command', closest(str(name), self.names))
 
 
-def _names(loads: Sequence[LoadReading]) -> tuple[str, ...]:
-    wanted = [
-        load.cavity if isinstance(load.cavity, str) and load.cavity != "all" else load.kind
-        for load in loads
+@dataclass(frozen=True)
+class _Draft:
+    """A command before it is named: its base name and quantity, and all else."""
+
+    base: str
+    quantity: str
+    entry: str
+    rest: Mapping[str, Any]
+
+
+def _named(drafts: list[_Draft]) -> Iterator[Command]:
+    """Name commands: by the base where that means one, else with the quantity or the place."""
+    for draft in drafts:
+        entries = {each.entry for each in drafts if each.base == draft.base}
+        base = draft.base if len(entries) == 1 else draft.entry
+        alone = sum(each.entry == draft.entry for each in drafts) == 1
+        name = base if alone else f"{base}.{draft.quantity}"
+        place = f"{draft.entry}.{draft.quantity}"
+        aliases = [place, f"{base}.{draft.quantity}"]
+        if alone:
+            aliases += [draft.entry]
+        yield Command(name=name, place=place, _aliases=tuple(aliases), **draft.rest)
+
+
+def _of_size_one(design: Design) -> Design:
+    """Return the design with loads of unit size, one for each axis of a vector, and no histories.
+
+    Dielectrics have a volt per meter, and tendons are drawn in by a little: the factors of the
+    core's loads are then values in SI units, or these over the size of the tendon.
+    """
+    pairs = zip(design.loads, readings(design), strict=True)
+    loads = [one for load, reading in pairs for one in _ones(load, reading)]
+    activations = [
+        each.replace(value=1.0, history=None) if isinstance(each, Dielectric) else each
+        for each in design.activations
     ]
-    return tuple(
-        name if wanted.count(name) == 1 else f"loads[{index}]" for index, name in enumerate(wanted)
-    )
-
-
-def _zero(load: LoadReading) -> Value:
-    return (0.0, 0.0, 0.0) if len(load.components) > 1 else 0.0
+    tendons = [_tendon_of_size_one(tendon) for tendon in design.tendons]
+    return design.replace(loads=loads, activations=activations, tendons=tendons)
 
 
 def _ones(load: AnyLoad, reading: LoadReading) -> list[AnyLoad]:
+    load = load.replace(history=None)
     if len(reading.components) == 1:
         return [load.replace(value=1.0)]
     return [load.replace(value=(float(at == 0), float(at == 1), float(at == 2))) for at in range(3)]
+
+
+def _tendon_of_size_one(tendon: Tendon) -> Tendon:
+    if tendon.drive == "tension":
+        # Friction is stiff in proportion to the tension of the design.
+        return tendon.replace(tension=tendon.value or 1.0, history=None)
+    return tendon.replace(length=None, shortening=_DRAWN, history=None)
+
+
+def _drafts(setup: Setup, one: Setup) -> Iterator[_Draft]:
+    """List all commands in their order."""
+    yield from _load_drafts(setup, one)
+    yield from _supply_drafts(setup)
+    yield from _tendon_drafts(setup, one)
+    yield from _activation_drafts(setup, one)
+    yield from _motion_drafts(setup)
+
+
+def _course(history: History | None, value: Callable[[float], Value]) -> Any:  # noqa: ANN401
+    if history is None:
+        return None
+    return history.times, tuple(value(factor) for factor in history.factors)
+
+
+def _replaced(design: Design, key: str, index: int, **changes: Any) -> Design:  # noqa: ANN401
+    """Return the design with one entry of a list changed."""
+    entries = list(getattr(design, key))
+    entries[index] = entries[index].replace(**changes)
+    return design.replace(**{key: entries})
+
+
+def _times(factor: float, value: Value) -> Value:
+    if isinstance(value, tuple):
+        x, y, z = value
+        return factor * x, factor * y, factor * z
+    return factor * value
+
+
+def _times_of(value: Value, factor: float) -> Value:
+    return _times(factor, value)
+
+
+def _load_ranges(one: Setup) -> list[range]:
+    """Range of the core's loads for each load of unit size."""
+    ends = [0, *accumulate(len(load.actions) for load in one.loads)]
+    return [range(first, end) for first, end in pairwise(ends)]
+
+
+def _load_drafts(setup: Setup, one: Setup) -> Iterator[_Draft]:
+    design = setup.design
+    found = readings(design)
+    ranges = iter(_load_ranges(one))
+    weights = iter(_weight_ranges(one))
+    names = [
+        load.cavity if isinstance(load.cavity, str) and load.cavity != "all" else load.kind
+        for load in found
+    ]
+    for index, (load, reading) in enumerate(zip(design.loads, found, strict=True)):
+        count = len(reading.components)
+        of_axes = [list(next(ranges)) for _ in range(count)]
+        if reading.quantity == "acceleration":
+            of_axes[0] += next(weights)
+
+        def inputs(value: Value, _: float, of_axes: list[list[int]] = of_axes) -> list[Input]:
+            sizes = value if isinstance(value, tuple) else (value,)
+            return [
+                ("load", core, 0, size)
+                for cores, size in zip(of_axes, sizes, strict=True)
+                for core in cores
+            ]
+
+        def put(design: Design, value: Value, index: int = index) -> Design:
+            return _replaced(design, "loads", index, value=value, history=None)
+
+        nothing: Value = (0.0, 0.0, 0.0) if count > 1 else 0.0
+        history = _course(load.history, partial(_times_of, load.value))
+        is_gravity = reading.quantity == "acceleration"
+        first = load.value if is_gravity else nothing
+        yield _Draft(
+            names[index],
+            reading.quantity.replace(" ", "_"),
+            f"loads[{index}]",
+            {
+                "kind": reading.quantity,
+                "shape": (3,) if count > 1 else (),
+                "low": -_INFINITE,
+                "high": _INFINITE,
+                "first": first if history is None else history[1][0],
+                "design": _times(reading.final_factor, load.value),
+                "evenly": False,
+                "_inputs": inputs,
+                "_put": put,
+                "history": history,
+            },
+        )
+
+
+def _weight_ranges(one: Setup) -> list[range]:
+    """Range of the core's loads by which each gravity weighs liquids in chambers."""
+    count = sum(len(load.actions) for load in one.loads)
+    each = 0 if one.fluids is None else one.fluids.weights
+    gravities = sum(load.reading.quantity == "acceleration" for load in one.loads)
+    return [range(count + each * n, count + each * (n + 1)) for n in range(gravities)]
+
+
+def _first_tendon(one: Setup) -> int:
+    """Index of the first tendon among the loads of the core."""
+    ends = [each.stop for each in _weight_ranges(one)]
+    return ends[-1] if ends else sum(len(load.actions) for load in one.loads)
+
+
+def _supply_drafts(setup: Setup) -> Iterator[_Draft]:
+    fluids = setup.fluids
+    if fluids is None:
+        return
+    for index, supply in enumerate(setup.design.supplies):
+        quantities = _supply_quantities(setup, index, supply)
+        for quantity, rest in quantities.items():
+            yield _Draft(fluids.names[index], quantity, f"supplies[{index}]", rest)
+    for index, connection in enumerate(setup.design.connections):
+        if connection.valve is None:
+            continue
+        branch = fluids.connection_branches[index]
+
+        def put(design: Design, value: Value, index: int = index) -> Design:
+            valve = design.connections[index].valve
+            assert valve is not None
+            assert isinstance(value, float)
+            return _replaced(design, "connections", index, valve=_opened(valve, value))
+
+        entry = f"connections[{index}]"
+        yield _Draft(entry, "valve", entry, _opening(branch, connection.valve.history, 1.0, put))
+
+
+def _opened(valve: Any, value: float) -> Any:  # noqa: ANN401 - a valve
+    return valve.replace(history=History(time=(0.0,), factor=(value,)))
+
+
+def _opening(
+    branch: int, history: History | None, first: float, put: Callable[[Design, Value], Design]
+) -> dict[str, Any]:
+    course = _course(history, lambda factor: factor)
+    return {
+        "kind": "number",
+        "shape": (),
+        "low": 0.0,
+        "high": 1.0,
+        "first": first if course is None else course[1][0],
+        "design": 1.0 if history is None else history.factors[-1],
+        "evenly": False,
+        "_inputs": lambda value, _: [("opening", branch, 0, value)],
+        "_put": put,
+        "history": course,
+    }
+
+
+def _supply_quantities(setup: Setup, index: int, supply: AnySupply) -> dict[str, dict[str, Any]]:
+    """Return the commands of a supply by their quantity."""
+    fluids = setup.fluids
+    assert fluids is not None
+    parts, chamber = fluids.supply_parts[index], fluids.network["chambers"][index]
+    history = supply.history
+    final = 1.0 if history is None else history.factors[-1]
+
+    def put(**changes: Any) -> Callable[[Design, Value], Design]:  # noqa: ANN401
+        key = changes.pop("key")
+
+        def changed(design: Design, value: Value) -> Design:
+            return _replaced(design, "supplies", index, **{key: value, "history": None})
+
+        return changed
+
+    def quantity(
+        kind: str,
+        core: str,
+        number: int,
+        key: str,
+        ends: tuple[float, float],
+        bounds: tuple[float, float] = (-_INFINITE, _INFINITE),
+        evenly: bool = False,
+        to_core: Callable[[float], float] = float,
+    ) -> dict[str, Any]:
+        """Describe a quantity that goes from one end to the other as the history does."""
+        zero, one = ends
+        course = _course(history, lambda factor: zero + factor * (one - zero))
+        return {
+            "kind": kind,
+            "shape": (),
+            "low": bounds[0],
+            "high": bounds[1],
+            "first": zero if course is None else course[1][0],
+            "design": zero + final * (one - zero),
+            "evenly": evenly,
+            "_inputs": lambda value, _: [(core, number, 0, to_core(value))],
+            "_put": put(key=key),
+            "history": course,
+        }
+
+    found: dict[str, dict[str, Any]] = {}
+    above = (_VACUUM, _INFINITE)
+    match supply:
+        case PressureSupply():
+            assert parts.source is not None
+            found["pressure"] = quantity(
+                "pressure", "source", parts.source, "value", (0.0, supply.value), above
+            )
+        case VolumeSupply():
+            held = max(supply.value, 0.0)
+            lines = chamber["outside"][0] - held
+
+            def to_outside(value: float) -> float:
+                return lines + held - value
+
+            found["volume"] = quantity(
+                "volume",
+                "outside",
+                index,
+                "value",
+                (0.0, supply.value),
+                (-_INFINITE, held),
+                evenly=True,
+                to_core=to_outside,
+            )
+        case MassSupply():
+            first, last = chamber["mass"]
+            found["mass"] = quantity(
+                "mass", "mass", index, "value", (first, last), (0.0, _INFINITE), evenly=True
+            )
+            filled, warm = chamber["temperature"]
+            found["temperature"] = quantity(
+                "temperature", "temperature", index, "temperature", (filled, warm), (1.0, _INFINITE)
+            )
+        case FlowSupply() if supply.pump is not None:
+            assert parts.pump is not None
+            found["pump"] = quantity("number", "pump", parts.pump, "", (0.0, 1.0), (0.0, 1.0)) | {
+                "_put": lambda design, _: design
+            }
+        case FlowSupply():
+            assert parts.source is not None
+            assert supply.source is not None
+            # Off is a valve that is closed, or a source without pressure where there is no valve.
+            has_valve = supply.valve is not None
+            start = supply.source if has_valve else 0.0
+            found["source"] = quantity(
+                "pressure", "source", parts.source, "source", (0.0, supply.source), above
+            )
+            if history is None:
+                found["source"]["first"] = start
+    if isinstance(supply, FlowSupply) and supply.valve is not None:
+        assert parts.valve is not None
+        is_open = supply.valve.history is None and history is not None
+        found["valve"] = _opening(
+            parts.valve,
+            supply.valve.history,
+            1.0 if is_open else 0.0,
+            lambda design, value: _with_valve(design, index, "valve", value),
+        )
+    if supply.leak is not None:
+        assert parts.leak is not None
+        found["leak"] = _opening(
+            parts.leak,
+            supply.leak.history,
+            1.0,
+            lambda design, value: _with_valve(design, index, "leak", value),
+        )
+    return found
+
+
+def _with_valve(design: Design, index: int, key: str, value: Value) -> Design:
+    assert isinstance(value, float)
+    valve = getattr(design.supplies[index], key)
+    return _replaced(design, "supplies", index, **{key: _opened(valve, value)})
+
+
+def _tendon_drafts(setup: Setup, one: Setup) -> Iterator[_Draft]:
+    first_core = _first_tendon(one)
+    for index, (tendon, resolved) in enumerate(
+        zip(setup.design.tendons, setup.tendons, strict=True)
+    ):
+        core, drive, rest = first_core + index, tendon.drive, resolved.length
+        nominal = one.design.tendons[index].value
+
+        def inputs(
+            value: Value,
+            _: float,
+            core: int = core,
+            drive: str = drive,
+            rest: float = rest,
+            nominal: float = nominal,
+        ) -> list[Input]:
+            assert isinstance(value, float)
+            size = rest - value if drive == "length" else value
+            return [("load", core, 0, size / nominal)]
+
+        def put(design: Design, value: Value, index: int = index, drive: str = drive) -> Design:
+            return _replaced(design, "tendons", index, **{drive: value, "history": None})
+
+        course = _course(tendon.history, partial(_times_of, tendon.value))
+        off = rest if drive == "length" else 0.0
+        final = 1.0 if tendon.history is None else tendon.history.factors[-1]
+        bounds = {
+            "tension": (0.0, _INFINITE),
+            "length": (rest * (1.0 - _ALMOST_ALL), _INFINITE),
+            "shortening": (-_INFINITE, rest * _ALMOST_ALL),
+        }
+        low, high = bounds[drive]
+        yield _Draft(
+            resolved.name,
+            drive,
+            f"tendons[{index}]",
+            {
+                "kind": "force" if drive == "tension" else "length",
+                "shape": (),
+                "low": low,
+                "high": high,
+                "first": off if course is None else course[1][0],
+                "design": final * tendon.value,
+                "evenly": drive != "tension",
+                "_inputs": inputs,
+                "_put": put,
+                "history": course,
+            },
+        )
+
+
+def _activation_drafts(setup: Setup, one: Setup) -> Iterator[_Draft]:
+    first_core = _first_tendon(one) + len(setup.design.tendons)
+    cores = iter(range(first_core, first_core + len(setup.design.activations)))
+    for index, activation in enumerate(setup.design.activations):
+        core = next(cores) if isinstance(activation, Dielectric) else index
+        quantity, rest = _activation(activation, core)
+
+        def put(design: Design, value: Value, index: int = index) -> Design:
+            return _replaced(design, "activations", index, value=value, history=None)
+
+        yield _Draft(activation.part, quantity, f"activations[{index}]", rest | {"_put": put})
+
+
+def _activation(activation: AnyActivation, core: int) -> tuple[str, dict[str, Any]]:
+    """Describe the command of an activation, with its quantity."""
+    low, high = -_INFINITE, _INFINITE
+    memory: ShapeMemory | None = None
+    inputs: Callable[[Value, float], list[Input]]
+    if isinstance(activation, Dielectric):
+        quantity, kind, off = "field", "electric field", 0.0
+        course = _course(activation.history, lambda factor: factor * activation.value)
+
+        def inputs(value: Value, _: float) -> list[Input]:
+            assert isinstance(value, float)
+            return [("load", core, 0, value)]
+
+    elif isinstance(activation, ShapeMemory):
+        quantity, kind, off = "temperature", "temperature", activation.reference
+        low, memory = 1e-9, activation
+        course = _course(activation.history, activation.temperature)
+
+        def inputs(value: Value, memory: float) -> list[Input]:
+            return [("growth", core, 0, 1.0 + activation.strain * memory)]
+
+    else:
+        by_heat = activation.kind == "thermal"
+        quantity, kind = ("temperature", "temperature") if by_heat else ("strain", "number")
+        off = activation.reference if activation.kind == "thermal" else 0.0
+        low = 1e-9 if by_heat else -1.0 + 1e-6
+        at = activation.temperature if activation.kind == "thermal" else None
+        value = activation.value
+        course = _course(activation.history, at or (lambda factor: factor * value))
+
+        def inputs(value: Value, _: float) -> list[Input]:
+            assert isinstance(value, float)
+            return [("growth", core, 0, activation.base_at(value))]
+
+    return quantity, {
+        "kind": kind,
+        "shape": (),
+        "low": low,
+        "high": high,
+        "first": off if course is None else course[1][0],
+        "design": activation.value if course is None else course[1][-1],
+        "evenly": False,
+        "_inputs": inputs,
+        "history": course,
+        "_memory": memory,
+    }
+
+
+def _motion_drafts(setup: Setup) -> Iterator[_Draft]:
+    design = setup.design
+    names = clamp_names(design.clamps)
+    for index, clamp in enumerate(design.clamps):
+        if clamp.motion is not None:
+            yield from _motion(names[index], "clamps", index, index, clamp.motion)
+    core = len(design.clamps)
+    for index, each in enumerate(design.objects):
+        if each.is_free:
+            continue
+        if each.way is not None:
+            yield from _motion(each.name, "objects", index, core, each.way)
+        core += 1
+
+
+def _motion(name: str, key: str, index: int, core: int, motion: Motion) -> Iterator[_Draft]:
+    """Describe the commands of a clamp or an object that is moved."""
+    history = motion.history
+    final = 1.0 if history is None else history.factors[-1]
+
+    def put_way(design: Design, value: Value) -> Design:
+        now: Motion = getattr(design, key)[index].motion
+        # The angle is put after the displacement, and both are constant then.
+        return _replaced(design, key, index, motion=now.replace(displacement=value, history=None))
+
+    def put_angle(design: Design, value: Value) -> Design:
+        now: Motion = getattr(design, key)[index].motion
+        assert now.rotation is not None
+        turned = now.rotation.replace(angle=value)
+        return _replaced(design, key, index, motion=now.replace(rotation=turned, history=None))
+
+    def along(value: Value, _: float) -> list[Input]:
+        assert isinstance(value, tuple)
+        return [("clamp", core, axis, each) for axis, each in enumerate(value)]
+
+    common = {"low": -_INFINITE, "high": _INFINITE, "evenly": True}
+    course = _course(history, lambda factor: _times(factor, motion.displacement))
+    way: dict[str, Any] = common | {
+        "kind": "length",
+        "shape": (3,),
+        "first": (0.0, 0.0, 0.0) if course is None else course[1][0],
+        "design": _times(final, motion.displacement),
+        "_inputs": along,
+        "_put": put_way,
+        "history": course,
+    }
+    yield _Draft(name, "displacement", f"{key}[{index}]", way)
+    if motion.rotation is None:
+        return
+    angle = motion.rotation.angle
+    turns = _course(history, lambda factor: factor * angle)
+    turn: dict[str, Any] = common | {
+        "kind": "angle",
+        "shape": (),
+        "first": 0.0 if turns is None else turns[1][0],
+        "design": final * angle,
+        "_inputs": lambda value, _: [("clamp", core, 3, value)],
+        "_put": put_angle,
+        "history": turns,
+    }
+    yield _Draft(name, "angle", f"{key}[{index}]", turn)

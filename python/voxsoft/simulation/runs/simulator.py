@@ -1,9 +1,10 @@
-"""A body that moves step by step under loads that are commanded as it goes."""
+"""A body that moves step by step under commands that come as it goes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import ceil
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
 from typing import Annotated, Any, Final, Literal
 
 import numpy as np
@@ -16,11 +17,17 @@ from voxsoft.errors import SimulationError
 from voxsoft.records import Record
 from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.results.fields import fields_of
-from voxsoft.simulation.runs.commands import LoadCommands, LoadName, Value
-from voxsoft.simulation.runs.observation import ChamberState, Moment, MotionStatus, Observation
+from voxsoft.simulation.runs.commands import Command, CommandName, Commands, Course, Value
+from voxsoft.simulation.runs.observation import (
+    Driven,
+    Moment,
+    MotionStatus,
+    Observation,
+    Subject,
+)
+from voxsoft.simulation.runs.sensors import Sensor, Sensors, SensorState
 from voxsoft.simulation.setup.large_voxels import evenly_small
 from voxsoft.simulation.setup.setup import Setup
-from voxsoft.simulation.solving.dynamics import converges_each_step
 from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
 
 #: Residual at which a body counts as at rest, relative to the load.
@@ -43,18 +50,20 @@ class _Settings(Record):
     ] = "critical"
     retardation: NonNegativeTime = 0.0
     tolerance: float = Field(TOLERANCE, gt=0, lt=1)
+    accuracy: float | None = Field(None, gt=0)
+    seed: int = Field(0, ge=0)
 
 
 class Simulator:
-    """A design in motion: command its loads, step, observe.
+    """A design in motion: command all that drives it, step, observe, go back.
 
     Parameters
     ----------
     design
-        A design whose loads have no histories. Motions of clamps follow their histories.
+        A design. A drive with a history follows it until it is commanded.
     time_step
-        Seconds of each :meth:`step`, which takes as many smaller ones inside as the body needs;
-        default 0.02.
+        Seconds of each :meth:`step`; default 0.02. Inside, it is halved where a step is not found,
+        and where its error asks for that.
     damping
         Decay rate of velocities in 1/s, or ``"critical"`` (default): as much as keeps the slowest
         mode from swinging, which comes to rest soon. 0 leaves the material's own.
@@ -62,29 +71,47 @@ class Simulator:
         Retardation time of the material, s; default 0.
     tolerance
         Residual force at rest, relative to the load; default 1e-4.
+    accuracy
+        Allowed error of a step in edges of a voxel, as the root of the mean square over the body:
+        a step with more is cut into up to eight. Default: none is cut for it.
+    sensors
+        Sensors that are sampled after each step: see :class:`Sensor`, or names of quantities
+        without error.
+    seed
+        Seed of the noise of sensors, until a :meth:`reset` gives another; default 0.
 
     Raises
     ------
     DesignError
-        A design that cannot be built, a load with a history, or a setting that cannot be read.
+        A design that cannot be built, a setting that cannot be read, or a sensor of nothing.
 
     Notes
     -----
-    Identical commands give identical bits, for any number of threads and after a :meth:`reset`.
-    The design's `solver` is for :func:`~voxsoft.simulate` and not used here. With contact,
-    supplies or softening, every step converges by Newton's method, as in
-    :func:`~voxsoft.simulate` over time, which takes longer. Supplies act as the design says.
+    Steps are those of :func:`~voxsoft.simulate` over time, each converged by Newton's method with
+    contact, tendons and fluids settled. Identical commands give identical bits, for any number of
+    threads, after a :meth:`reset`, and after :meth:`restore` of any observation. The design's
+    `solver` is for :func:`~voxsoft.simulate` and not used here.
+
+    At first gravity acts as in the design, and nothing else drives the body: pressures, forces,
+    fields, tensions and lengths drawn in are zero, syringes and valves as before the first stroke,
+    sealed gas and activated parts at their reference. ``simulator.step(simulator.targets)`` drives
+    everything as the design says.
 
     Examples
     --------
     >>> import voxsoft as vs
     >>> from voxsoft.design import families
     >>> simulator = vs.Simulator(families.cylinder(radius="20 mm", height="30 mm"))
-    >>> simulator.loads
-    ('pressure',)
+    >>> [(command.name, command.unit) for command in simulator.commands.values()]
+    [('pressure', 'Pa')]
     >>> seen = simulator.step({"pressure": "1 kPa"})
     >>> round(seen.time, 3), seen.status, bool(seen.probes["top"][2] > 0)
     (0.02, 'moving', True)
+    >>> later = simulator.step({"pressure": 0.0})
+    >>> simulator.restore(seen).time
+    0.02
+    >>> bool((simulator.step({"pressure": 0.0}).positions == later.positions).all())
+    True
     """
 
     def __init__(
@@ -95,35 +122,60 @@ class Simulator:
         damping: float | str = "critical",
         retardation: float | str = 0.0,
         tolerance: float = TOLERANCE,
+        accuracy: float | None = None,
+        sensors: Sequence[Sensor | str] = (),
+        seed: int = 0,
     ) -> None:
         design = require_design(design, "design").assembled
         refuse(design, "simulator")
         design = evenly_small(design, design.solver.refine)
-        given: dict[str, Any] = {"damping": damping, "retardation": retardation}
-        self._settings = _Settings(time_step=time_step, tolerance=tolerance, **given)
-        self._commands = LoadCommands(design)
-        self._setup = Setup.of(design, allow_loose=True)
-        self._pressed = self._commands.pressures(self._setup)
-        self._of_size_one = Setup(self._commands.of_size_one(design), self._setup.mesh)
-        self._cores = self._commands.core_loads(self._of_size_one)
-        self._state = self.reset()
+        given: dict[str, Any] = {
+            "time_step": time_step,
+            "damping": damping,
+            "retardation": retardation,
+            "tolerance": tolerance,
+            "accuracy": accuracy,
+            "seed": seed,
+        }
+        self._settings = _Settings(**given)
+        setup = Setup.of(design, allow_loose=True)
+        commands = Commands(setup)
+        self._subject = Subject(
+            setup,
+            commands,
+            commands.problem,
+            commands.pressures(setup),
+            self._settings.time_step,
+        )
+        self._seed = self._settings.seed
+        self._sensors: Sensors | None = None
+        first = self.reset()
+        if sensors:
+            self._sensors = Sensors(sensors, first, self.time_step)
+            self.reset()
 
     def __repr__(self) -> str:
-        return f"<Simulator of {self.design.name}: {self._state.status} at {self._state.time:g} s>"
+        return f"<Simulator of {self.design.name}: {self._seen.status} at {self._seen.time:g} s>"
 
     @property
     def design(self) -> Design:
         """The design in motion."""
-        return self._setup.design
+        return self._subject.setup.design
+
+    @property
+    def commands(self) -> Mapping[str, Command]:
+        """All that can be commanded, by name: unit, shape, bounds, values."""
+        return MappingProxyType({each.name: each for each in self._subject.commands.all})
+
+    @property
+    def targets(self) -> Mapping[str, Value]:
+        """Values of all commands in the design, at the end of histories: a command for a step."""
+        return MappingProxyType({name: each.design for name, each in self.commands.items()})
 
     @property
     def loads(self) -> tuple[str, ...]:
-        """Names of the loads, in the order of the design.
-
-        The chamber of a pressure, else the kind of the load; its place, ``"loads[0]"``, where that
-        would mean several. Each load may also be called by its place, or by its index alone.
-        """
-        return self._commands.names
+        """Names of the commands that are loads, in the order of the design."""
+        return self._subject.commands.of_loads
 
     @property
     def time_step(self) -> float:
@@ -132,34 +184,65 @@ class Simulator:
 
     @property
     def state(self) -> Observation:
-        """The last observation."""
-        return self._state
+        """The last observation, which is all that is remembered."""
+        return self._seen
 
-    def reset(self) -> Observation:
+    @property
+    def observation(self) -> Observation:
+        """The last observation."""
+        return self._seen
+
+    def reset(self, seed: int | None = None) -> Observation:
         """Go back to the unloaded shape at rest and time zero.
 
-        Gravity acts from here on as the design says; all other loads are zero until commanded.
+        Parameters
+        ----------
+        seed
+            Seed of the noise of sensors; default: the one before.
 
         Returns
         -------
         Observation
             The unloaded body, with the same bits as that of a new simulator.
         """
-        self._start()
-        self._command(self._commands.at_first)
-        self._steps, self._time, self._ahead = 0, 0.0, 0.0
-        self._state = self._observe(None)
-        return self._state
+        if seed is not None:
+            self._seed = _Settings(seed=seed).seed
+        all_commands = self._subject.commands.all
+        driven = Driven(
+            values=tuple(each.first for each in all_commands),
+            memories=tuple(each.memory_after(0.0, each.first) for each in all_commands),
+            following=frozenset(
+                index for index, each in enumerate(all_commands) if each.history is not None
+            ),
+            moving=frozenset(),
+            late=0.0,
+            work=MappingProxyType({}),
+            power=0.0,
+            sensors=SensorState({}, (), ()),
+            seed=self._seed,
+        )
+        self._live = self._made()
+        self._live.command(self._subject.inputs(driven, 0.0))
+        self._live.reset()
+        self._steps = 0
+        seen = self._observe(self._live.advance_to(0.0), driven, None)
+        if self._sensors is not None:
+            started = replace(driven, sensors=self._sensors.start(self._seed, seen))
+            seen = self._sampled(replace(seen, _driven=started))
+        self._seen = seen
+        return seen
 
-    def step(self, loads: Mapping[LoadName, Any] | None = None) -> Observation:
-        """Command loads, and let the body move for one step of time.
+    def step(self, commands: Mapping[CommandName, Any] | None = None) -> Observation:
+        """Command, and let the body move for one step of time.
 
         Parameters
         ----------
-        loads
-            New values by name or index, from the beginning of this step on: numbers in SI units,
-            texts with units, or pint quantities; three components for a force. Loads that are not
-            named keep their last values. Default: all do.
+        commands
+            New values by name, see :attr:`commands`: numbers in SI units, texts with units, or pint
+            quantities; three components for a vector. Forces, pressures, fields, temperatures and
+            valves have them from the beginning of this step on; lengths, angles, volumes and masses
+            go to them evenly over the step. All others keep their last values, or follow their
+            histories until they are commanded. Default: no new value.
 
         Returns
         -------
@@ -169,65 +252,104 @@ class Simulator:
         Raises
         ------
         DesignError
-            An unknown load, or a value of another unit or not finite; the body has not moved.
+            An unknown command, or a value of another unit or shape, not finite or out of bounds;
+            the body has not moved.
         SimulationError
-            The body has diverged before: only :meth:`reset` leads on.
+            The body has diverged before: only :meth:`reset` or :meth:`restore` leads on.
         """
-        if self._state.status == "diverged":
+        if self._seen.status == "diverged":
             raise SimulationError(
                 "simulator",
-                f"has diverged at {self._state.time:g} s and cannot go on",
+                f"has diverged at {self._seen.time:g} s and cannot go on",
                 "call reset(), then command less or more slowly, or use smaller voxels",
             )
-        new = self._commands.read({} if loads is None else loads)
-        self._command({at: to for at, to in new.items() if to != self._values[at]})
-        report = self._advance()
+        new = self._subject.commands.read({} if commands is None else commands)
+        seen, driven = self._seen, self._seen._driven
+        start = seen._moment.time
+        end = (self._steps + 1) * self.time_step - driven.late
+        courses, driven = self._changed(driven, new, (start, end))
+        if courses:
+            self._live.command(courses)
+        report = self._live.advance_to(end)
         self._steps += 1
-        self._state = self._observe(report)
-        return self._state
+        late = driven.late + (
+            end - report.time if report.status != _core.LiveStatus.MOVING else 0.0
+        )
+        values = tuple(
+            command.at(report.time) if index in driven.following else value
+            for index, (command, value) in enumerate(
+                zip(self._subject.commands.all, driven.values, strict=True)
+            )
+        )
+        driven = replace(driven, late=late, values=values)
+        found = self._observe(report, driven, seen)
+        self._seen = self._sampled(self._counted(found, seen))
+        return self._seen
 
-    def restore(self, seen: Observation) -> Observation:
-        """Go back to an observation: its state, its time, its loads and its memory.
+    def restore(self, state: Observation) -> Observation:
+        """Go back to an observation: its state, time, commands and all that it remembers.
 
-        Friction, gas and liquid, softening and viscous stress of rubber go on as they were. Motion
-        from here on has the same bits each time, in any simulator of the design with the same
-        settings. With contact, supplies or softening these are the bits of a motion that was not
-        interrupted; without, both agree to the tolerance of a step.
+        Friction, gas and liquid, softening, viscous stress, the lengths of steps and the noise of
+        sensors go on as they were: to the same bits as a motion that was not interrupted, each
+        time, in any simulator of the design with the same settings.
 
         Parameters
         ----------
-        seen
+        state
             An observation of this simulator or of another one of the same design.
 
         Returns
         -------
         Observation
-            ``seen``, the last observation from now on.
+            ``state``, the last observation from now on.
 
         Raises
         ------
         SimulationError
-            An observation of another design.
+            An observation of another design, or with other sensors.
         """
-        if seen._setup.design != self.design:
+        if state._subject.setup.design != self.design:
             raise SimulationError(
                 "simulator",
-                f"cannot go back to an observation of {seen._setup.design.name}",
+                f"cannot go back to an observation of {state._subject.setup.design.name}",
                 "restore observations of the same design only",
             )
-        self._start()
-        self._command(seen._values)
-        moment = seen._moment
+        own = () if self._sensors is None else self._sensors.all
+        if len(own) != len(state._driven.sensors.drifts):
+            raise SimulationError(
+                "simulator",
+                f"has {len(own)} sensors, and the observation is from one with others",
+                "give both the same sensors",
+            )
+        moment, driven = state._moment, state._driven
+        self._live = self._made()
+        self._live.command(self._subject.inputs(driven, moment.time))
         self._live.resume(moment.positions, moment.velocities, moment.time, moment.memory)
-        self._steps, self._time, self._ahead = seen.steps, moment.time, seen._ahead
-        self._state = seen
-        return seen
+        self._steps, self._seed, self._seen = state.steps, driven.seed, state
+        return state
 
-    def _start(self) -> None:
-        """Make a run at rest: a new one, because a step that was halved stays so in the old one."""
-        mesh, settings = self._setup.mesh, self._settings
-        self._live = _core.Live(
-            self._of_size_one.problem,
+    def copy(self) -> Simulator:
+        """Return another simulator in the same state, which goes on by itself.
+
+        Examples
+        --------
+        >>> from voxsoft.design import families
+        >>> simulator = Simulator(families.cylinder(radius="20 mm", height="30 mm"))
+        >>> other = simulator.copy()
+        >>> _ = other.step({"pressure": "1 kPa"})
+        >>> simulator.state.time, other.state.time
+        (0.0, 0.02)
+        """
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__)
+        other.restore(self._seen)
+        return other
+
+    def _made(self) -> _core.Live:
+        """Make a run at rest."""
+        mesh, settings = self._subject.setup.mesh, self._settings
+        return _core.Live(
+            self._subject.problem,
             mesh.triangles.astype(np.uint32),
             np.zeros(len(mesh.triangles), np.uint8),
             mesh.voxel_size or 0.0,
@@ -235,53 +357,63 @@ class Simulator:
             damping=settings.damping if isinstance(settings.damping, float) else None,
             retardation=settings.retardation,
             tolerance=settings.tolerance,
-            converged=converges_each_step(self.design),
+            converged=True,
+            accuracy=np.inf if settings.accuracy is None else settings.accuracy,
             memory=memory_limit(),
         )
-        if self._live.method == "implicit":
-            self._live.prefer_step(settings.time_step)
-            parts = ceil(settings.time_step / self._live.substep * (1.0 - 1e-9))
-            self._live.prefer_step(settings.time_step / parts)
-        self._values: dict[int, Value] = {}
 
-    def _command(self, values: Mapping[int, Value]) -> None:
-        """Apply changed loads; others are left alone, as they would wake a body at rest."""
-        for index, value in values.items():
-            sizes = value if isinstance(value, tuple) else (value,)
-            for cores, size in zip(self._cores[index], sizes, strict=True):
-                for core in cores:
-                    self._live.set_load(core, size)
-        self._values = {**self._values, **values}
+    def _changed(
+        self, driven: Driven, new: Mapping[int, Value], span: tuple[float, float]
+    ) -> tuple[list[Course], Driven]:
+        """Return the inputs of the core that change, and the drives after the step.
 
-    def _advance(self) -> _core.Advance:
-        """Take inner steps until the end of the step, to the nearest of them; fewer at rest."""
-        goal = self._time - self._ahead + self._settings.time_step
-        report = self._live.advance(0)
-        while report.status == _core.LiveStatus.MOVING:
-            count = round((goal - report.time) / report.substep)
-            if count < 1:
-                break
-            report = self._live.advance(count)
-        self._time = report.time
-        self._ahead = self._time - goal if report.status == _core.LiveStatus.MOVING else 0.0
-        return report
+        Others are left alone, as they would wake a body at rest.
+        """
+        values, memories = list(driven.values), list(driven.memories)
+        following, moving, courses = set(driven.following), set[int](), list[Course]()
+        for index, command in enumerate(self._subject.commands.all):
+            value = new.get(index, values[index])
+            follows = index in following and index not in new
+            if follows or (value == values[index] and index not in driven.moving | following):
+                continue
+            if index in following:
+                following.discard(index)
+                memories[index] = command.memory_at(span[0])
+            memories[index] = command.memory_after(memories[index], value)
+            if command.evenly and value != values[index]:
+                courses += command.ramped(values[index], value, span)
+                moving.add(index)
+            else:
+                courses += command.held(value, memories[index])
+            values[index] = value
+        changed = replace(
+            driven,
+            values=tuple(values),
+            memories=tuple(memories),
+            following=frozenset(following),
+            moving=frozenset(moving),
+        )
+        return courses, changed
 
-    def _observe(self, report: _core.Advance | None) -> Observation:
-        """Observe the body after an advance; None for its initial state."""
-        mesh = self._setup.mesh
+    def _observe(
+        self, report: _core.Advance, driven: Driven, before: Observation | None
+    ) -> Observation:
+        """Observe the body after an advance."""
+        subject = self._subject
+        mesh = subject.setup.mesh
         moment = Moment(
             positions=self._live.positions(),
             velocities=self._live.velocities(),
-            time=report.time if report else 0.0,
+            time=report.time,
             memory=self._live.memory(),
-            residual=report.residual if report else np.inf,
+            residual=report.residual,
         )
         own = len(mesh.vertices)
         positions, velocities = moment.positions[:own], moment.velocities[:own]
         moved = positions - mesh.vertices
         status, message = self._judged(report, positions)
         return Observation(
-            time=self._steps * self._settings.time_step,
+            time=self._steps * self.time_step,
             steps=self._steps,
             status=status,
             message=message,
@@ -289,51 +421,76 @@ class Simulator:
             velocities=velocities,
             probes={
                 name: place.weights @ moved[place.vertices]
-                for name, place in self._setup.places.items()
+                for name, place in subject.setup.places.items()
             },
-            chambers=tuple(
-                ChamberState(cavity.name, float(cavity.volume_at(positions)), pressure)
-                for cavity, pressure in zip(mesh.cavities, self._pressures(moment), strict=True)
+            commands=MappingProxyType(
+                dict(zip(subject.commands.names, driven.values, strict=True))
             ),
-            loads=self._commands.named(self._values),
             residual=moment.residual,
-            elastic_energy=report.elastic if report else 0.0,
-            kinetic_energy=report.kinetic if report else 0.0,
+            elastic_energy=report.elastic,
+            kinetic_energy=report.kinetic,
             _moment=moment,
-            _setup=self._setup,
-            _commands=self._commands,
-            _values=dict(self._values),
-            _ahead=self._ahead,
+            _subject=subject,
+            _driven=driven,
+            _before=None if before is None else before.velocities,
         )
 
+    def _counted(self, seen: Observation, before: Observation) -> Observation:
+        """Add the energy that the drives gave in the last step."""
+        subject, given = self._subject, dict[str, float]()
+        fluids = subject.setup.fluids
+        if fluids is not None:
+            for supplied in fluids.states(seen._answer.chambers):
+                given[supplied.name] = supplied.energy
+        work = before._driven.work
+        for tendon in subject.setup.tendons:
+            now, then = seen.tendons[tendon.name], before.tendons[tendon.name]
+            drawn = (now.shortening - now.slack) - (then.shortening - then.slack)
+            pull = 0.5 * (now.tension + then.tension)
+            given[tendon.name] = work.get(tendon.name, 0.0) + pull * drawn
+        for index, cavities in subject.pressed:
+            name = subject.commands.names[index]
+            ends = (before._driven.values[index], seen._driven.values[index])
+            pressure = 0.5 * sum(each for each in ends if isinstance(each, float))
+            volumes = [
+                seen.chambers[each].volume - before.chambers[each].volume for each in cavities
+            ]
+            given[name] = work.get(name, 0.0) + pressure * sum(volumes)
+        power = (sum(given.values()) - sum(work.values())) / self.time_step
+        driven = replace(seen._driven, work=MappingProxyType(given), power=power)
+        return _with(seen, driven)
+
+    def _sampled(self, seen: Observation) -> Observation:
+        """Sample the sensors."""
+        if self._sensors is None:
+            return seen
+        samples, after = self._sensors.sample(seen._driven.sensors, seen)
+        return _with(seen, replace(seen._driven, sensors=after), samples)
+
     def _judged(
-        self, report: _core.Advance | None, positions: np.ndarray[Any, Any]
+        self, report: _core.Advance, positions: np.ndarray[Any, Any]
     ) -> tuple[MotionStatus, str]:
         """Decide the status and its message: sound bodies move or rest, others are reported."""
-        if report and report.status == _core.LiveStatus.DIVERGED and report.breakdown:
+        if report.status == _core.LiveStatus.DIVERGED and report.breakdown:
             _, place, when = report.breakdown
             point = ", ".join(f"{value * 1e3:.1f}" for value in place)
             what = f"diverged at ({point}) mm, after {when:.6g} s: the loads are too much for it"
             return "diverged", what
-        fields = fields_of(self.design, self._setup.mesh, positions, self._of_size_one.problem)
+        fields = fields_of(self.design, self._subject.setup.mesh, positions, self._subject.problem)
         inverted = int((fields.volume_ratio <= 0.0).sum())
         if inverted:
             return "inverted", f"{inverted:,} of {len(fields.volume_ratio):,} voxels are inside out"
-        if report and report.status == _core.LiveStatus.AT_REST:
+        if report.status == _core.LiveStatus.AT_REST:
             return "at-rest", f"at rest, residual {report.residual:.2g} of the load"
         return "moving", "moving"
 
-    def _pressures(self, moment: Moment) -> list[float]:
-        """Sum the gauge pressures that act in each cavity."""
-        pressures = [0.0] * len(self._setup.mesh.cavities)
-        for index, cavities in self._pressed:
-            value = self._values[index]
-            assert isinstance(value, float)
-            for cavity in cavities:
-                pressures[cavity] += value
-        if (fluids := self._setup.fluids) is not None:
-            answer = moment.measured(self._setup.problem)
-            for supplied in fluids.states(answer.chambers):
-                for cavity in supplied.cavities:
-                    pressures[cavity] = supplied.pressure
-        return pressures
+
+def _with(
+    seen: Observation, driven: Driven, samples: Mapping[str, np.ndarray[Any, Any]] | None = None
+) -> Observation:
+    """Return an observation with other drives, and all that was measured of it."""
+    found = replace(seen, _driven=driven, sensors=seen.sensors if samples is None else samples)
+    for name in ("_answer", "chambers"):
+        if name in seen.__dict__:
+            found.__dict__[name] = seen.__dict__[name]
+    return found

@@ -62,6 +62,8 @@ class ContactState:
         Smallest gap [m].
     slipping
         Part of the pressure under which the surfaces slip, 0 to 1.
+    place
+        Mean place of the pressure [m]; None where nothing presses.
     """
 
     of: tuple[str, str]
@@ -74,6 +76,7 @@ class ContactState:
     bonded: float
     gap: float
     slipping: float
+    place: tuple[float, float, float] | None = None
 
     @property
     def sentence(self) -> str:
@@ -96,6 +99,7 @@ class ContactState:
             "bonded": self.bonded,
             "gap": self.gap,
             "sticking": 1.0 - self.slipping,
+            "place": None if self.place is None else list(self.place),
         }
 
 
@@ -462,6 +466,7 @@ class Touching:
                 bonded=each.bonded,
                 gap=each.gap,
                 slipping=each.slipping,
+                place=None if each.place is None else (each.place[0], each.place[1], each.place[2]),
             )
             for each in found
         )

@@ -1,6 +1,7 @@
 """Supplies of a design as volumes of gas and liquid in the core's problem.
 
-The result, the studio and metrics take the pressure of each chamber from here.
+The result, the studio and metrics take the pressure of each chamber from here. Long because the
+network and the places of its parts, by which they are commanded, are found together.
 """
 
 from __future__ import annotations
@@ -147,6 +148,26 @@ class Volume:
 
 
 @dataclass(frozen=True)
+class SupplyParts:
+    """Indices of the parts of a supply in the network of the core; None for those it has not.
+
+    Attributes
+    ----------
+    source
+        Its source, among all sources.
+    pump
+        Its pump, among all pumps.
+    valve, leak
+        The branches through its valve or tube, and through its leak.
+    """
+
+    source: int | None = None
+    pump: int | None = None
+    valve: int | None = None
+    leak: int | None = None
+
+
+@dataclass(frozen=True)
 class Fluids:
     """The supplies and connections of a design on its mesh.
 
@@ -263,9 +284,33 @@ class Fluids:
                 for triangles, voids, weight in _walls(cavity):
                     parts.hydrostatic(triangles, (weight * slope).tolist(), origin, history, voids)
 
-    @cached_property
+    @property
     def network(self) -> _core_data.Network:
         """Network as the core reads it."""
+        return self._built[0]
+
+    @property
+    def supply_parts(self) -> tuple[SupplyParts, ...]:
+        """Parts of each supply in the network."""
+        return self._built[1]
+
+    @property
+    def connection_branches(self) -> range:
+        """The branch of each connection in the network."""
+        last = len(self.network["branches"])
+        return range(last - len(self.design.connections), last)
+
+    @property
+    def weights(self) -> int:
+        """Number of loads of the core by which each gravity weighs liquids."""
+        liquids = [each for each in self.volumes if isinstance(each.medium, Liquid)]
+        cavities = [self.mesh.cavities[index] for each in liquids for index in each.cavities]
+        return sum(len(cavity.splits) for cavity in cavities)
+
+    @cached_property
+    def _built(self) -> tuple[_core_data.Network, tuple[SupplyParts, ...]]:
+        """Build the network, and note where the parts of each supply are in it."""
+        noted: list[SupplyParts] = []
         sources: list[_core_data.Source] = []
         branches: list[_core_data.Branch] = []
         pumps: list[_core_data.Pump] = []
@@ -273,11 +318,16 @@ class Fluids:
         for number, volume in enumerate(self.volumes):
             chamber = self._chamber(volume)
             supply = volume.supply
+            source: int | None = None
+            pump: int | None = None
+            valve: int | None = None
+            leak: int | None = None
             if isinstance(supply, PressureSupply):
-                chamber["held"] = len(sources)
+                source = chamber["held"] = len(sources)
                 sources.append(_source(supply.value, supply.history))
             if isinstance(supply, FlowSupply) and supply.source is not None:
                 ends: list[_core_data.End] = [{"source": len(sources)}, {"chamber": number}]
+                source, valve = len(sources), len(branches)
                 sources.append(_source(supply.source, supply.history))
                 line = _line(supply.valve, supply.tube, supply.medium, supply.temperature)
                 branches.append(_branch(ends, line, supply.valve))
@@ -285,25 +335,30 @@ class Fluids:
                 density = _density(supply.medium, supply.temperature)
                 curve = _core_data.Curve(pressures=supply.pump.pressure, flows=supply.pump.flow)
                 history = _course(supply.history)
+                pump = len(pumps)
                 pumps.append(
                     {"chamber": number, "curve": curve, "density": density, "history": history}
                 )
             if supply is not None and supply.leak is not None:
                 ends = [{"chamber": number}, {"source": len(sources)}]
+                leak = len(branches)
                 sources.append(_source(0.0, None))
                 line = _line(supply.leak, None, supply.medium, supply.temperature)
                 branches.append(_branch(ends, line, supply.leak))
             chambers.append(chamber)
+            if supply is not None:
+                noted.append(SupplyParts(source, pump, valve, leak))
         for index, connection in enumerate(self.design.connections):
             where = f"connections[{index}]"
             branches.append(self._joined(connection, where, chambers))
-        return {
-            "atmosphere": ATMOSPHERE,
-            "chambers": chambers,
-            "branches": branches,
-            "sources": sources,
-            "pumps": pumps,
-        }
+        network = _core_data.Network(
+            atmosphere=ATMOSPHERE,
+            chambers=chambers,
+            branches=branches,
+            sources=sources,
+            pumps=pumps,
+        )
+        return network, tuple(noted)
 
     def _joined(
         self, connection: Connection, where: str, chambers: list[_core_data.Chamber]

@@ -18,8 +18,9 @@ from voxsoft.materials import Hyperelastic
 from voxsoft.records import closest
 from voxsoft.simulation.compatibility import REASONS
 
-#: Growth factor for the core: times in s, stretches, their power, the share of each voxel.
-_Factor = tuple[tuple[float, ...], tuple[float, ...], float, NDArray[np.float64] | None]
+#: Growth factor for the core: number of the activation, times in s, stretches, their power, and the
+#: share of each voxel.
+_Factor = tuple[int, tuple[float, ...], tuple[float, ...], float, NDArray[np.float64] | None]
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ class PartGrowth:
             for number, growth in growths.items():
                 share = shares(growth, f"activations[{number}]")
                 now = growth if over_time else growth.at_the_end
-                found.append((now.times, now.bases, now.power, share))
+                found.append((number, now.times, now.bases, now.power, share))
             return found
 
         return core.with_growth(factors(self.of_part), factors(self.of_fibers))

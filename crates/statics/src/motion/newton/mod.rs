@@ -48,6 +48,8 @@ pub struct Transient {
     pub retardation: f64,
     /// Tolerance of rest: of the relative residual force, and of the kinetic energy over the elastic energy.
     pub tolerance: f64,
+    /// Allowed error of a step ([`crate::ImplicitSettings::accuracy`]).
+    pub accuracy: f64,
     /// End time in s, reached exactly; `None` runs to rest.
     pub end_time: Option<f64>,
     /// Time in s after which a run that does not come to rest is given up.
@@ -67,6 +69,7 @@ impl Default for Transient {
             damping: Damping::Rate(0.0),
             retardation: 0.0,
             tolerance: 1e-4,
+            accuracy: f64::INFINITY,
             end_time: None,
             max_time: 60.0,
             record_interval: None,
@@ -171,6 +174,7 @@ impl Motion {
             damping: settings.damping,
             retardation: settings.retardation,
             tolerance: settings.tolerance,
+            accuracy: settings.accuracy,
             memory: settings.memory,
             linear: settings.linear,
         };
@@ -217,7 +221,7 @@ impl Motion {
                 let (status, place) = match stop {
                     Stop::Memory(bytes) => (Status::OutOfMemory(bytes), None),
                     Stop::Cancelled => (Status::Cancelled, None),
-                    Stop::Lost | Stop::Gone(_) => (Status::Diverged, Some(place)),
+                    Stop::Lost | Stop::Coarse | Stop::Gone(_) => (Status::Diverged, Some(place)),
                 };
                 return self.ended(status, residual, place);
             }

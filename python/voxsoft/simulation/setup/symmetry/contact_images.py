@@ -46,12 +46,13 @@ def _image_of(
     if order.index(first) > order.index(second):
         first, second, sign = second, first, -1.0
 
-    def image(force: Triple) -> Triple:
+    def image(force: Triple, sign: float = sign) -> Triple:
         x, y, z = (sign * (-along if at == axis else along) for at, along in enumerate(force))
         return x, y, z
 
     force, friction = image(state.force), image(state.friction)
-    return replace(state, of=(first, second), force=force, friction=friction)
+    place = None if state.place is None else image(state.place, 1.0)
+    return replace(state, of=(first, second), force=force, friction=friction, place=place)
 
 
 def _sum(states: Sequence[ContactState]) -> ContactState:
@@ -77,4 +78,15 @@ def _sum(states: Sequence[ContactState]) -> ContactState:
         bonded=total("bonded"),
         gap=min(each.gap for each in states),
         slipping=slipping / pressure if pressure > 0.0 else states[0].slipping,
+        place=_mean_place(states),
     )
+
+
+def _mean_place(states: Sequence[ContactState]) -> Triple | None:
+    """Mean of the places by their pressures."""
+    pressed = [(each.place, each.pressure) for each in states if each.place is not None]
+    if not pressed:
+        return None
+    places, pressures = zip(*pressed, strict=True)
+    x, y, z = np.average(places, axis=0, weights=pressures).tolist()
+    return x, y, z
