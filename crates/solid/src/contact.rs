@@ -58,9 +58,9 @@ impl<M: Debug + Clone + PartialEq + Send + Sync + 'static> Remembered for M {
 /// Factors on the default tolerances of contact, at most 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Precision {
-    /// Of gaps and of the creep of surfaces that stick.
+    /// Factor for gaps and for the creep of surfaces that stick.
     pub gaps: f64,
-    /// Of friction and its bounds, whose errors add up along a path.
+    /// Factor for friction and its bounds, whose errors add up along a path.
     pub friction: f64,
 }
 

@@ -332,6 +332,7 @@ fn grasp() -> Problem {
             angle: 0.0,
             center: [0.0; 3],
             history: History::new(vec![0.0, 0.03], vec![0.0, 1.0]).unwrap(),
+            courses: None,
         }),
     };
     let clamps = vec![closing(0.0, 0.5e-3), closing(26e-3, -0.5e-3)];

@@ -24,6 +24,8 @@ N: Final = 1.0
 kN: Final = 1e3
 mJ: Final = 1e-3
 J: Final = 1.0
+mW: Final = 1e-3
+W: Final = 1.0
 
 Pa: Final = 1.0
 kPa: Final = 1e3

@@ -90,7 +90,7 @@ _ALL: Final = (
     Kind("conductance", Dimension(4, -1, 1), ("L/s/bar", "m^3/s/Pa")),
     Kind("viscosity", Dimension(-1, 1, -1), ("Pa*s",)),
     Kind("energy", Dimension(2, 1, -2), ("J", "mJ")),
-    Kind("power", Dimension(2, 1, -3), ()),
+    Kind("power", Dimension(2, 1, -3), ("W", "mW")),
     Kind("angular speed", Dimension(0, 0, -1, 1), ("rad/s", "deg/s")),
     Kind("torque", Dimension(2, 1, -2), ("N*m", "N*mm")),
     Kind("magnetic field", Dimension(mass=1, time=-2, current=-1), ("mT", "T")),

@@ -43,6 +43,7 @@ COMMON_UNITS: Final[dict[str, Dimension]] = {
     **dict.fromkeys(("mN", "N", "kN"), _FORCE),
     **dict.fromkeys(("Pa", "kPa", "MPa", "GPa", "bar", "psi"), _PRESSURE),
     **dict.fromkeys(("mJ", "J"), _ENERGY),
+    **dict.fromkeys(("mW", "W"), KINDS["power"].dimension),
     **dict.fromkeys(("mL", "L"), _VOLUME),
     **dict.fromkeys(("deg", "rad"), _ANGLE),
     "Hz": _RATE,

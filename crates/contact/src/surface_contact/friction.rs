@@ -6,8 +6,9 @@ use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 
 use super::law::{Along, Law, Tangential};
 use super::state::{ContactState, SampleMemory};
-use super::{Spot, SurfaceContact};
+use super::{BOUND, Spot, SurfaceContact};
 use crate::gap::{normal, unit};
+use crate::surface::Carried;
 
 /// Height over the plane of a face, in voxels, up to which the next face counts as in it.
 const FLAT: f64 = 1e-6;
@@ -133,6 +134,68 @@ impl SurfaceContact {
             self.add_force(friction.found.force, friction.spot(sample), &mut forces);
         });
         forces
+    }
+
+    /// Largest change of the friction bounds relative to its tolerance: on vertices, with the tolerance `off_vertex`,
+    /// and summed over each pair of surfaces.
+    ///
+    /// Surfaces that do not fit can distribute a pressure among their samples in many ways, between which multipliers
+    /// converge slowly without any motion: there are more samples than vertices that carry them. So bounds of single
+    /// samples do not count.
+    pub(super) fn off_bounds(
+        &self,
+        old: &[SampleMemory],
+        new: &[SampleMemory],
+        off_vertex: f64,
+        negligible: f64,
+    ) -> f64 {
+        let mut pairs: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();
+        let mut vertices: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
+        for (index, (old, new)) in old.iter().zip(new).enumerate() {
+            let Some((triangle, weights)) = new.anchor else {
+                continue;
+            };
+            let change = new.bound - old.bound;
+            let mut pair = [
+                self.samples[index].surface,
+                self.surface_of[triangle as usize],
+            ];
+            pair.sort_unstable();
+            let entry = pairs.entry(pair).or_default();
+            entry[0] += change;
+            entry[1] += new.bound;
+            let spot = Spot {
+                sample: index as u32,
+                along: new.along,
+                triangle,
+                weights,
+            };
+            for (factor, point) in self.relative(spot) {
+                let is_own = self.samples[index].ends.contains(&point);
+                let part = if is_own { factor } else { -factor };
+                let Carried {
+                    vertices: carriers,
+                    weights,
+                } = self.share(point);
+                for (vertex, weight) in carriers.iter().zip(weights) {
+                    let entry = vertices.entry(*vertex).or_default();
+                    entry[0] += part * weight * change;
+                    entry[1] += part * weight * new.bound;
+                }
+            }
+        }
+        let largest = vertices
+            .values()
+            .map(|[_, size]| *size)
+            .fold(negligible, f64::max);
+        let of_vertices = vertices
+            .values()
+            .map(|[change, _]| change.abs() / (off_vertex * largest));
+        let of_pairs = pairs
+            .values()
+            .map(|[change, size]| change.abs() / (BOUND[0] * size.max(negligible)));
+        // A ratio 0/0 without any bound counts as zero.
+        of_vertices.chain(of_pairs).fold(0.0, f64::max)
     }
 
     /// Tests whether a surface may rub itself: both sides of a fold that closes slip on each other, and neither the place

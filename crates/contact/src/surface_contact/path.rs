@@ -1,18 +1,17 @@
 //! Contact along a load path: contact search, corrections of multipliers, motion of anchors.
 
 use std::any::Any;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use voxsoft_solid::vector::{Vec3, norm, scale, sub};
 use voxsoft_solid::{Contact, ContactMemory, Precision};
 
 use super::state::{BeforePrediction, ContactState, Facing, Hold, Recording, SampleMemory};
 use super::{
-    APART, BOUND, CREEP, DEEPEST, LOOKS, LOST, PATIENCE, PRECISE, STICK, STIFFER, STRAYED, Spot,
+    APART, BOUND, CREEP, DEEPEST, LOOKS, LOST, PATIENCE, PRECISE, STICK, STIFFER, STRAYED,
     SurfaceContact, listing, predicted,
 };
 use crate::gap;
-use crate::surface::Carried;
 use crate::threads;
 
 /// Largest ratio of pairs in the sparsity pattern to pairs with stiffness, if these are [`MANY`]. Sliding samples pass
@@ -411,68 +410,6 @@ impl SurfaceContact {
         let moved = |(a, b): (&Vec3, &Vec3)| norm(sub(*a, *b));
         let farthest = points.iter().zip(&state.listed_points).map(moved);
         farthest.fold(0.0, f64::max) / self.description.voxel
-    }
-
-    /// Largest change of the friction bounds relative to its tolerance: on vertices, with the tolerance `off_vertex`,
-    /// and summed over each pair of surfaces.
-    ///
-    /// Surfaces that do not fit can distribute a pressure among their samples in many ways, between which multipliers
-    /// converge slowly without any motion: there are more samples than vertices that carry them. So bounds of single
-    /// samples do not count.
-    fn off_bounds(
-        &self,
-        old: &[SampleMemory],
-        new: &[SampleMemory],
-        off_vertex: f64,
-        negligible: f64,
-    ) -> f64 {
-        let mut pairs: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();
-        let mut vertices: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
-        for (index, (old, new)) in old.iter().zip(new).enumerate() {
-            let Some((triangle, weights)) = new.anchor else {
-                continue;
-            };
-            let change = new.bound - old.bound;
-            let mut pair = [
-                self.samples[index].surface,
-                self.surface_of[triangle as usize],
-            ];
-            pair.sort_unstable();
-            let entry = pairs.entry(pair).or_default();
-            entry[0] += change;
-            entry[1] += new.bound;
-            let spot = Spot {
-                sample: index as u32,
-                along: new.along,
-                triangle,
-                weights,
-            };
-            for (factor, point) in self.relative(spot) {
-                let is_own = self.samples[index].ends.contains(&point);
-                let part = if is_own { factor } else { -factor };
-                let Carried {
-                    vertices: carriers,
-                    weights,
-                } = self.share(point);
-                for (vertex, weight) in carriers.iter().zip(weights) {
-                    let entry = vertices.entry(*vertex).or_default();
-                    entry[0] += part * weight * change;
-                    entry[1] += part * weight * new.bound;
-                }
-            }
-        }
-        let largest = vertices
-            .values()
-            .map(|[_, size]| *size)
-            .fold(negligible, f64::max);
-        let of_vertices = vertices
-            .values()
-            .map(|[change, _]| change.abs() / (off_vertex * largest));
-        let of_pairs = pairs
-            .values()
-            .map(|[change, size]| change.abs() / (BOUND[0] * size.max(negligible)));
-        // A ratio 0/0 without any bound counts as zero.
-        of_vertices.chain(of_pairs).fold(0.0, f64::max)
     }
 
     /// Updates the faces that samples meet: of all of them, or of those that have strayed from theirs.
