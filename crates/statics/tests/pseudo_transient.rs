@@ -92,9 +92,11 @@ fn falling_cube_rests_on_a_block() {
         assert!((pair.force[2] / -weight - 1.0).abs() < off, "{pair:?}");
         let at = middle(&answer, first);
         // The cube stays above its start, except for the slip of corners pressed into facets before friction holds
-        // them.
+        // them. That depends on the way: with first steps of 1/200 to 1, and with points that leave contact at once or
+        // are kept in it, the cube ends 0.041 to 0.042 mm aside at 0.5, and 0.043 to 0.070 mm at 0.2.
         let aside = norm([at[0] - 9.37e-3, at[1] - 8.77e-3, 0.0]);
-        assert!(aside < 0.05e-3, "{at:?}");
+        let slip = if friction > 0.3 { 0.05e-3 } else { 0.1e-3 };
+        assert!(aside < slip, "{at:?}");
         assert!(at[2] < 17e-3 && at[2] > 16e-3, "{at:?}");
     }
 }
