@@ -26,6 +26,8 @@ const FIRST: Readonly<Record<keyof typeof KINDS, string | number>> = {
   compliance: "0.01 m/N",
   "volume compliance": "1e-12 m^3/Pa",
   energy: "1 mJ",
+  power: "10 mW",
+  "angular speed": "1 rad/s",
   torque: "1 N*mm",
   "volume flow": "1 mL/s",
   "mass flow": "1 g/s",
