@@ -260,6 +260,7 @@ def test_the_example_tells_of_five_pulses(capsys, monkeypatch):
     assert bends[1] > 4.0
 
 
+@pytest.mark.long
 def test_the_example_runs_on_a_smaller_body(capsys, monkeypatch):
     cup = RUBBER.replace(probes={"tip": RUBBER.probes["top"]}, objectives={}, constraints={})
     monkeypatch.setattr(families, "pneunet", lambda chambers: cup)
