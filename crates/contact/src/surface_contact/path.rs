@@ -210,6 +210,7 @@ impl Contact for SurfaceContact {
                 let points = contact.points_at(positions);
                 contact.list(state, points);
                 (state.listed_at_rest, state.corrections) = (false, 0);
+                state.off = f64::INFINITY;
                 state.looks = LOOKS;
             }
             any

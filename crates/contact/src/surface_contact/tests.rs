@@ -1,7 +1,7 @@
 //! Contact of tetrahedra, alone and with mirror images, checked against the laws of terms.
 use super::*;
 use voxsoft_solid::conformance::{Law, check_term};
-use voxsoft_solid::{Contact, Images, MirroredContact, Precision};
+use voxsoft_solid::{AssumedStrain, Contact, Images, MirroredContact, Precision, Term};
 
 /// Two tetrahedra, the tip of the second in a face of the first, by less than the pressure that the exact tangent
 /// accepts: beyond it the stiffness leaves out a part of the turning of the pressure.
@@ -187,4 +187,30 @@ fn surfaces_that_are_not_convex_may_rub_themselves() {
         "two components"
     );
     assert!(!pressed().0.rubs_itself, "no friction");
+}
+
+#[test]
+fn a_predicted_pressure_keeps_a_point_in_contact_that_ends_a_little_out() {
+    let (mut contact, positions) = pressed();
+    contact.follow(&positions);
+    let still = vec![[0.0; 3]; 8];
+    let strain = contact.predict(&positions, &still).unwrap();
+    let pull = |out: f64, strain: Option<&AssumedStrain>| {
+        let mut moved = positions.clone();
+        moved[4..].iter_mut().for_each(|x| x[2] += out);
+        let mut forces = still.clone();
+        match strain {
+            Some(strain) => contact.add_predicted_forces(strain, &moved, &mut forces),
+            None => contact.add_forces(&moved, &mut forces),
+        }
+        forces[4][2]
+    };
+    // In contact both push. A thousandth of a voxel out, nothing pushes, and the predicted pressure pulls back.
+    assert!(pull(0.0, None) > 0.0 && pull(0.0, Some(&strain)) == pull(0.0, None));
+    assert_eq!(pull(1e-3, None), 0.0);
+    assert!(pull(1e-3, Some(&strain)) < 0.0);
+    // It does neither far out nor without a pressure.
+    assert_eq!(pull(2.0 * predicted::KEPT, Some(&strain)), 0.0);
+    let nothing = AssumedStrain::Numbers(vec![0.0; strain.numbers().len()]);
+    assert_eq!(pull(1e-3, Some(&nothing)), 0.0);
 }
