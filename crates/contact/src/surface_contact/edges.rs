@@ -43,7 +43,8 @@ impl SurfaceContact {
     pub(super) fn face_edges(&self, state: &mut ContactState, positions: &[Vec3]) -> bool {
         let points = self.points_at(positions);
         let first = self.points.len();
-        let look = |edge: usize| self.look_across(state, first + edge, &points);
+        let near = self.near(state, first..self.samples.len(), &points);
+        let look = |edge: usize| self.look_across(state, first + edge, &near[edge], &points);
         let found = threads::map(self.samples.len() - first, look);
         let mut changes = false;
         for (edge, facing) in found.into_iter().enumerate() {
@@ -99,7 +100,13 @@ impl SurfaceContact {
     }
 
     /// Candidate edge that an edge lies across, the one with the deepest crossing; an edge that is pressed is kept.
-    fn look_across(&self, state: &ContactState, index: usize, points: &[Vec3]) -> Option<Facing> {
+    fn look_across(
+        &self,
+        state: &ContactState,
+        index: usize,
+        candidates: &[u32],
+        points: &[Vec3],
+    ) -> Option<Facing> {
         let before = state.facing[index];
         if self.is_pressed(state, index, before, points)
             && let Some(Facing::Across(triangle, corner, _)) = before
@@ -108,7 +115,7 @@ impl SurfaceContact {
             return Some(kept);
         }
         let mut best: Option<(f64, Facing)> = None;
-        for &triangle in &state.candidates[index] {
+        for &triangle in candidates {
             for corner in 0..3 {
                 let found = self.across(state, index, (triangle, corner), false, points);
                 if let Some((gap, facing)) = found

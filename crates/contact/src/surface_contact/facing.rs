@@ -72,7 +72,8 @@ impl SurfaceContact {
         point: Vec3,
         points: &[Vec3],
     ) -> Option<u32> {
-        let looks = self.normal_at(index as u32, points);
+        let of = |t: u32| normal(self.corners(t, points));
+        let looks = self.normal_at_point(index as u32, points, of);
         let mut best: Option<(u32, f64)> = None;
         for other in self.triangles_at(triangle, found) {
             let away = closest(point, self.corners(other, points)).away;
@@ -156,48 +157,71 @@ impl SurfaceContact {
         depth: f64,
     ) -> bool {
         let found = closest(point, self.corners(triangle, points));
-        let outward = self.normal_beside(triangle, found.weights, points);
-        dot(found.away, outward) >= 0.0 || found.distance <= depth * self.description.voxel
+        let outward = || self.normal_beside(triangle, found.weights, points);
+        self.counts_as_in_front(&found, depth, outward)
     }
 
-    /// Mean normal at a point of a surface.
-    fn normal_at(&self, point: u32, points: &[Vec3]) -> Vec3 {
-        let Some(&triangle) = self.around[point as usize].first() else {
-            return [0.0; 3];
-        };
-        let corners = self.triangles[triangle as usize];
-        let weights = corners.map(|corner| f64::from(u8::from(corner == point)));
-        self.normal_beside(triangle, weights, points)
+    /// Tests for a point with this closest point of a triangle whether it is in front of it, or no deeper behind it
+    /// than a `depth` in voxels; `outward` is the normal there.
+    pub(super) fn counts_as_in_front(
+        &self,
+        found: &Closest,
+        depth: f64,
+        outward: impl Fn() -> Vec3,
+    ) -> bool {
+        found.distance <= depth * self.description.voxel || dot(found.away, outward()) >= 0.0
     }
 
     /// Mean normal at a point of a triangle, on an edge or corner of all triangles that meet there (angle-weighted
     /// pseudonormal), which distinguishes outside from inside (Baerentzen and Aanaes 2005, doi 10.1109/TVCG.2005.49).
     pub(super) fn normal_beside(&self, triangle: u32, weights: [f64; 3], points: &[Vec3]) -> Vec3 {
+        let of = |t: u32| normal(self.corners(t, points));
+        match self.corners_on(triangle, weights) {
+            [Some(point), None, None] => self.normal_at_point(point, points, of),
+            on => self.normal_on(on, of),
+        }
+    }
+
+    /// Corners of a triangle on which a point with these coordinates depends: none for NaN.
+    pub(super) fn corners_on(&self, triangle: u32, weights: [f64; 3]) -> [Option<u32>; 3] {
         let corners = self.triangles[triangle as usize];
-        let on: Vec<u32> = (0..3)
-            .filter(|c| weights[*c] > 0.0)
-            .map(|c| corners[c])
-            .collect();
+        let mut on = [None; 3];
+        let positive = (0..3).filter(|c| weights[*c] > 0.0);
+        for (place, c) in on.iter_mut().zip(positive) {
+            *place = Some(corners[c]);
+        }
+        on
+    }
+
+    /// Mean normal of the triangles with the normals `of` that have all of two or three points.
+    pub(super) fn normal_on(&self, on: [Option<u32>; 3], of: impl Fn(u32) -> Vec3) -> Vec3 {
         let mut sum = [0.0; 3];
-        let Some(&first) = on.first() else {
-            return sum; // Weights of points with NaN coordinates.
+        let Some(first) = on[0] else {
+            return sum;
         };
         for &other in &self.around[first as usize] {
             let of_other = self.triangles[other as usize];
-            if !on.iter().all(|point| of_other.contains(point)) {
-                continue;
+            if on.iter().flatten().all(|point| of_other.contains(point)) {
+                axpy(&mut sum, 1.0, of(other));
             }
-            let n = normal(self.corners(other, points));
-            let weight = match on.as_slice() {
-                [corner] => {
-                    let place = of_other.iter().position(|p| p == corner).unwrap_or(0);
-                    let at = |step: usize| points[of_other[(place + step) % 3] as usize];
-                    let (u, v) = (unit(sub(at(1), at(0))), unit(sub(at(2), at(0))));
-                    dot(u, v).clamp(-1.0, 1.0).acos()
-                }
-                _ => 1.0,
-            };
-            axpy(&mut sum, weight, n);
+        }
+        unit(sum)
+    }
+
+    /// Mean normal at a point, weighted by the angles of the triangles with the normals `of` there.
+    pub(super) fn normal_at_point(
+        &self,
+        point: u32,
+        points: &[Vec3],
+        of: impl Fn(u32) -> Vec3,
+    ) -> Vec3 {
+        let mut sum = [0.0; 3];
+        for &other in &self.around[point as usize] {
+            let of_other = self.triangles[other as usize];
+            let place = of_other.iter().position(|p| *p == point).unwrap_or(0);
+            let at = |step: usize| points[of_other[(place + step) % 3] as usize];
+            let (u, v) = (unit(sub(at(1), at(0))), unit(sub(at(2), at(0))));
+            axpy(&mut sum, dot(u, v).clamp(-1.0, 1.0).acos(), of(other));
         }
         unit(sum)
     }

@@ -5,9 +5,10 @@ use std::ops::Range;
 use voxsoft_solid::vector::{Vec3, dot};
 
 use super::SurfaceContact;
+use super::normals::Normals;
 use super::state::ContactState;
 use crate::bounds::Bounds;
-use crate::gap::{closest, normal};
+use crate::gap::closest;
 use crate::threads;
 use crate::tree::Tree;
 
@@ -34,9 +35,23 @@ const SAME_WAY: f64 = 0.3;
 const BESIDE: f64 = 0.01;
 
 impl SurfaceContact {
-    /// Lists for every sample the triangles that come near it on the straight way from the last accepted state to
+    /// Lists for every point the triangles that come near it on the straight way from the last accepted state to
     /// `points`, and in front of which it was at that state.
     pub(super) fn list(&self, state: &mut ContactState, points: Vec<Vec3>) {
+        state.candidates = self.near(state, 0..self.points.len(), &points);
+        // The facing is kept: the forces are still those of the state for which it was found.
+        state.facing.resize(self.samples.len(), None);
+        state.looks = state.looks.max(1);
+        state.listed_points = points;
+    }
+
+    /// Triangles that each of a range of samples may meet on the straight way from the last accepted state to `points`.
+    pub(super) fn near(
+        &self,
+        state: &ContactState,
+        samples: Range<usize>,
+        points: &[Vec3],
+    ) -> Vec<Vec<u32>> {
         let reach = REACH * self.description.voxel + self.laws.range();
         let swept = |triangle: &[u32; 3]| {
             let each = triangle.iter().map(|p| *p as usize);
@@ -45,13 +60,13 @@ impl SurfaceContact {
         };
         let boxes: Vec<Bounds> = self.triangles.iter().map(swept).collect();
         let accepted = &state.accepted_points;
-        let all = 0..self.triangles.len() as u32;
-        let normals: Vec<Vec3> = all.map(|t| normal(self.corners(t, accepted))).collect();
+        let normals = self.normals(accepted);
         let trees: Vec<SurfaceTree> = self
             .triangles_of_surfaces()
-            .map(|triangles| SurfaceTree::new(triangles, &boxes, &normals))
+            .map(|triangles| SurfaceTree::new(triangles, &boxes, &normals.triangles))
             .collect();
-        let meets = |index: usize| {
+        let meets = |place: usize| {
+            let index = samples.start + place;
             let sample = &self.samples[index];
             let mut found = Vec::new();
             if self.weight(index as u32) == 0.0 {
@@ -59,7 +74,12 @@ impl SurfaceContact {
             }
             let ends = sample.ends.map(|p| p as usize);
             let bounds = Bounds::of(ends.into_iter().flat_map(|p| [accepted[p], points[p]]));
-            let own = || sample.triangles.iter().map(|t| normals[*t as usize]);
+            let own = || {
+                sample
+                    .triangles
+                    .iter()
+                    .map(|t| normals.triangles[*t as usize])
+            };
             for tree in &trees {
                 // Objects do not touch themselves.
                 if self.coefficient(index as u32, tree.first).is_nan() {
@@ -74,11 +94,7 @@ impl SurfaceContact {
             found.sort_unstable();
             found
         };
-        state.candidates = threads::map(self.samples.len(), meets);
-        // The facing is kept: the forces are still those of the state for which it was found.
-        state.facing.resize(self.samples.len(), None);
-        state.looks = state.looks.max(1);
-        state.listed_points = points;
+        threads::map(samples.len(), meets)
     }
 
     /// Triangles of each surface that has some.
@@ -91,17 +107,17 @@ impl SurfaceContact {
         })
     }
 
-    /// Tests whether a sample may meet a triangle; `normals` are those of all triangles at the accepted state.
+    /// Tests whether a sample may meet a triangle; `normals` are those at the accepted state.
     fn may_meet(
         &self,
         index: usize,
         triangle: u32,
-        normals: &[Vec3],
+        normals: &Normals,
         state: &ContactState,
     ) -> bool {
         let sample = &self.samples[index];
-        let n = normals[triangle as usize];
-        let faces = |own: &u32| dot(normals[*own as usize], n) < FACING;
+        let n = normals.triangles[triangle as usize];
+        let faces = |own: &u32| dot(normals.triangles[*own as usize], n) < FACING;
         if !sample.triangles.iter().any(faces) {
             return false;
         }
@@ -124,7 +140,12 @@ impl SurfaceContact {
         if sample.is_edge() {
             return !itself || self.depth_of_edge(sample.ends, triangle).is_some();
         }
-        self.was_in_front(state, index, triangle)
+        self.may_come_to(index, triangle).is_some_and(|depth| {
+            let start = state.accepted_points[index];
+            let found = closest(start, self.corners(triangle, &state.accepted_points));
+            let outward = || self.normal_among(normals, triangle, found.weights);
+            self.counts_as_in_front(&found, depth, outward)
+        })
     }
 
     /// Largest depth of an edge in a triangle of its own surface at an accepted state, in voxels: the smaller one of
@@ -137,14 +158,19 @@ impl SurfaceContact {
     /// Tests whether a sample was in front of a triangle at the accepted state, or not too deep behind it, so that it
     /// may meet it.
     pub(super) fn was_in_front(&self, state: &ContactState, index: usize, triangle: u32) -> bool {
-        let itself = self.samples[index].surface == self.surface_of[triangle as usize];
-        let depth = if itself {
+        let start = state.accepted_points[index];
+        self.may_come_to(index, triangle)
+            .is_some_and(|depth| self.is_in_front(triangle, start, &state.accepted_points, depth))
+    }
+
+    /// Largest depth of a sample in a triangle at an accepted state to count as in front of it, in voxels; `None` if
+    /// they never meet.
+    fn may_come_to(&self, index: usize, triangle: u32) -> Option<f64> {
+        if self.samples[index].surface == self.surface_of[triangle as usize] {
             self.depth_at_rest(index, triangle)
         } else {
             Some(DEPTH)
-        };
-        let start = state.accepted_points[index];
-        depth.is_some_and(|depth| self.is_in_front(triangle, start, &state.accepted_points, depth))
+        }
     }
 
     /// Largest depth of a sample in a triangle of its own surface at an accepted state to count as in front of it, in
@@ -157,20 +183,23 @@ impl SurfaceContact {
         if distance > WALL {
             return Some(DEPTH);
         }
-        let n = normal(corners);
+        let normals = &self.rest_normals;
+        let n = normals.triangles[triangle as usize];
         let own = self.samples[index].triangles.iter();
         let least = own
-            .map(|own| dot(normal(self.corners(*own, points)), n))
+            .map(|own| dot(normals.triangles[*own as usize], n))
             .fold(1.0, f64::min);
-        let behind = dot(
-            found.away,
-            self.normal_beside(triangle, found.weights, points),
-        ) < 0.0;
-        match (least < FACING, behind) {
-            (true, true) => None,
-            (true, false) => Some(DEPTH),
-            (false, _) if distance <= PATCH && least > SAME_WAY => None,
-            (false, _) => Some(BESIDE),
+        let behind = || {
+            dot(
+                found.away,
+                self.normal_among(normals, triangle, found.weights),
+            ) < 0.0
+        };
+        match least < FACING {
+            true if behind() => None,
+            true => Some(DEPTH),
+            false if distance <= PATCH && least > SAME_WAY => None,
+            false => Some(BESIDE),
         }
     }
 }

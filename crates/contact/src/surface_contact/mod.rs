@@ -33,6 +33,7 @@ pub mod law;
 mod listing;
 pub mod live;
 mod mortar;
+mod normals;
 mod path;
 mod planes;
 mod predicted;
@@ -50,6 +51,7 @@ use voxsoft_solid::{Contact, ProblemError};
 use bonds::Bond;
 pub use field::{ContactField, Flip};
 use law::Laws;
+use normals::Normals;
 pub use report::PairReport;
 use sample::Sample;
 use state::{ContactState, Facing};
@@ -128,6 +130,8 @@ pub struct SurfaceContact {
     shares: Vec<Carried>,
     /// Positions of the points in the unloaded design, m.
     rest_points: Vec<Vec3>,
+    /// Normals there.
+    rest_normals: Normals,
     /// Axes across planes of symmetry through the origin.
     planes: [bool; 3],
     /// Part of each sample that counts with planes of symmetry: 0 on the negative sides, which are images.
@@ -290,6 +294,7 @@ impl SurfaceContact {
             bodies: 1,
             shares: Vec::new(),
             rest_points,
+            rest_normals: Normals::default(),
             planes: [false; 3],
             weights: Vec::new(),
             twins: Vec::new(),
@@ -304,6 +309,7 @@ impl SurfaceContact {
             laws: Laws::default(),
             state: ContactState::default(),
         };
+        contact.rest_normals = contact.normals(&contact.rest_points);
         contact.ties_at = contact.ties_at(&first_sample, contact.points.len());
         contact.rubs_itself = contact.may_rub_itself();
         Contact::reset(&mut contact, rest);

@@ -417,11 +417,11 @@ impl SurfaceContact {
     pub(super) fn face(&self, state: &mut ContactState, positions: &[Vec3], all: bool) {
         let points = self.points_at(positions);
         let facing = |index: usize| {
-            if state.candidates[index].is_empty() {
-                return None;
-            }
             if self.samples[index].is_edge() {
                 return self.keep_across(state, index, &points);
+            }
+            if state.candidates[index].is_empty() {
+                return None;
             }
             let point = points[index];
             let strayed = match state.facing[index] {

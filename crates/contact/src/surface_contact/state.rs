@@ -121,7 +121,7 @@ pub(super) struct ContactState {
     pub listed_points: Vec<Vec3>,
     /// True if those were the points of the accepted state.
     pub listed_at_rest: bool,
-    /// Candidate triangles of each sample on the way from the last accepted state.
+    /// Candidate triangles of each point on the way from the last accepted state.
     pub candidates: Vec<Vec<u32>>,
     /// Current facing of each sample.
     pub facing: Vec<Option<Facing>>,
