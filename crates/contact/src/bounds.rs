@@ -48,6 +48,11 @@ impl Bounds {
         along(0) + along(1) + along(2)
     }
 
+    /// Largest scalar product of a point in the box with a vector.
+    pub(crate) fn largest_product(&self, vector: Point) -> f64 {
+        -self.least_product(vector.map(|x| -x))
+    }
+
     /// Tests whether the interiors of the boxes intersect.
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
         (0..3).all(|a| self.low[a] < other.high[a] && other.low[a] < self.high[a])

@@ -160,19 +160,19 @@ impl Tree {
 
     /// Calls `each` with the number of every box that contains the point.
     pub(crate) fn around(&self, point: Point, each: impl FnMut(u32)) {
-        self.visit(|bounds| bounds.holds(point), |_| true, each);
+        self.visit(|bounds| bounds.holds(point), |_, _| true, each);
     }
 
     /// Calls `each` with the number of every box that meets these bounds.
     pub(crate) fn meeting(&self, bounds: &Bounds, each: impl FnMut(u32)) {
-        self.meeting_within(bounds, |_| true, each);
+        self.meeting_within(bounds, |_, _| true, each);
     }
 
-    /// Calls `each` with the number of every box that meets these bounds, in nodes whose number passes `may`.
+    /// Calls `each` with the number of every box that meets these bounds, in nodes whose number and box pass `may`.
     pub(crate) fn meeting_within(
         &self,
         bounds: &Bounds,
-        may: impl Fn(usize) -> bool,
+        may: impl Fn(usize, &Bounds) -> bool,
         each: impl FnMut(u32),
     ) {
         self.visit(|other| other.meets(bounds), may, each);
@@ -191,18 +191,19 @@ impl Tree {
 
     /// Calls `each` with the number of every box that a ray from the point along +x meets.
     pub(crate) fn ahead_of(&self, point: Point, each: impl FnMut(u32)) {
-        self.visit(|bounds| bounds.is_ahead_of(point), |_| true, each);
+        self.visit(|bounds| bounds.is_ahead_of(point), |_, _| true, each);
     }
 
     fn visit(
         &self,
         wanted: impl Fn(&Bounds) -> bool,
-        may: impl Fn(usize) -> bool,
+        may: impl Fn(usize, &Bounds) -> bool,
         mut each: impl FnMut(u32),
     ) {
         let mut open: Vec<Node> = self.root().into_iter().collect();
         while let Some(node) = open.pop() {
-            if !(wanted(&self.nodes[node.place]) && may(node.place)) {
+            let bounds = &self.nodes[node.place];
+            if !(wanted(bounds) && may(node.place, bounds)) {
                 continue;
             }
             if node.count > 1 {

@@ -5,7 +5,8 @@
 //! normal ([`super::gap::crossing`]). The two are adjacent there if the faces at each edge lie on its own side of that
 //! normal; a concave edge never is.
 //!
-//! Edges search at equilibria alone, because a crossing comes and goes with less than a step of Newton's method.
+//! Edges search at equilibria alone, because a crossing comes and goes with less than a step of Newton's method. Their
+//! candidates depend on the place alone, not on the accepted state, so that these are kept over slow steps.
 
 use voxsoft_solid::vector::{Vec3, add, dot, norm, scale, sub};
 
@@ -43,8 +44,13 @@ impl SurfaceContact {
     pub(super) fn face_edges(&self, state: &mut ContactState, positions: &[Vec3]) -> bool {
         let points = self.points_at(positions);
         let first = self.points.len();
-        let near = self.near(state, first..self.samples.len(), &points);
-        let look = |edge: usize| self.look_across(state, first + edge, &near[edge], &points);
+        let apart = |listed: &[Vec3]| self.farthest_between(listed, &points);
+        if !(apart(&state.edges_listed_points) <= REACH / 2.0) {
+            state.edge_candidates = self.near(state, first..self.samples.len(), &points);
+            state.edges_listed_points.clone_from(&points);
+        }
+        let listed = &state.edge_candidates;
+        let look = |edge: usize| self.look_across(state, first + edge, &listed[edge], &points);
         let found = threads::map(self.samples.len() - first, look);
         let mut changes = false;
         for (edge, facing) in found.into_iter().enumerate() {
@@ -113,6 +119,9 @@ impl SurfaceContact {
             && let Some((_, kept)) = self.across(state, index, (triangle, corner), true, points)
         {
             return Some(kept);
+        }
+        if candidates.is_empty() || self.is_flat(self.samples[index].ends, points) {
+            return None;
         }
         let mut best: Option<(f64, Facing)> = None;
         for &triangle in candidates {

@@ -33,6 +33,9 @@ const SAME_WAY: f64 = 0.3;
 /// to bring the two in front of each other; around a convex edge a sample is behind the other side by less than a
 /// voxel.
 const BESIDE: f64 = 0.01;
+/// Distance behind all faces of a sample, in voxels, from which it cannot meet a triangle on its way: twice the depth at
+/// which it may begin. The other sides of walls are there.
+const BEHIND: f64 = 2.0 * DEPTH;
 
 impl SurfaceContact {
     /// Lists for every point the triangles that come near it on the straight way from the last accepted state to
@@ -53,6 +56,7 @@ impl SurfaceContact {
         points: &[Vec3],
     ) -> Vec<Vec<u32>> {
         let reach = REACH * self.description.voxel + self.laws.range();
+        let behind = BEHIND * self.description.voxel;
         let swept = |triangle: &[u32; 3]| {
             let each = triangle.iter().map(|p| *p as usize);
             let ends = each.flat_map(|p| [state.accepted_points[p], points[p]]);
@@ -85,7 +89,7 @@ impl SurfaceContact {
                 if self.coefficient(index as u32, tree.first).is_nan() {
                     continue;
                 }
-                tree.facing(&bounds, own, |triangle| {
+                tree.facing(&bounds, own, [reach, behind], |triangle| {
                     if self.may_meet(index, triangle, &normals, state) {
                         found.push(triangle);
                     }
@@ -227,14 +231,23 @@ impl SurfaceTree {
     }
 
     /// Calls `each` with the triangles in boxes that meet `bounds`, except those of nodes in which none looks at one of
-    /// the directions `own`: most triangles near a sample are those around it, which look its own way.
+    /// the directions `own` from in front of it, or from less than the distance `behind` (m) behind it: most triangles
+    /// near a sample are those around it, which look its own way, and those of the other side of its wall. The boxes are
+    /// grown by `reach` (m).
     fn facing<D: Iterator<Item = Vec3>>(
         &self,
         bounds: &Bounds,
         own: impl Fn() -> D,
+        [reach, behind]: [f64; 2],
         mut each: impl FnMut(u32),
     ) {
-        let faces = |node: usize| own().any(|n| self.directions[node].least_product(n) < FACING);
+        let in_front = |boxes: &Bounds, n: Vec3| {
+            let growth = reach * n.iter().map(|x| x.abs()).sum::<f64>();
+            boxes.largest_product(n) - growth - bounds.least_product(n) > -behind
+        };
+        let faces = |node: usize, boxes: &Bounds| {
+            own().any(|n| self.directions[node].least_product(n) < FACING && in_front(boxes, n))
+        };
         self.tree
             .meeting_within(bounds, faces, |triangle| each(self.first + triangle));
     }

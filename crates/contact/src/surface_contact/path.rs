@@ -210,6 +210,7 @@ impl Contact for SurfaceContact {
                 let points = contact.points_at(positions);
                 contact.list(state, points);
                 (state.listed_at_rest, state.corrections) = (false, 0);
+                state.edges_listed_points.clear();
                 state.off = f64::INFINITY;
                 state.looks = LOOKS;
             }
@@ -408,8 +409,16 @@ impl SurfaceContact {
 
     /// Largest motion of any point since candidates were listed, in voxels.
     pub(super) fn farthest_from_listed(&self, state: &ContactState, points: &[Vec3]) -> f64 {
+        self.farthest_between(&state.listed_points, points)
+    }
+
+    /// Largest motion of any point from those of a list, in voxels; infinite if there is none.
+    pub(super) fn farthest_between(&self, listed: &[Vec3], points: &[Vec3]) -> f64 {
+        if listed.len() != points.len() {
+            return f64::INFINITY;
+        }
         let moved = |(a, b): (&Vec3, &Vec3)| norm(sub(*a, *b));
-        let farthest = points.iter().zip(&state.listed_points).map(moved);
+        let farthest = points.iter().zip(listed).map(moved);
         farthest.fold(0.0, f64::max) / self.description.voxel
     }
 

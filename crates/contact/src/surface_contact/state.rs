@@ -123,6 +123,10 @@ pub(super) struct ContactState {
     pub listed_at_rest: bool,
     /// Candidate triangles of each point on the way from the last accepted state.
     pub candidates: Vec<Vec<u32>>,
+    /// Points when candidates of edges were last listed; empty if they have to be.
+    pub edges_listed_points: Vec<Vec3>,
+    /// Candidate triangles of each edge.
+    pub edge_candidates: Vec<Vec<u32>>,
     /// Current facing of each sample.
     pub facing: Vec<Option<Facing>>,
     /// Slip penalty, relative to the contact penalty.

@@ -60,8 +60,19 @@ impl Hex8s {
     /// The elastic energy in J, without a viscous potential.
     pub(crate) fn elastic_energy(&self, positions: &[Vec3]) -> f64 {
         let positions = &*self.ties.seen(positions);
-        let energy = |hex8: &Hex8| hex8.energy(self.material_of(hex8), positions);
-        self.hex8s.iter().map(energy).sum()
+        let mut sum = 0.0;
+        groups_in_order(
+            self.hex8s.len(),
+            FORCE_BATCH,
+            TOGETHER,
+            &0.0,
+            |first, out| {
+                self.together(first, out.len(), positions, None)
+                    .energies(out)
+            },
+            |_, energies| energies.iter().for_each(|energy| sum += energy),
+        );
+        sum
     }
 
     /// Tests whether any voxel softens.

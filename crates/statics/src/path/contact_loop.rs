@@ -118,8 +118,10 @@ impl Equilibrium {
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let mut iterations = 0;
-        // With a higher precision, anchors of friction must not depend on the residual of an iteration.
-        let mut loose = self.problem.contact().is_some() && self.precision == 1.0;
+        // With a higher precision, anchors of friction must not depend on the residual of an iteration; and bodies that
+        // do not touch yet mostly stay apart, so that nothing is corrected.
+        let touches = |contact: &dyn Contact| contact.is_touching(positions);
+        let mut loose = self.precision == 1.0 && self.problem.contact().is_some_and(touches);
         let mut round = 0;
         let (mut least, mut stale) = (f64::INFINITY, 0);
         let enough = if search.can_be_cut() { STALE } else { ROUNDS };

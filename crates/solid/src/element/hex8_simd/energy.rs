@@ -493,7 +493,8 @@ fn add_square<S: Simd>(hessian: &mut Square<S>, square: &[Six<S>; 6]) {
     }
 }
 
-/// Adds the gradient of the energy without that of the mean change of volume, and its Hessian if `hessian` is given.
+/// Returns the energy without that of the mean change of volume and of bilinear modes; adds its gradient, and its
+/// Hessian if `hessian` is given.
 ///
 /// `sound` falls below zero where the scalar code would use continuations of the energy.
 #[inline(always)]
@@ -503,9 +504,9 @@ pub(super) fn add_deviatoric<S: Simd>(
     gradient: &mut Row<S>,
     hessian: Option<&mut Square<S>>,
     sound: &mut Number<S>,
-) {
+) -> Number<S> {
     let mut hessian = hessian;
-    if constants.is_warped {
+    let mut energy = if constants.is_warped {
         let stretch = into_frame(constants, &shape.stretch);
         let (relieved, slopes) = relief(constants, &stretch);
         let seen = Shape {
@@ -517,7 +518,7 @@ pub(super) fn add_deviatoric<S: Simd>(
             out_of_frame(constants, &own)
         };
         let mut own = [constants.bulk.all(0.0); STRAIN_COMPONENTS];
-        add_isochoric(constants, &seen, &mut own, hessian.as_deref_mut(), sound);
+        let energy = add_isochoric(constants, &seen, &mut own, hessian.as_deref_mut(), sound);
         let force = [own[0], own[1], own[2], own[3], own[4], own[5]];
         if let Some(hessian) = hessian.as_deref_mut() {
             // The chain rule on rows, then on columns.
@@ -559,15 +560,17 @@ pub(super) fn add_deviatoric<S: Simd>(
         for k in 0..STRAIN_COMPONENTS {
             gradient[k] += own[k];
         }
+        energy
     } else {
-        add_isochoric(constants, shape, gradient, hessian.as_deref_mut(), sound);
-    }
+        add_isochoric(constants, shape, gradient, hessian.as_deref_mut(), sound)
+    };
     let left = -constants.thinning + 1.0;
     let trace = constants.bulk * left * left * (1.0 / 3.0);
     for (n, i, j) in AXES {
         let trace = trace * constants.spread[n] * constants.spread[n];
         let places = [place(j, i), place(i, j)];
         let sum = shape.hourglass[j][i] + shape.hourglass[i][j];
+        energy += trace * sum * sum * 0.5;
         for row in places {
             gradient[row] = trace.times_plus(sum, gradient[row]);
             if let Some(hessian) = hessian.as_deref_mut() {
@@ -577,9 +580,10 @@ pub(super) fn add_deviatoric<S: Simd>(
             }
         }
     }
+    energy
 }
 
-/// The isochoric energy, the mean over the six points.
+/// The isochoric energy, the mean over the six points, with its derivatives.
 #[inline(always)]
 fn add_isochoric<S: Simd>(
     constants: &Constants<S>,
@@ -587,9 +591,10 @@ fn add_isochoric<S: Simd>(
     gradient: &mut Row<S>,
     hessian: Option<&mut Square<S>>,
     sound: &mut Number<S>,
-) {
+) -> Number<S> {
     let mut hessian = hessian;
     let zero = constants.bulk.all(0.0);
+    let mut energy = zero;
     for axis in 0..3 {
         *sound = sound.least(shape.stretch[axis] + -LEAST_STRETCH);
     }
@@ -607,6 +612,7 @@ fn add_isochoric<S: Simd>(
         let low = Point::of(constants, &low, with_tangent, sound);
         let sixth = 1.0 / 6.0;
         let reach_sixth = reach * sixth;
+        energy += (high.energy + low.energy) * sixth;
         let mut moment = high.stress;
         for k in 0..6 {
             gradient[k] += (high.stress[k] + low.stress[k]) * sixth;
@@ -636,10 +642,12 @@ fn add_isochoric<S: Simd>(
             variation.add_hessian(axes, constants.thinning, moment, &mixed, &square, hessian);
         }
     }
+    energy
 }
 
 /// The isochoric response at one stretch.
 struct Point<S: Simd> {
+    energy: Number<S>,
     stress: Six<S>,
     /// The upper half.
     tangent: [Six<S>; 6],
@@ -664,12 +672,14 @@ impl<S: Simd> Point<S> {
         let ddg = dg * by_volume * (-5.0 / 3.0);
         let excess = a.times_plus(g, g.all(-3.0));
         let [c0, c1, c2] = constants.series;
+        let mut energy = excess * excess.times_plus(excess.times_plus(c2, c1), c0);
         let mut slope = excess.times_plus(excess.times_plus(c2 * 3.0, c1 * 2.0), c0);
         let mut curvature = excess.times_plus(c2 * 6.0, c1 * 2.0);
         if let Some([shear, limit]) = constants.gent {
             let part = excess * limit.inverse();
             *sound = sound.least(-part + Model::GENT_REACH);
             let left = (-part + 1.0).inverse();
+            energy -= shear * limit * (-part + 1.0).logarithm() * 0.5;
             let own = shear * left * 0.5;
             slope += own;
             curvature += own * left * limit.inverse();
@@ -697,6 +707,7 @@ impl<S: Simd> Point<S> {
             add_second_determinant(&mut matrix, s, of_c);
         }
         Self {
+            energy,
             stress,
             tangent: matrix,
         }

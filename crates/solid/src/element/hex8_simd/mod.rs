@@ -1,4 +1,4 @@
-//! Several voxels at once, one in each SIMD lane: forces, stiffness and carried strains.
+//! Several voxels at once, one in each SIMD lane: energies, forces, stiffness and carried strains.
 //!
 //! The formulas are those of [`crate::element::hex8`], whose scalar code is the reference and handles the rare cases:
 //! materials without a form in invariants, softening, fibers, voxels at clamps ([`crate::element::clamp_modes`]),
@@ -58,6 +58,11 @@ impl<'a> Together<'a> {
     /// Sets the forces on the corners of each voxel, see [`Hex8::forces`] and [`Hex8::predicted_forces`].
     pub fn forces(self, out: &mut [[Vec3; 8]]) {
         Arch::new().dispatch(Run(self, Forces(out)));
+    }
+
+    /// Sets the elastic energy of each voxel in J, see [`Hex8::energy`].
+    pub fn energies(self, out: &mut [f64]) {
+        Arch::new().dispatch(Run(self, Energies(out)));
     }
 
     /// Sets the carried strain and pressure of each voxel after a step `moves`, see [`Hex8::update`].
@@ -298,6 +303,40 @@ impl Question for Forces<'_> {
             Some(states) => hex8.predicted_forces(material, &states[index], positions),
             None => hex8.forces(material, positions),
         };
+    }
+}
+
+struct Energies<'a>(&'a mut [f64]);
+
+impl Question for Energies<'_> {
+    #[inline(always)]
+    fn in_lanes<S: Simd>(
+        &mut self,
+        group: &Group<'_, S>,
+        first: usize,
+        count: usize,
+        right: &mut [f64; MOST_LANES],
+    ) {
+        let Group {
+            constants, frame, ..
+        } = group;
+        let mut sound = frame.sound;
+        let (shape, _) = group.strain(first, count);
+        let change = Volume::of(constants, &shape).value + -1.0;
+        let mut gradient = [Number::splat(group.simd, 0.0); STRAIN_COMPONENTS];
+        let mut energy = add_deviatoric(constants, &shape, &mut gradient, None, &mut sound);
+        energy += constants.bulk * change * change * 0.5;
+        energy += constants.young * dot(&frame.bilinear, &frame.bilinear) * (1.0 / 18.0);
+        let mut lanes = [0.0; MOST_LANES];
+        (energy * constants.volume).store(&mut lanes);
+        self.0[first..first + count].copy_from_slice(&lanes[..count]);
+        sound.store(right);
+    }
+
+    #[inline(never)]
+    fn plainly(&mut self, together: &Together<'_>, index: usize) {
+        let hex8 = &together.hex8s[index];
+        self.0[index] = hex8.energy(together.material(hex8), together.positions);
     }
 }
 

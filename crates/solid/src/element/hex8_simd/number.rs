@@ -74,6 +74,14 @@ impl<S: Simd> Number<S> {
         }
     }
 
+    /// Natural logarithm, lane by lane: processors have none.
+    #[inline(always)]
+    pub fn logarithm(self) -> Self {
+        let mut lanes = [1.0; MOST_LANES];
+        self.store(&mut lanes);
+        Self::load(self.simd, &lanes.map(f64::ln))
+    }
+
     #[inline(always)]
     pub fn least(self, other: Self) -> Self {
         Self {

@@ -131,6 +131,14 @@ proptest! {
         all(None).update(&moves, &mut before);
         let mut after = before.clone();
         all(Some(&before)).update(&moves, &mut after);
+        let mut energies = vec![0.0; hex8s.len()];
+        all(None).energies(&mut energies);
+        for (hex8, ours) in hex8s.iter().zip(energies) {
+            let material = &materials[hex8.material as usize];
+            // Each is a difference from the unloaded state, near which it is rounded to that of its parts.
+            let part = material.young() * hex8.volume(material);
+            near(&[part + ours], &[part + hex8.energy(material, &positions)], "energy")?;
+        }
         for carried in [None, Some(&before[..])] {
             let mut matrices: Vec<Hex8Matrix> = vec![[[0.0; 24]; 24]; hex8s.len()];
             let mut forces = vec![[[0.0; 3]; 8]; hex8s.len()];
