@@ -431,6 +431,21 @@ impl Body {
         })
     }
 
+    /// Removes the contact term, with its place among the terms.
+    pub(crate) fn take_contact(&mut self) -> Option<(usize, Box<dyn Contact>)> {
+        let is_contact = |foreign: &Foreign| matches!(foreign, Foreign::Contact(_));
+        let place = self.foreign.iter().position(is_contact)?;
+        match self.foreign.remove(place) {
+            Foreign::Contact(contact) => Some((place, contact)),
+            Foreign::Term(_) => None,
+        }
+    }
+
+    /// Puts a contact term back to its place.
+    pub(crate) fn put_contact(&mut self, (place, contact): (usize, Box<dyn Contact>)) {
+        self.foreign.insert(place, Foreign::Contact(contact));
+    }
+
     /// All terms of the energy, block by block.
     pub fn terms(&self) -> impl Iterator<Item = &dyn Term> {
         let own: [&dyn Term; 4] = [&self.edges, &self.tets, &self.hex8s, &self.membranes];

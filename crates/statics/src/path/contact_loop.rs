@@ -102,12 +102,66 @@ impl Equilibrium {
         settings: &Settings,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
+        if let Some(found) = self.settle_apart(positions, search, settings, observer)? {
+            return Ok(found);
+        }
         let held = self.held.clone();
         let outcome = self.settle_in_rounds(positions, search, settings, observer);
         if outcome.is_err() {
             self.hold(held)?;
         }
         outcome
+    }
+
+    /// Finds the equilibrium of bodies that do not touch as if they could not, which costs nothing but the body: on
+    /// their way iterations overshoot into contact. Returns `None`, with all as before, if something touches at its end.
+    fn settle_apart<S: Search>(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        search: &mut S,
+        settings: &Settings,
+        observer: &mut Observer<'_>,
+    ) -> Result<Option<Found>, Failure> {
+        let is_apart = |contact: &dyn Contact| {
+            let mut bonded = false;
+            contact.visit_bonded(&mut |_| bonded = true);
+            !bonded && !contact.is_recorded() && !contact.is_touching(positions)
+        };
+        let contact = self.problem.contact().filter(|contact| is_apart(*contact));
+        let Some(memory) = contact.map(Contact::memory) else {
+            return Ok(None);
+        };
+        if self.has_loose {
+            return Ok(None);
+        }
+        let before = (positions.clone(), self.held.clone(), self.opening.clone());
+        let mut trial = search.clone();
+        let outcome = Problem::apart(
+            self,
+            |own| &mut own.problem,
+            |own| own.settle_in_rounds(positions, &mut trial, settings, observer),
+        );
+        match outcome {
+            Ok(found) => {
+                self.follow_contact(positions)?;
+                let residual = self.forces(positions, trial.point()).relative();
+                if residual <= found.residual && self.is_contact_settled(positions, trial.point()) {
+                    *search = trial;
+                    return Ok(Some(found));
+                }
+            }
+            Err(Failure::Lost | Failure::Singular | Failure::Stalled) => (),
+            Err(failure) => {
+                self.hold(before.1)?;
+                return Err(failure);
+            }
+        }
+        (*positions, self.opening) = (before.0, before.2);
+        self.hold(before.1)?;
+        if let Some(contact) = self.problem.contact_mut() {
+            contact.remember(&memory);
+        }
+        Ok(None)
     }
 
     fn settle_in_rounds(
