@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from voxsoft import (
         calibration,
         comparison,
+        control,
         design,
         errors,
         fields,
@@ -213,6 +214,7 @@ _HOMES = {
 _MODULES = (
     "calibration",
     "comparison",
+    "control",
     "design",
     "errors",
     "fields",

@@ -9,7 +9,10 @@ import pytest
 
 PACKAGES = [
     "voxsoft",
-    *(f"voxsoft.{each}" for each in ("comparison", "files", "jobs", "plot", "simulation", "study")),
+    *(
+        f"voxsoft.{each}"
+        for each in ("comparison", "control", "files", "jobs", "plot", "simulation", "study")
+    ),
 ]
 
 

@@ -170,13 +170,14 @@ fn friction_sticks_below_its_bound_and_slips_at_it() {
 }
 
 /// Friction under a plate that presses straight on changes linearly along the path: steps of a quarter, a quarter and a
-/// half say the same as twenty of a twentieth, which took some 150 iterations.
+/// half say the same as twenty of a twentieth, which took some 150 iterations. Those before the plate touches, which find
+/// that without contact, count too.
 #[test]
 fn friction_that_grows_with_the_load_takes_few_steps() {
     let (pair, _, answer) = plate(3, [0.0, 0.0, -GAP - 1e-3], 0.5);
     assert!(pair.slipping > 0.0 && pair.slipping < 1.0, "{pair:?}");
     assert!(answer.path.len() <= 5, "{:?}", answer.path);
-    assert!(answer.iterations <= 60, "{}", answer.iterations);
+    assert!(answer.iterations <= 75, "{}", answer.iterations);
 }
 
 /// Slit of one voxel between two lips that is pressed shut.

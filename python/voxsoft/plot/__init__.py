@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         plot_shapes,
         plot_times,
     )
+    from voxsoft.plot.control import plot_bode, plot_step, plot_track
     from voxsoft.plot.coupon import plot_coupons
     from voxsoft.plot.path import plot_path
     from voxsoft.plot.scoreboard import plot_scoreboard
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 __all__ = [
     "body_image",
     "plot_agreement",
+    "plot_bode",
     "plot_body",
     "plot_convergence",
     "plot_coupons",
@@ -53,7 +55,9 @@ __all__ = [
     "plot_scoreboard",
     "plot_shape",
     "plot_shapes",
+    "plot_step",
     "plot_times",
+    "plot_track",
     "plot_workspace",
 ]
 
@@ -61,6 +65,7 @@ __all__ = [
 _HOMES = {
     "body_image": "voxsoft.plot.body",
     "plot_agreement": "voxsoft.plot.comparison",
+    "plot_bode": "voxsoft.plot.control",
     "plot_body": "voxsoft.plot.body",
     "plot_convergence": "voxsoft.plot.comparison",
     "plot_coupons": "voxsoft.plot.coupon",
@@ -75,7 +80,9 @@ _HOMES = {
     "plot_scoreboard": "voxsoft.plot.scoreboard",
     "plot_shape": "voxsoft.plot.calibration",
     "plot_shapes": "voxsoft.plot.comparison",
+    "plot_step": "voxsoft.plot.control",
     "plot_times": "voxsoft.plot.comparison",
+    "plot_track": "voxsoft.plot.control",
     "plot_workspace": "voxsoft.plot.workspace",
 }
 __getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -222,4 +222,18 @@ impl Problem {
             std::mem::swap(own, other);
         }
     }
+
+    /// Calls `within` for this problem as if nothing could touch, inside of any value `whole` that holds it.
+    pub fn apart<W, T>(
+        whole: &mut W,
+        problem: impl Fn(&mut W) -> &mut Self,
+        within: impl FnOnce(&mut W) -> T,
+    ) -> T {
+        let taken = problem(whole).body_mut().take_contact();
+        let result = within(whole);
+        if let Some(contact) = taken {
+            problem(whole).body_mut().put_contact(contact);
+        }
+        result
+    }
 }

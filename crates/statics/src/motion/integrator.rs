@@ -338,6 +338,7 @@ impl<S: InnerSearch> Integrator<S> {
         if run.settings.damping == Damping::Critical {
             run.damping_rate = 2.0 * run.frequency(&next, &found);
         }
+        run.remaining = run.remaining_after(&next, &found);
         let left = std::mem::replace(&mut run.state, next);
         // The first stage is of first order, and not used as a previous state by later steps.
         if run.stage != Stage::Second {

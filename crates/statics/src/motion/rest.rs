@@ -2,11 +2,15 @@
 
 use voxsoft_solid::balance::{balance_of_forces, is_still_with};
 use voxsoft_solid::loads::grabs::loads_end;
-use voxsoft_solid::vector::{Vec3, add, dot, sub};
+use voxsoft_solid::vector::{Vec3, add, dot, norm, sub};
 use voxsoft_solid::{LiveStatus, State};
 
 use super::integrator::{InnerSearch, Integrator};
 use super::run::{Now, Run};
+
+/// Distance to rest at which a body counts as there, relative to its largest displacement, over the tolerance of its
+/// residual: forces that balance each other hide those of a soft bend, which then has a tenth of its way to go.
+const REMAINING: f64 = 10.0;
 
 impl<S: InnerSearch> Integrator<S> {
     /// Updates the residual, and the status of a body at rest.
@@ -27,7 +31,8 @@ impl<S: InnerSearch> Integrator<S> {
             && run.state.time >= loads_end(&run.problem)
             && self.search.fluid_is_at_rest(run)
             && residual <= tolerance
-            && is_still_with(&run.problem, run.now.elastic, run.now.kinetic, tolerance);
+            && is_still_with(&run.problem, run.now.elastic, run.now.kinetic, tolerance)
+            && run.remaining <= REMAINING * tolerance * run.largest_move();
         if !quiet {
             return (residual, false);
         }
@@ -47,6 +52,34 @@ impl Run {
     pub fn residual_of(&self, net: Vec<Vec3>) -> f64 {
         let external = &self.now.external;
         balance_of_forces(&self.problem, &self.state.positions, external, net).relative_residual()
+    }
+
+    /// Largest displacement of a vertex from the unloaded body, m.
+    fn largest_move(&self) -> f64 {
+        let pairs = self.state.positions.iter().zip(self.problem.body().rest());
+        pairs.map(|(x, rest)| norm(sub(*x, *rest))).fold(0.0, f64::max)
+    }
+
+    /// Distance (m) from the end of a step to rest along its way, as the decrease of the net forces by the step
+    /// predicts it: that of a body which swings through, or which creeps against its damping.
+    pub fn remaining_after(&self, next: &State, found: &Now) -> f64 {
+        if self.now.internal.is_empty() || found.internal.is_empty() {
+            return 0.0;
+        }
+        let net = |now: &Now, vertex: usize| add(now.internal[vertex], now.external[vertex]);
+        let (mut ahead, mut decrease, mut farthest) = (0.0, 0.0, 0.0f64);
+        for (vertex, (to, from)) in next.positions.iter().zip(&self.state.positions).enumerate() {
+            let way = sub(*to, *from);
+            let left = net(found, vertex);
+            ahead += dot(way, left);
+            decrease += dot(way, sub(net(&self.now, vertex), left));
+            farthest = farthest.max(norm(way));
+        }
+        if decrease > 0.0 {
+            farthest * ahead.abs() / decrease
+        } else {
+            0.0
+        }
     }
 
     /// Estimate of the frequency (rad/s) of the present motion: the change of all forces along the motion over the

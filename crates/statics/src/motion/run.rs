@@ -91,6 +91,8 @@ pub struct Run {
     pub steps: u64,
     pub back_offs: u32,
     pub residual: f64,
+    /// Estimated distance to rest along the last step, m.
+    pub remaining: f64,
     pub status: LiveStatus,
     pub breakdown: Option<Breakdown>,
     pub travel_limit: f64,
@@ -112,6 +114,7 @@ impl Run {
             steps: 0,
             back_offs: 0,
             residual: f64::INFINITY,
+            remaining: 0.0,
             status: LiveStatus::Moving,
             breakdown: None,
             travel_limit: travel_limit(&problem),
@@ -138,7 +141,7 @@ impl Run {
         self.stage = Stage::First;
         self.damping_rate = self.settings.first_rate();
         (self.step, self.good) = (self.settings.step, 0);
-        self.residual = f64::INFINITY;
+        (self.residual, self.remaining) = (f64::INFINITY, 0.0);
         self.wake();
     }
 

@@ -18,6 +18,7 @@ from voxsoft.records import Record
 from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.results.fields import fields_of
 from voxsoft.simulation.runs.commands import Command, CommandName, Commands, Course, Value
+from voxsoft.simulation.runs.critical_damping import critical_damping
 from voxsoft.simulation.runs.observation import (
     Driven,
     Moment,
@@ -65,8 +66,9 @@ class Simulator:
         Seconds of each :meth:`step`; default 0.02. Inside, it is halved where a step is not found,
         and where its error asks for that.
     damping
-        Decay rate of velocities in 1/s, or ``"critical"`` (default): as much as keeps the slowest
-        mode from swinging, which comes to rest soon. 0 leaves the material's own.
+        Decay rate of velocities in 1/s, or ``"critical"`` (default): twice the lowest natural
+        frequency of the unloaded body, which keeps that mode from swinging; where a body or an
+        object moves freely, twice that of the present motion. 0 leaves the material's own.
     retardation
         Retardation time of the material, s; default 0.
     tolerance
@@ -147,6 +149,8 @@ class Simulator:
             commands.pressures(setup),
             self._settings.time_step,
         )
+        damping = self._settings.damping
+        self._damping = critical_damping(setup) if damping == "critical" else damping
         self._seed = self._settings.seed
         self._sensors: Sensors | None = None
         first = self.reset()
@@ -181,6 +185,11 @@ class Simulator:
     def time_step(self) -> float:
         """Length of each step in s."""
         return self._settings.time_step
+
+    @property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """All sensors."""
+        return () if self._sensors is None else self._sensors.all
 
     @property
     def state(self) -> Observation:
@@ -272,9 +281,8 @@ class Simulator:
             self._live.command(courses)
         report = self._live.advance_to(end)
         self._steps += 1
-        late = driven.late + (
-            end - report.time if report.status != _core.LiveStatus.MOVING else 0.0
-        )
+        rests = report.status != _core.LiveStatus.MOVING
+        late = driven.late + (end - report.time if rests else 0.0)
         values = tuple(
             command.at(report.time) if index in driven.following else value
             for index, (command, value) in enumerate(
@@ -314,7 +322,7 @@ class Simulator:
                 f"cannot go back to an observation of {state._subject.setup.design.name}",
                 "restore observations of the same design only",
             )
-        own = () if self._sensors is None else self._sensors.all
+        own = self.sensors
         if len(own) != len(state._driven.sensors.drifts):
             raise SimulationError(
                 "simulator",
@@ -354,7 +362,7 @@ class Simulator:
             np.zeros(len(mesh.triangles), np.uint8),
             mesh.voxel_size or 0.0,
             time_step=settings.time_step,
-            damping=settings.damping if isinstance(settings.damping, float) else None,
+            damping=self._damping,
             retardation=settings.retardation,
             tolerance=settings.tolerance,
             converged=True,
