@@ -196,10 +196,7 @@ class Simulator:
         """The last observation, which is all that is remembered."""
         return self._seen
 
-    @property
-    def observation(self) -> Observation:
-        """The last observation."""
-        return self._seen
+    observation = state
 
     def reset(self, seed: int | None = None) -> Observation:
         """Go back to the unloaded shape at rest and time zero.
