@@ -33,6 +33,8 @@ TIPS = {
     "magnetic_gripper": "tip",
     "pneunet": "tip",
 }
+#: Those under a pressure.
+INFLATED = ("cylinder", "pneunet")
 SECONDS = 2.0
 
 
@@ -57,8 +59,8 @@ def designs() -> Iterator[tuple[str, Design, str]]:
         yield name, vs.load(EXAMPLES / f"{name}.toml"), probe
 
 
-def way(design: Design, probe: str) -> float:
-    """Way of a probe in MuJoCo [m]."""
+def way(design: Design, probe: str, *, follows: bool = False) -> float:
+    """Way of a probe in MuJoCo [m]; pressures follow the walls if asked for."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "scene.xml"
         write_scene(path, design)
@@ -66,9 +68,27 @@ def way(design: Design, probe: str) -> float:
     data = mujoco.MjData(model)
     if model.nkey:
         mujoco.mj_resetDataKeyframe(model, data, 0)
+    pressures = list(pressed(model, data)) if follows else []
     while data.time < SECONDS:
+        data.xfrc_applied[:] = 0.0
+        for pressure, bodies in pressures:
+            a, b, c = data.xpos[bodies].transpose(1, 0, 2)
+            for corner in range(3):
+                forces = -pressure / 12.0 * np.cross(b - a, c - a)
+                np.add.at(data.xfrc_applied[:, :3], bodies[:, corner], forces)
         mujoco.mj_step(model, data)
     return float(np.linalg.norm([data.sensor(f"{probe}.{axis}").data[0] for axis in "xyz"]))
+
+
+def pressed(model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[tuple[float, np.ndarray]]:
+    """Take the pressures from the actuators: each with the vertices of its triangles."""
+    for index in range(model.nnumeric):
+        name = model.numeric(index).name
+        actuator = data.actuator(name.removesuffix(".triangles"))
+        faces = model.numeric(index).data.reshape(-1, 3).astype(int)
+        numbers = [model.body(f"vertex/{vertex}").id for vertex in range(faces.max() + 1)]
+        yield float(actuator.ctrl[0]), np.array(numbers)[faces]
+        actuator.ctrl[0] = 0.0
 
 
 def main() -> None:
@@ -80,6 +100,9 @@ def main() -> None:
         ours = float(np.linalg.norm(vs.simulate(design, error="off").probes[probe]))
         theirs = way(design, probe)
         report.add(name, 1e3 * theirs, "mm", theirs / ours)
+        if name in INFLATED:
+            theirs = way(design, probe, follows=True)
+            report.add(f"{name}, pressure that follows", 1e3 * theirs, "mm", theirs / ours)
     report.show()
 
 

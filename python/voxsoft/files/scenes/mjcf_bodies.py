@@ -10,10 +10,12 @@ from xml.etree import ElementTree
 import numpy as np
 
 from voxsoft.files.scenes.mjcf_model import Element, Ints, Model, joint_name, numbers, vertex_name
+from voxsoft.materials import Hyperelastic
 from voxsoft.mesh import BodyMesh
 
-#: Largest Poisson's ratio that is written. Linear tetrahedra lock above, and MuJoCo 4.0 does not
-#: solve its steps: a beam of 0.499 was seen to come to rest a third lower than its own elements do.
+#: Largest Poisson's ratio that is written. Elements of fully integrated volume lock above, and the
+#: steps of MuJoCo 4.0 are not solved: a beam of tetrahedra of 0.499 was seen to come to rest with
+#: 0.65 to 1.6 times the deflection that they have in equilibrium, as its time step was.
 POISSON: Final = 0.45
 #: Classes of the part of a cut voxel that is filled: the moduli of each are those of its mean.
 LEVELS: Final = 8
@@ -27,12 +29,13 @@ LEAST_INERTIA: Final = 1e-12
 
 @dataclass(frozen=True)
 class _Block:
-    """Tetrahedra of one part that are filled alike."""
+    """Tetrahedra of one part that are filled alike; those of whole voxels where they are bricks."""
 
     name: str
     part: int
     filled: float
     tets: Ints
+    is_cells: bool
 
 
 def add_vertices(model: Model) -> None:
@@ -70,7 +73,7 @@ def add_flexes(model: Model) -> None:
     """Add the flexes of all bodies, and say which of their laws MuJoCo does not have."""
     for number, (name, body) in enumerate(model.scene.bodies):
         blocks = list(_blocks(model, body))
-        flexes = [_flex(model, each.name, each.tets, "3") for each in blocks]
+        flexes = [_flex(model, each.name, body, each) for each in blocks]
         for flex, block in zip(flexes, blocks, strict=True):
             _add_elasticity(model, flex, block)
         if len(flexes) == 1:
@@ -82,7 +85,8 @@ def add_flexes(model: Model) -> None:
         if _collides(model, number):
             # Flexes of one body share vertices and must not touch each other: one around them does.
             first, count = body.first_tet, len(body.mesh.tets)
-            around = _flex(model, name, np.arange(first, first + count), "3")
+            every = _Block(name, 0, 1.0, np.arange(first, first + count), False)
+            around = _flex(model, name, body, every)
             _add_contact(model, around, number)
     _say_laws(model)
 
@@ -135,12 +139,56 @@ def _blocks(model: Model, body: BodyMesh) -> Iterator[_Block]:
             name = model.scene.part_names[part - 1]
             if each >= 0:
                 name = f"{name}, {each}/{LEVELS} to {each + 1}/{LEVELS} filled"
-            yield _Block(name, part - 1, float(filled[chosen].mean()), tets[chosen])
+            yield _Block(
+                name,
+                part - 1,
+                float(filled[chosen].mean()),
+                tets[chosen],
+                _is_cells(model, body, part - 1),
+            )
 
 
-def _flex(model: Model, name: str, tets: Ints, dim: str) -> Element:
-    corners = model.scene.setup.mesh.tets[tets]
-    return model.add("deformable", "flex", name=name, dim=dim, radius="0", **_nodes(model, corners))
+def _is_cells(model: Model, body: BodyMesh, part: int) -> bool:
+    """Check if the voxels of a part are bricks along the axes, and not springs."""
+    soft = isinstance(model.scene.setup.materials[part], Hyperelastic)
+    return soft and body.mesh.voxel_size is not None and body.is_along_axes
+
+
+def _flex(model: Model, name: str, body: BodyMesh, block: _Block) -> Element:
+    corners = model.scene.setup.mesh.tets[block.tets]
+    nodes = _cells(model, body, corners) if block.is_cells else _nodes(model, corners)
+    return model.add("deformable", "flex", name=name, dim="3", radius="0", **nodes)
+
+
+def _cells(model: Model, body: BodyMesh, corners: Ints) -> dict[str, str]:
+    """Return the voxels of a flex as the filled cells of a box of cells.
+
+    Nodes of the box that no voxel has are points of the world: no stiffness reaches them.
+    """
+    mesh, size = model.scene.setup.mesh, body.mesh.voxel_size
+    assert size is not None  # the voxels are bricks
+    used, own = np.unique(corners, return_inverse=True)
+    places = body.mesh.vertices[used - body.first_vertex]
+    first = places.min(axis=0)
+    cells = np.rint((places - first) / size).astype(int)
+    shape = cells.max(axis=0) + 1
+    grid = np.full(shape, -1)
+    grid[tuple(cells.T)] = used
+    nodes = grid.ravel()
+    is_vertex = nodes >= 0
+    corner = np.stack(np.unravel_index(np.arange(len(nodes)), shape), axis=1)
+    local = body.placed(first + corner * size)
+    local[is_vertex] = mesh.vertices[nodes[is_vertex]] - model.origins[nodes[is_vertex]]
+    names = ("world" if v < 0 else model.vertices[v].attrib["name"] for v in nodes.tolist())
+    return {
+        "dof": "trilinear",
+        "cellcount": numbers(shape - 1),
+        "node": " ".join(names),
+        "nodecoord": numbers(local.ravel()),
+        "body": " ".join(["world"] * len(used)),
+        "vertex": numbers(mesh.vertices[used].ravel()),
+        "element": numbers(own.ravel()),
+    }
 
 
 def _nodes(model: Model, corners: Ints) -> dict[str, str]:
@@ -171,14 +219,17 @@ def _say_laws(model: Model) -> None:
     scene = model.scene
     for index, material in enumerate(scene.setup.materials):
         where = f"parts[{index}].material"
-        law = "is written as St Venant-Kirchhoff of its moduli at small strain"
-        what = f'"{material.model}" {law}, on linear tetrahedra, which are too stiff in bending'
-        model.lose(where, what, "refine: halved voxels quarter what these tetrahedra add")
+        bricks = any(_is_cells(model, body, index) for _, body in scene.bodies)
+        law = "linear in a frame that turns with each voxel" if bricks else "St Venant-Kirchhoff"
+        kind = "full bricks" if bricks else "linear tetrahedra"
+        what = f'"{material.model}" is written by its moduli at small strain, {law}, on {kind}'
+        hint = "refine: halved voxels quarter what these elements add in bending"
+        model.lose(where, what, hint)
         _, poisson = scene.moduli(index)
         if not 0.0 <= poisson <= POISSON:
             least = min(max(poisson, 0.0), POISSON)
             what = f"has Poisson's ratio {poisson:.4g}, written as {least:g}"
-            model.lose(where, f"{what}: beyond it these tetrahedra lock, and MuJoCo's steps fail")
+            model.lose(where, f"{what}: beyond it these elements lock, and MuJoCo's steps fail")
     if scene.setup.mesh.fractions is not None:
         what = "has whole voxels where the surface cuts them, as stiff as the part that is filled"
         model.lose("fill", f"{what}, in {LEVELS} classes; masses are those of VoxSoft")

@@ -40,7 +40,10 @@ def add_loads(model: Model) -> None:
             # The length of this tendon is the change of the volume, to first order.
             final, size = factor * taken.value, {"input": "pressure", "gainprm": "1"}
             model.actuator("general", final, name=where, tendon=where, **size)
-            model.lose(where, _DEAD)
+            faces = np.concatenate(taken.faces).ravel().tolist()
+            name = f"{where}.triangles"
+            model.add("custom", "numeric", name=name, size=str(len(faces)), data=numbers(faces))
+            model.lose(where, _DEAD, f'give it by a program from "{name}", as the guide does')
         if taken.dead.any() and model.linear(where, taken.dead):
             model.actuator("motor", factor, name=where, tendon=where)
 
@@ -54,6 +57,8 @@ class _Loads(LoadReceiver):
         Dead forces on the vertices, (n, 3), N.
     value, areas
         Pressure [Pa], and its force on each vertex for 1 Pa, (n, 3), m².
+    faces
+        Triangles under it, each face of a voxel along both of its diagonals.
     """
 
     def __init__(self, model: Model) -> None:
@@ -62,6 +67,7 @@ class _Loads(LoadReceiver):
         self.dead = np.zeros_like(self.mesh.vertices)
         self.value = 0.0
         self.areas = np.zeros_like(self.mesh.vertices)
+        self.faces: list[NDArray[np.int32]] = []
 
     def acceleration(self, acceleration: Floats) -> None:
         """Leave it to the gravity of the scene."""
@@ -74,6 +80,7 @@ class _Loads(LoadReceiver):
         if cavity is not None:
             surfaces = [found for found, _ in cavity.splits]
             self._add_voids(cavity)
+        self.faces += surfaces * (2 // len(surfaces))
         points = self.mesh.vertices
         for found in surfaces:
             a, b, c = points[found].transpose(1, 0, 2)
