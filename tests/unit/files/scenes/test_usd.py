@@ -1,6 +1,7 @@
 """USD files, opened by usd-core: units, masses, volumes, rest shape, parts, objects, states."""
 
 import builtins
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from voxsoft.files.scenes.usd import SENTENCES
 from voxsoft.simulation import Setup
 from voxsoft.simulation.features import FEATURES
 
+EXAMPLES = Path(__file__).parents[4] / "examples"
 RUBBER = {"model": "neo-hookean", "young": "100 kPa", "poisson": 0.4, "density": "1070 kg/m^3"}
 FIRM = {**RUBBER, "young": "500 kPa", "density": "2000 kg/m^3"}
 
@@ -159,6 +161,25 @@ def test_the_validators_of_usd_find_nothing(stage):
     validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
     context = UsdValidation.ValidationContext(validators)
     assert [each.GetMessage() for each in context.Validate(stage)] == []
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "name", ["crawler", "gripper", "pinch", "sphere", "squeeze", "tendon_trunk"]
+)
+def test_the_validators_of_usd_find_nothing_in_examples(name, tmp_path):
+    made = vs.load(EXAMPLES / f"{name}.toml")
+    lost = write_scene(tmp_path / "example.usdc", made)
+    assert all(each.where.split("[")[0].split(".")[0] in Design.model_fields for each in lost)
+    found = Usd.Stage.Open(str(tmp_path / "example.usdc"))
+    validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+    context = UsdValidation.ValidationContext(validators)
+    assert [each.GetMessage() for each in context.Validate(found)] == []
+    setup = Setup.of(made, allow_loose=True)
+    volumes = [each for each in found.Traverse() if each.IsA(UsdGeom.TetMesh)]
+    points = np.concatenate([array(UsdGeom.TetMesh(v).GetPointsAttr()) for v in volumes])
+    assert points == pytest.approx(setup.mesh.vertices, abs=1e-7)
+    assert len(made.body_names) == len(volumes)
 
 
 def test_states_are_time_samples(tmp_path):
