@@ -35,6 +35,7 @@ SENTENCES: Final[Mapping[str, str]] = MappingProxyType(
         "force": "",
         "traction": "",
         "magnetic field": "",
+        "immersion": "",
         "load over time": "",
         "floor": "",
         "contact": "",

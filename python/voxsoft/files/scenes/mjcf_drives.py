@@ -15,6 +15,7 @@ from voxsoft.design import Spring
 from voxsoft.design.attachment import PlaceOnBody, attachments_of
 from voxsoft.files.scenes.mjcf_model import Element, Floats, Model, numbers
 from voxsoft.simulation.loads import LoadReceiver
+from voxsoft.simulation.loads.actions import DepthPressure
 from voxsoft.simulation.setup.tendons import STIFF, Place, ResolvedTendon
 
 #: Bound of a force that cannot push [N]: MuJoCo takes no infinity.
@@ -46,6 +47,8 @@ def add_loads(model: Model) -> None:
             model.lose(where, _DEAD, f'give it by a program from "{name}", as the guide does')
         if taken.dead.any() and model.linear(where, taken.dead):
             model.actuator("motor", factor, name=where, tendon=where)
+        if taken.follows:
+            model.lose(where, "is held as its forces on the unloaded body, which do not follow it")
 
 
 class _Loads(LoadReceiver):
@@ -59,6 +62,8 @@ class _Loads(LoadReceiver):
         Pressure [Pa], and its force on each vertex for 1 Pa, (n, 3), m².
     faces
         Triangles under it, each face of a voxel along both of its diagonals.
+    follows
+        True if the dead forces are those of a load that follows the body.
     """
 
     def __init__(self, model: Model) -> None:
@@ -68,6 +73,7 @@ class _Loads(LoadReceiver):
         self.value = 0.0
         self.areas = np.zeros_like(self.mesh.vertices)
         self.faces: list[NDArray[np.int32]] = []
+        self.follows = False
 
     def acceleration(self, acceleration: Floats) -> None:
         """Leave it to the gravity of the scene."""
@@ -105,6 +111,10 @@ class _Loads(LoadReceiver):
 
     def forces(self, vertices: NDArray[np.uint32], forces: Floats) -> None:
         np.add.at(self.dead, vertices, forces)
+
+    def depth_pressure(self, volume: DepthPressure) -> None:
+        super().depth_pressure(volume)
+        self.follows = True
 
     def traction(self, triangles: NDArray[np.int32], stress: Floats) -> None:
         both = np.concatenate([triangles, self._split.triangles(triangles)])

@@ -38,6 +38,7 @@ SENTENCES: Final[Mapping[str, str]] = MappingProxyType(
         "force": _LOAD,
         "traction": _LOAD,
         "magnetic field": _LOAD,
+        "immersion": _LOAD,
         "load over time": "is not held: the file has its final value",
         "floor": "",
         "contact": "",
