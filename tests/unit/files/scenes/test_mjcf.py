@@ -151,11 +151,12 @@ def test_loads_pull_at_the_unloaded_body_as_ours_do(tmp_path):
         {"kind": "force", "region": {"x": ["20 mm", "20 mm"]}, "value": ["3 mN", 0, "-2 mN"]},
         {"kind": "traction", "region": {"z": ["20 mm", "20 mm"]}, "value": [0, "50 Pa", 0]},
         {"kind": "traction", "region": {"x": ["20 mm", "20 mm"]}, "value": "70 Pa"},
+        {"kind": "immersion", "level": "0.1 m"},
     ]
     model, data, setup, lost = opened(design(loads=loads), tmp_path / "loaded.xml")
     names = [model.actuator(index).name for index in range(model.nu)]
-    assert names == ["loads[1]", "loads[2]", "loads[3]", "loads[4]"]
-    assert {"loads[0].history", "loads[1]", "loads[4]"} <= lost.keys()
+    assert names == ["loads[1]", "loads[2]", "loads[3]", "loads[4]", "loads[5]"]
+    assert {"loads[0].history", "loads[1]", "loads[4]", "loads[5]"} <= lost.keys()
     mujoco.mj_resetDataKeyframe(model, data, model.key("loads").id)
     assert data.ctrl[0] == 4000.0
     mujoco.mj_forward(model, data)
