@@ -38,13 +38,13 @@ INFLATED = ("cylinder", "pneunet")
 SECONDS = 2.0
 
 
-def beam(across: int) -> Design:
-    """A beam of 10 × 10 × 50 mm with so many voxels across."""
+def beam(voxel_size: float, side: float = 0.01) -> Design:
+    """A square beam of 50 mm, by default 10 mm across."""
     rubber = {"model": "neo-hookean", "young": 100e3, "poisson": 0.3, "density": 1070.0}
     return Design(
         name="beam",
-        voxel_size=0.01 / across,
-        parts=[{"shape": {"kind": "box", "size": (0.05, 0.01, 0.01)}, "material": rubber}],
+        voxel_size=voxel_size,
+        parts=[{"shape": {"kind": "box", "size": (0.05, side, side)}, "material": rubber}],
         clamps=[{"region": {"x": (0.0, 0.0)}}],
         loads=[{"kind": "gravity", "value": 0.5}],
         probes={"tip": {"x": (0.05, 0.05)}},
@@ -54,7 +54,9 @@ def beam(across: int) -> Design:
 def designs() -> Iterator[tuple[str, Design, str]]:
     """Every design with its name and the probe at its tip."""
     for across in (2, 3, 4, 6):
-        yield f"beam, {across} across", beam(across), "tip"
+        yield f"beam, {across} across", beam(0.01 / across), "tip"
+    for size in (0.0025, 0.00125):
+        yield f"beam of 9 mm, cut voxels of {1e3 * size:g} mm", beam(size, 0.009), "tip"
     for name, probe in TIPS.items():
         yield name, vs.load(EXAMPLES / f"{name}.toml"), probe
 
