@@ -50,7 +50,8 @@ def page() -> str:
         if form.kind in ("design", "table"):
             kept = [""] * len(COLUMNS)
         unit = "given by `--unit`; mm if left out" if form.unit is None else form.unit
-        written.append(f"| `{form.suffix}` | {form.title} | {' | '.join(kept)} | {unit} |")
+        suffixes = ", ".join(f"`{suffix}`" for suffix in form.suffixes)
+        written.append(f"| {suffixes} | {form.title} | {' | '.join(kept)} | {unit} |")
     return HEAD + "\n".join(read) + "\n" + WRITTEN + "\n".join(written) + "\n"
 
 

@@ -33,6 +33,8 @@ export const WRITTEN = {
   ".stl": {"title": "Surface", "purpose": "To print the body or cut its mold; other programs read it as triangles.", "asksUnit": true, "asksShape": true},
   ".obj": {"title": "Surface", "purpose": "To open the surface in Blender and other modelers.", "asksUnit": true, "asksShape": true},
   ".npy": {"title": "Voxels", "purpose": "To work on the voxels in Python: an array of part numbers.", "asksUnit": false, "asksShape": false},
+  ".xml": {"title": "Scene", "purpose": "To simulate the robot in MuJoCo: flexes, contact, tendons, loads as actuators.", "asksUnit": false, "asksShape": false},
+  ".usda": {"title": "Scene", "purpose": "To show the robot and its motion in Blender, Houdini or Omniverse.", "asksUnit": false, "asksShape": false},
   ".csv": {"title": "Table", "purpose": "To plot probes, residual and energies in a spreadsheet or Python.", "asksUnit": false, "asksShape": false},
   ".toml": {"title": "Design", "purpose": "To keep, cite or send the design: this page of text rebuilds everything.", "asksUnit": false, "asksShape": false},
 } as const;

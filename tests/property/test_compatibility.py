@@ -118,6 +118,7 @@ SAMPLES = {
         "loads": [{"kind": "magnetic_field", "value": [0, 0, "5 mT"]}],
         "parts": [soft(remanence=["20 mT", 0, 0])],
     },
+    "immersion": {"loads": [GRAVITY, {"kind": "immersion", "level": "0.1 m"}]},
     "load over time": {"loads": [{**PRESSURE, "history": RAMP}]},
     "floor": {"loads": [GRAVITY], "floor": {"z": "-1 mm"}},
     "contact": {"contact": {"friction": 0.2}},

@@ -37,7 +37,7 @@ def export(
         typer.Option("--html", help="Page to write, alive in any browser without VoxSoft."),
     ] = None,
 ) -> None:
-    """Write a design or a result as a mesh, surface, voxel array, design, table or page."""
+    """Write a design or a result as a mesh, surface, voxel array, scene, design, table or page."""
     from voxsoft import files
 
     if target is None and html is None:
@@ -45,10 +45,12 @@ def export(
         raise typer.Exit(USAGE)
     with errors_in_words():
         if target is not None:
-            files.export(source, target, sets or [], deformed=deformed, unit=unit)
+            lost = files.export(source, target, sets or [], deformed=deformed, unit=unit)
             has_unit = WRITTEN[target.suffix.lower()].unit is None
             shown = f", in {plain(files.unit_of(target, unit))}" if has_unit else ""
             say(f"wrote {plain(str(target))}{shown}")
+            for each in lost:
+                say(f"lost: {plain(str(each))}")
         if html is not None:
             from voxsoft.studio.outputs.html import export_page
 

@@ -12,7 +12,16 @@ from voxsoft.design.fluid import Gas, Liquid
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
 from voxsoft.design.line import Pump, Valve
-from voxsoft.design.load import AnyLoad, Floor, Force, Gravity, MagneticField, Pressure, Traction
+from voxsoft.design.load import (
+    AnyLoad,
+    Floor,
+    Force,
+    Gravity,
+    Immersion,
+    MagneticField,
+    Pressure,
+    Traction,
+)
 from voxsoft.design.model import Design
 from voxsoft.design.object import Object
 from voxsoft.design.parameter import Parameter
@@ -57,6 +66,7 @@ __all__ = [
     "Gravity",
     "Guide",
     "History",
+    "Immersion",
     "Layer",
     "Liquid",
     "MagneticField",

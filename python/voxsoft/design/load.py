@@ -1,4 +1,4 @@
-"""Loads: gravity, cavity pressure, forces, tractions, magnetic fields; and the floor."""
+"""Loads: gravity, pressures, forces, tractions, magnetic fields, immersion; and the floor."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from voxsoft.design.clamp import check_direction
 from voxsoft.design.history import History
 from voxsoft.design.region import Region
 from voxsoft.records import Record
-from voxsoft.units import Acceleration, Length, Vector
+from voxsoft.units import Acceleration, Length, PositiveDensity, Vector
 
 Forces = tuple[units.Force, units.Force, units.Force]
 Stresses = tuple[units.Pressure, units.Pressure, units.Pressure]
@@ -155,8 +155,43 @@ class MagneticField(Record):
     history: History | None = None
 
 
+class Immersion(Record):
+    """A liquid at rest around the whole body: a pressure that grows with depth, and carries it.
+
+    The pressure acts on all that displaces the liquid, material and closed cavities, wherever it
+    moves to. There is none at the surface of the liquid; the body stays below it.
+
+    Parameters
+    ----------
+    value
+        Density of the liquid; default: water.
+    level
+        Height of its surface along z; default 0.
+    gravity
+        Acceleration that gives the liquid its weight, along −z; default 9.81 m/s². The weight of
+        the body is a load :class:`Gravity`.
+    history
+        The factor over time; default: constant.
+
+    Notes
+    -----
+    Drag and the liquid that moves along with the body are left out; objects feel no liquid.
+
+    Examples
+    --------
+    >>> Immersion(level="0.2 m").value
+    1000.0
+    """
+
+    kind: Literal["immersion"] = "immersion"
+    value: PositiveDensity = 1000.0
+    level: Length = 0.0
+    gravity: Acceleration = 9.81
+    history: History | None = None
+
+
 AnyLoad = Annotated[
-    Gravity | Pressure | Force | Traction | MagneticField, Field(discriminator="kind")
+    Gravity | Pressure | Force | Traction | MagneticField | Immersion, Field(discriminator="kind")
 ]
 
 

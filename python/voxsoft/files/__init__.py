@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from voxsoft.files.checks import check_design, check_mesh
     from voxsoft.files.comparison_report import write_comparison
     from voxsoft.files.designs import load, save
-    from voxsoft.files.exports import export, unit_of
+    from voxsoft.files.exports import export, unit_of, write_scene
     from voxsoft.files.family_file import write_family
     from voxsoft.files.meshes import read_mesh, write_mesh
     from voxsoft.files.path_table import write_path
@@ -34,6 +34,7 @@ __all__ = [
     "write_mesh",
     "write_path",
     "write_run",
+    "write_scene",
     "write_study",
     "write_workspace",
 ]
@@ -54,6 +55,7 @@ _HOMES = {
     "write_mesh": "voxsoft.files.meshes",
     "write_path": "voxsoft.files.path_table",
     "write_run": "voxsoft.files.run_folder",
+    "write_scene": "voxsoft.files.exports",
     "write_study": "voxsoft.files.study_folder",
     "write_workspace": "voxsoft.files.workspace_folder",
 }

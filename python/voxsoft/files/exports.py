@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
@@ -13,14 +13,15 @@ import numpy as np
 
 from voxsoft.design import Design
 from voxsoft.design.discretization.discretize import mesh_of, voxels_of
-from voxsoft.errors import FileError
+from voxsoft.errors import ErrorDetail, FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath, load, read_text, save
 from voxsoft.files.mesh_file import MeshFile
 from voxsoft.files.meshes import read_mesh_file, write_mesh
 from voxsoft.files.run_folder import csv_text
+from voxsoft.files.scenes.scene import Scene
 from voxsoft.formats.registry import WRITTEN, function
-from voxsoft.simulation import named_regions
+from voxsoft.simulation import Result, Setup, named_regions
 from voxsoft.units import parse
 
 
@@ -33,6 +34,9 @@ class Source(Protocol):
 
     def table(self) -> str:
         """Return numbers as the text of a CSV file."""
+
+    def scene(self) -> Scene:
+        """Return the design prepared for another program, with its states."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,12 @@ class _File:
         """Return the displacements of the probes."""
         return _probes_csv(self.origin)
 
+    def scene(self) -> Scene:
+        """Return the design, of a run folder with its result."""
+        if self.origin.is_dir():
+            return Scene.of_run(self.origin, self.design)
+        return Scene.of(self.design)
+
 
 def export(
     source: FilePath,
@@ -62,7 +72,7 @@ def export(
     *,
     deformed: bool = False,
     unit: str | None = None,
-) -> None:
+) -> tuple[ErrorDetail, ...]:
     """Write a design or a result in the format that the target's suffix names.
 
     Parameters
@@ -72,8 +82,9 @@ def export(
     target
         Path of the file, whose suffix chooses among :data:`voxsoft.formats.registry.WRITTEN`: a
         mesh ``.vtu`` ``.msh`` ``.inp``, its surface ``.stl`` ``.obj``, the voxels as a NumPy array
-        of part numbers ``.npy``, the resolved design ``.toml``, or the displacements of the probes
-        ``.csv`` (of a run folder).
+        of part numbers ``.npy``, the robot for MuJoCo ``.xml`` or as USD ``.usda`` ``.usdc``
+        ``.usdz``, the resolved design ``.toml``, or the displacements of the probes ``.csv`` (of a
+        run folder).
     assignments
         Changes ``key=value`` of a design file.
     deformed
@@ -81,6 +92,12 @@ def export(
     unit
         Unit of the numbers in ``.stl`` and ``.obj``; default: mm, as most programs read them.
         Every other mesh is in m.
+
+    Returns
+    -------
+    tuple of ErrorDetail
+        Entries of the design that a file for another simulator does not hold, or holds in another
+        form; empty for other formats, which hold the same of each design.
 
     Raises
     ------
@@ -96,7 +113,7 @@ def export(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     design, voxels = Path(folder, "beam.toml"), Path(folder, "beam.npy")
     ...     families.beam().save(design)
-    ...     export(design, voxels)
+    ...     _ = export(design, voxels)
     ...     np.load(voxels).shape
     (20, 2, 2)
     """
@@ -107,15 +124,72 @@ def export(
     if WRITTEN[suffix].has_shape:
         meter = parse(f"1 {unit_of(goal, unit)}", "length")
         _write_body(goal, _body(origin, design), deformed, meter)
-    else:
-        write_source(goal, _File(origin, design))
+        return ()
+    return write_source(goal, _File(origin, design))
 
 
-def write_source(target: Path, source: Source) -> None:
-    """Write a file without a mesh by the writer for its suffix."""
+def write_source(target: Path, source: Source) -> tuple[ErrorDetail, ...]:
+    """Write a file without a mesh by the writer for its suffix; see :func:`export`."""
     form = WRITTEN[target.suffix.lower()]
     assert form.writer is not None
-    function(form.writer)(target, source)
+    return tuple(function(form.writer)(target, source) or ())
+
+
+@dataclass(frozen=True)
+class _Given:
+    """Scene that is there already."""
+
+    held: Scene
+
+    def scene(self) -> Scene:
+        """Return it."""
+        return self.held
+
+
+def write_scene(
+    path: FilePath, body: Design | Setup | Result | Sequence[Result]
+) -> tuple[ErrorDetail, ...]:
+    """Write a robot for another simulator, as MJCF ``.xml`` or USD ``.usda`` ``.usdc`` ``.usdz``.
+
+    Parameters
+    ----------
+    path
+        The file; its suffix chooses the format.
+    body
+        A design, or a result. A USD file of a result has the unloaded and the final state, or all
+        of its recording where that has frames (``simulate(design, frames=True)``), as time samples
+        in seconds; of several results, such as those of a path, one state each second. MJCF has no
+        states.
+
+    Returns
+    -------
+    tuple of ErrorDetail
+        Entries of the design that the file does not hold, or holds in another form.
+
+    Raises
+    ------
+    FileError
+        A suffix of no such format, or results on different meshes.
+    MissingPackageError
+        USD is asked for, and usd-core is not installed.
+    DesignError
+        The design cannot be meshed, or an entry catches nothing.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from voxsoft.design import families
+    >>> lost = write_scene(Path(tempfile.mkdtemp(), "beam.xml"), families.beam())
+    >>> [each.where for each in lost]
+    ['parts[0].material', 'parts[0].material']
+    """
+    goal = Path(path)
+    form = WRITTEN.get(goal.suffix.lower())
+    if form is None or form.writer is None or form.kind != "scene":
+        known = " ".join(suffix for suffix, each in WRITTEN.items() if each.kind == "scene")
+        what = f"{goal.suffix!r} is no format of a scene; allowed are {known}"
+        raise FileError(str(goal), what)
+    return tuple(function(form.writer)(goal, _Given(Scene.of(body))))
 
 
 def write_voxels(target: Path, source: Source) -> None:
@@ -164,7 +238,9 @@ def _check(
         what = "holds no result; a run folder does"
         raise FileError(str(origin), what, f"voxsoft run {origin}, then export its folder")
     if deformed and not form.has_shape:
-        raise FileError(str(goal), f"{suffix} cannot hold a deformed shape", "write .vtu or .stl")
+        hint = "leave --deformed out: USD has the states of a run folder, by their times"
+        hint = hint if form.kind == "scene" else "write .vtu or .stl"
+        raise FileError(str(goal), f"{suffix} cannot hold a deformed shape in place", hint)
     if unit is not None:
         parse(f"1 {unit}", "length", where="unit")
         if form.unit is not None and (not form.has_shape or unit != "m"):

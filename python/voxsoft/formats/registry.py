@@ -13,13 +13,15 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, Final, Literal
 
-#: Subject of a file: volume cells, triangles, an array of voxels, a design, or a table.
-Kind = Literal["cells", "surface", "voxels", "design", "table"]
+#: Subject of a file: volume cells, triangles, an array of voxels, a robot with its objects and
+#: drives for another program, a design, or a table.
+Kind = Literal["cells", "surface", "voxels", "scene", "design", "table"]
 #: Heading of the files of each kind.
 HEADINGS: Final[dict[Kind, str]] = {
     "cells": "Mesh",
     "surface": "Surface",
     "voxels": "Voxels",
+    "scene": "Scene",
     "design": "Design",
     "table": "Table",
 }
@@ -48,7 +50,8 @@ class Format:
         Function that writes a file, as ``"module:function"``; None if the format is not written.
         Of ``cells`` and ``surface`` it takes the path and a
         :class:`~voxsoft.files.mesh_file.MeshFile`, of others the path and a
-        :class:`~voxsoft.files.exports.Source`.
+        :class:`~voxsoft.files.exports.Source`; of ``scene`` it returns a list of
+        :class:`~voxsoft.errors.ErrorDetail`, entries of the design that the file does not hold.
     holds
         Contents beside the geometry that a written file keeps.
     purpose
@@ -186,6 +189,22 @@ FORMATS: Final = (
         unit="holds the parts of voxels, and no lengths",
     ),
     Format(
+        (".xml",),
+        "scene",
+        "MJCF, for MuJoCo 4",
+        writer="voxsoft.files.scenes.mjcf:write",
+        holds=frozenset({"parts"}),
+        purpose="To simulate the robot in MuJoCo: flexes, contact, tendons, loads as actuators.",
+    ),
+    Format(
+        (".usda", ".usdc", ".usdz", ".usd"),
+        "scene",
+        "USD as text, binary or archive, for Omniverse, Blender and Houdini",
+        writer="voxsoft.files.scenes.usd:write",
+        holds=frozenset({"parts", "regions"}),
+        purpose="To show the robot and its motion in Blender, Houdini or Omniverse.",
+    ),
+    Format(
         (".csv",),
         "table",
         "Table: probes of a run folder; in the studio, curves over time",
@@ -203,8 +222,10 @@ FORMATS: Final = (
     ),
 )
 
-#: Formats that can be written, by suffix.
-WRITTEN: Final = {form.suffix: form for form in FORMATS if form.writer is not None}
+#: Formats that can be written, by each suffix.
+WRITTEN: Final = {
+    suffix: form for form in FORMATS if form.writer is not None for suffix in form.suffixes
+}
 #: Formats that can be read, by suffix.
 READ: Final = {
     suffix: form for form in FORMATS if form.reader is not None for suffix in form.suffixes
@@ -225,12 +246,13 @@ def function(name: str) -> Callable[..., Any]:
 
 
 def suffixes_that_hold(*contents: Holding) -> str:
-    """Return the suffixes of written formats that keep all of some contents.
+    """Return the suffixes of written meshes and surfaces that keep all of some contents.
 
     Examples
     --------
     >>> suffixes_that_hold("regions"), suffixes_that_hold("values")
     ('.vtu, .msh or .inp', '.vtu')
     """
-    *first, last = [s for s, form in WRITTEN.items() if form.holds.issuperset(contents)]
+    written = ((s, form) for s, form in WRITTEN.items() if form.has_shape)
+    *first, last = [s for s, form in written if form.holds.issuperset(contents)]
     return f"{', '.join(first)} or {last}" if first else last

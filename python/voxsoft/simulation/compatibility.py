@@ -224,6 +224,8 @@ _REFUSED: Final[tuple[tuple[str, tuple[str, ...], Reason], ...]] = (
         Reason("is not known to {who} beside contact yet", "press Solve"),
     ),
     ("mesh of a file", ("comparison", "confirmation"), _NO_VOXELS),
+    ("immersion", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without it")),
+    ("immersion", ("symmetry",), Reason(_WITH_PLANES.what, "leave the planes out")),
     ("floor", ("outside codes",), Reason(_OUTSIDE.what, "clamp the foot instead")),
     ("layers", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without them")),
     ("springs and the like", ("outside codes",), _OUTSIDE),

@@ -197,6 +197,7 @@ FEATURES: Final[Mapping[str, _Places]] = MappingProxyType(
         "force": _loads("force"),
         "traction": _loads("traction"),
         "magnetic field": _loads("magnetic_field"),
+        "immersion": _loads("immersion"),
         "load over time": _load_histories,
         "floor": _key("floor"),
         "contact": _contact,

@@ -118,6 +118,7 @@ def _written() -> dict[str, dict[str, object]]:
             "asksShape": form.kind == "surface",
         }
         for suffix, form in WRITTEN.items()
+        if suffix == form.suffix
     }
 
 

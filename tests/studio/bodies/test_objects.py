@@ -344,9 +344,9 @@ def test_an_exported_picture_of_a_moment_has_its_objects(tmp_path, pressed, as_s
         playback.go_to_rest(result)
         playback.result = None  # as it stands, which no solver is asked about
     shown = playback.shown_as("pressed", "")
-    drawn = gray_in(export_shown(shown, "png", {}, tmp_path))
+    drawn = gray_in(export_shown(shown, "png", {}, tmp_path).file)
     bare = replace(shown, moment=None, time=1.0)  # where objects were then is not known
-    assert drawn > gray_in(export_shown(bare, "png", {}, tmp_path)) + 3_000
+    assert drawn > gray_in(export_shown(bare, "png", {}, tmp_path).file) + 3_000
     if as_solved:
         assert poses_in(shown.moment, design) == result.objects
 

@@ -1,13 +1,16 @@
 """Files of the shown body, read back by the programs they are for."""
 
+import asyncio
 import io
 import tomllib
 import zipfile
 
 import httpx
 import meshio
+import mujoco
 import numpy as np
 import pytest
+from pxr import Usd, UsdGeom
 
 from voxsoft.files import read_mesh
 
@@ -49,6 +52,30 @@ def test_a_mesh_is_read_back(at_rest, tmp_path, format):
     if format == "vtu":
         moved = meshio.read(file).point_data["displacement"]
         assert moved[:, 2].max() == pytest.approx(0.013, abs=1e-3)
+
+
+def test_a_scene_opens_in_mujoco_and_its_losses_are_in_the_log(studio, tmp_path):
+    async def scenario():
+        async with studio.page() as page:
+            await page.until("body")
+            answer = await asyncio.to_thread(export, studio, "xml")
+            await page.until("log", lambda log: "cylinder.xml: loads[0]: is a gener" in log.text)
+            return answer
+
+    file = tmp_path / "cylinder.xml"
+    file.write_bytes(asyncio.run(scenario()).content)
+    model = mujoco.MjModel.from_xml_path(str(file))
+    assert model.nflexvert == 660
+    assert model.actuator("loads[0]").ctrllimited == 0
+
+
+def test_a_scene_in_usd_has_the_state_of_the_screen(at_rest, tmp_path):
+    file = tmp_path / "body.usdz"
+    file.write_bytes(export(at_rest, "usdz").content)
+    stage = Usd.Stage.Open(str(file))
+    volume = UsdGeom.TetMesh(stage.GetPrimAtPath("/cylinder/body/volume"))
+    rest, now = (np.array(volume.GetPointsAttr().Get(time)) for time in (0.0, 24.0))
+    assert (now - rest)[:, 2].max() == pytest.approx(0.013, abs=1e-3)
 
 
 @pytest.mark.long

@@ -95,8 +95,9 @@ def test_signatures_in_words():
         "(radius: Length, *, center: (Length, Length, Length) = (0.0, 0.0, 0.0))"
     )
     assert "shape: str | Shape | None = None" in str(inspect.signature(vs.Probe))
-    assert "loads: [Gravity | Pressure | Force | Traction | MagneticField, ...] = ()" in str(
-        inspect.signature(vs.Design)
+    assert (
+        "loads: [Gravity | Pressure | Force | Traction | MagneticField | Immersion, ...] = ()"
+        in str(inspect.signature(vs.Design))
     )
 
 

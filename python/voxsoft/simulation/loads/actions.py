@@ -44,6 +44,12 @@ class LoadReceiver(ABC):
         """Take a dead force, (3,), N, that vertices share evenly."""
         self.forces(vertices, np.tile(total / len(vertices), (len(vertices), 1)))
 
+    def depth_pressure(self, volume: DepthPressure) -> None:
+        """Take a pressure that grows with depth; by default as forces on the unloaded body."""
+        forces = volume.forces(self.mesh.vertices)
+        loaded = np.flatnonzero(forces.any(axis=1)).astype(np.uint32)
+        self.forces(loaded, forces[loaded])
+
     def traction(self, triangles: Triangles, stress: Floats) -> None:
         """Take a dead force for each undeformed area of triangles, (3,), Pa."""
         a, b, c = self.mesh.vertices[triangles].transpose(1, 0, 2)
@@ -163,6 +169,69 @@ class FieldForces(VertexForces):
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
         """Return the point where a line along the field through the middle enters the bounds."""
         return _into_bounds(rest, _unit(self.field))
+
+
+@dataclass(frozen=True, eq=False)
+class DepthPressure(Action):
+    """A pressure that grows with depth around all that displaces a liquid, and follows it.
+
+    Attributes
+    ----------
+    triangles
+        Walls of closed cavities, pointing out of the material, (t, 3).
+    tets, parts
+        Further tets that displace the liquid, (k, 4), and the part of each that does, (k,).
+    slope
+        Pressure over depth in Pa/m.
+    level
+        Height along z where there is none, m.
+    """
+
+    triangles: Triangles = field(repr=False)
+    tets: NDArray[np.int32] = field(repr=False)
+    parts: Floats = field(repr=False)
+    slope: float
+    level: float
+
+    def give_to(self, receiver: LoadReceiver) -> None:
+        """Hand this to its receiver."""
+        receiver.depth_pressure(self)
+
+    def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
+        """Return the point where a line upward through the middle enters the bounds."""
+        return _into_bounds(rest, np.array([0.0, 0.0, 1.0]))
+
+    def forces(self, positions: Floats) -> Floats:
+        """Compute the forces on all vertices, (n, 3), N: minus the slopes of ∫ p dV.
+
+        With the mean pressure over a tet that is the volume times the pressure at its center;
+        walls count by the tets between them and a point of the surface.
+        """
+        found = np.zeros_like(positions)
+        at = positions - np.array([0.0, 0.0, self.level])
+        walls = np.column_stack((self.triangles, np.full(len(self.triangles), -1)))
+        for corners, parts in ((self.tets, self.parts), (walls, np.full(len(walls), 1.0))):
+            a, b, c = at[corners[:, :3]].transpose(1, 0, 2)
+            closed = corners[:, 3] < 0
+            d = np.where(closed[:, None], 0.0, at[corners[:, 3]])
+            slopes = np.stack(
+                (
+                    np.cross(d - b, c - b),
+                    np.cross(c - a, d - a),
+                    np.cross(d - a, b - a),
+                    np.cross(b - a, c - a),
+                ),
+                axis=1,
+            )
+            volumes = np.einsum("ij,ij->i", slopes[:, 3], d - a)
+            heights = (a + b + c + d)[:, 2] / 4.0
+            each = slopes * heights[:, None, None]
+            each[:, :, 2] += volumes[:, None] / 4.0
+            each *= (self.slope / 6.0 * parts)[:, None, None]
+            for corner in range(4):
+                kept = corners[:, corner] >= 0
+                np.add.at(found, corners[kept, corner], each[kept, corner])
+        return found
 
 
 def _into_bounds(rest: Floats, direction: Floats) -> tuple[Floats, Floats]:

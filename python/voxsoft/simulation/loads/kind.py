@@ -14,7 +14,7 @@ from voxsoft.design.chamber import CavityChoice
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.loads.actions import Action, Vertices
 
-Quantity = Literal["acceleration", "force", "pressure", "magnetic field"]
+Quantity = Literal["acceleration", "force", "pressure", "magnetic field", "density"]
 Triple = tuple[float, float, float]
 L = TypeVar("L")
 

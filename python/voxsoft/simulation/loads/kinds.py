@@ -8,20 +8,23 @@ from typing import Any, Final
 
 import numpy as np
 
-from voxsoft.design import Force, Gravity, MagneticField, Pressure, Traction
+from voxsoft.design import Force, Gravity, Immersion, MagneticField, Pressure, Traction
 from voxsoft.design.chamber import chosen_cavities
 from voxsoft.errors import DesignError
 from voxsoft.simulation.loads.actions import (
     Acceleration,
     Action,
+    DepthPressure,
     FieldForces,
     SharedForce,
     SurfacePressure,
     SurfaceTraction,
     Triangles,
 )
+from voxsoft.simulation.loads.immersion import filled_parts, other_tets
 from voxsoft.simulation.loads.kind import LoadedBody, LoadKind, LoadReading
 from voxsoft.simulation.loads.magnets import magnet_forces
+from voxsoft.units import format_quantity
 
 
 class GravityKind(LoadKind[Gravity]):
@@ -123,6 +126,41 @@ class MagneticFieldKind(LoadKind[MagneticField]):
         return [FieldForces(vertices, forces, field=field)]
 
 
+class ImmersionKind(LoadKind[Immersion]):
+    """Immersion in a liquid: a pressure that grows with depth, on all that displaces it."""
+
+    def read(self, load: Immersion) -> LoadReading:
+        """Describe the load."""
+        return LoadReading(
+            load.kind, "immersion", "density", (load.value,), (0.0, 0.0, 1.0), load.history
+        )
+
+    def actions(self, load: Immersion, body: LoadedBody, where: str) -> list[DepthPressure]:
+        """Return the actions of the load."""
+        mesh = body.mesh
+        height = float(mesh.vertices[:, 2].max()) - load.level
+        if height > 1e-9 * float(np.ptp(mesh.vertices[:, 2])):
+            shown = format_quantity(float(f"{height:.3g}"), "length")
+            what = f"is {shown} below the highest voxels, and only bodies wholly in it are known"
+            raise DesignError(f"{where}.level", what, "raise the level, or move the body down")
+        # Half of it on each of the two splits of a voxel: its faces are bilinear, and the mean of
+        # both loads the corners of a face alike.
+        slope, filled = load.value * load.gravity / 2.0, filled_parts(mesh)
+        return [
+            DepthPressure(
+                np.concatenate([_NO_TRIANGLE, *(each.splits[-which][0] for each in mesh.cavities)]),
+                np.concatenate([tets, *(cavity.void_tets for cavity in mesh.cavities)]),
+                np.concatenate([filled, *(cavity.void_parts for cavity in mesh.cavities)]),
+                slope,
+                load.level,
+            )
+            for which, tets in enumerate((mesh.tets, other_tets(body.design, mesh)))
+        ]
+
+
+_NO_TRIANGLE: Final[Triangles] = np.zeros((0, 3), dtype=np.int32)
+
+
 #: Kind of load of each model.
 KINDS: Final[Mapping[type[object], LoadKind[Any]]] = MappingProxyType(
     {
@@ -131,5 +169,6 @@ KINDS: Final[Mapping[type[object], LoadKind[Any]]] = MappingProxyType(
         Force: ForceKind(),
         Traction: TractionKind(),
         MagneticField: MagneticFieldKind(),
+        Immersion: ImmersionKind(),
     }
 )

@@ -28,6 +28,7 @@ from voxsoft.simulation.checks.thickness import doubtful_thickness
 from voxsoft.simulation.checks.thin_seals import thin_seals
 from voxsoft.simulation.checks.vanished import vanished_shapes
 from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.simulation.loads.immersion import surfaced
 from voxsoft.simulation.results.fields import fields_of
 from voxsoft.simulation.setup.chambers import ambiguous_indices
 from voxsoft.simulation.setup.dielectrics import broken_down
@@ -61,6 +62,7 @@ CHECKS: Final[tuple[Check, ...]] = (
     crossed_surfaces,
     separations,
     broken_down,
+    surfaced,
 )
 FIELD_CHECKS: Final[tuple[FieldCheck, ...]] = (collapsed_voxels, beyond_tests)
 

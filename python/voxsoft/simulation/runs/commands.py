@@ -59,6 +59,7 @@ _SI: Final = MappingProxyType(
         "force": "N",
         "pressure": "Pa",
         "magnetic field": "T",
+        "density": "kg/m^3",
         "length": "m",
         "angle": "rad",
         "volume": "m^3",

@@ -34,6 +34,7 @@ from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
+from voxsoft.simulation.loads.actions import DepthPressure
 from voxsoft.simulation.setup.chambers import check_chambers, with_chamber_names
 from voxsoft.simulation.setup.contact import (
     CoreHistory,
@@ -585,3 +586,14 @@ class _CoreLoads(LoadReceiver):
 
     def forces(self, vertices: NDArray[np.uint32], forces: NDArray[np.float64]) -> None:
         self._parts.forces(vertices, forces, self._history)
+
+    def depth_pressure(self, volume: DepthPressure) -> None:
+        assert isinstance(self._parts, _core.ProblemParts)  # planes of symmetry refuse it
+        # The liquid presses from outside: a pressure within that falls with depth does the same.
+        self._parts.hydrostatic(
+            volume.triangles.astype(np.uint32),
+            [0.0, 0.0, volume.slope],
+            [0.0, 0.0, volume.level],
+            self._history,
+            (volume.tets.astype(np.uint32), volume.parts),
+        )

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from voxsoft import files
 from voxsoft.design import Design
-from voxsoft.errors import FileError
+from voxsoft.errors import ErrorDetail, FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.exports import write_source
+from voxsoft.files.scenes.scene import Scene, SceneState
 from voxsoft.formats.registry import WRITTEN, Format
 from voxsoft.simulation import Result, named_regions
 from voxsoft.simulation.results.result import Status
@@ -88,6 +89,13 @@ class Shown:
         """Return the plots as the text of a CSV file."""
         return _table(self)
 
+    def scene(self) -> Scene:
+        """Return the design under the live loads, unloaded at time 0 and as it stands after 1 s."""
+        setup = self.body.under(self.factors)
+        poses = poses_in(self.moment, self.design)
+        now = SceneState(1.0, self.positions, poses)
+        return Scene(setup, (SceneState(0.0, setup.mesh.vertices), now))
+
     def measured(self) -> Result:
         """The state as a result: the solver's where one found it, else measured as it stands.
 
@@ -104,7 +112,15 @@ class Shown:
         )
 
 
-def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Path) -> Path:
+@dataclass(frozen=True)
+class Written:
+    """A written file, and entries of the design that it does not hold."""
+
+    file: Path
+    lost: tuple[ErrorDetail, ...] = ()
+
+
+def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Path) -> Written:
     """Write the shown state to files.
 
     Parameters
@@ -122,7 +138,7 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
 
     Returns
     -------
-    Path
+    Written
         The file.
 
     Raises
@@ -131,13 +147,14 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         An unknown format, or one that needs a result where there is none.
     """
     target = folder / f"{shown.name}.{format}"
+    lost: tuple[ErrorDetail, ...] = ()
     form = WRITTEN.get(f".{format}")
     if form is not None and form.kind == "design" and not options.get("resolved", False):
         write_atomically(target, shown.text)
     elif form is not None and form.has_shape:
         _write_mesh(shown, target, form, options)
     elif form is not None:
-        write_source(target, shown)
+        lost = write_source(target, shown)
     elif format == "run":
         target = target.with_suffix(".zip")
         _write_run(shown, target)
@@ -155,10 +172,10 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         page.save(target)
     else:
         raise FileError("format", f'"{format}" is not known', f"use {', '.join(FORMATS)}")
-    return target
+    return Written(target, lost)
 
 
-def export_run(source: Path, format: str, options: dict[str, Any], folder: Path) -> Path:
+def export_run(source: Path, format: str, options: dict[str, Any], folder: Path) -> Written:
     """Write a run folder in a format: the folder itself as an archive, or its contents.
 
     Raises
@@ -168,14 +185,14 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
     """
     target = folder / f"{source.name}.{format}"
     if format == "run":
-        return _archive(source, target.with_suffix(".zip"))
+        return Written(_archive(source, target.with_suffix(".zip")))
     if format == "html":
         export_page(source, target)
-        return target
+        return Written(target)
     form = WRITTEN.get(f".{format}")
     unit = str(options.get("unit", "mm")) if form is not None and form.unit is None else None
-    files.export(source, target, deformed=bool(options.get("deformed", False)), unit=unit)
-    return target
+    deformed = bool(options.get("deformed", False))
+    return Written(target, files.export(source, target, deformed=deformed, unit=unit))
 
 
 def _write_mesh(shown: Shown, target: Path, form: Format, options: dict[str, Any]) -> None:

@@ -694,7 +694,10 @@ class Session:
             written = export_run(self.list.folder_of(run), format, options, folder)
         else:
             written = export_shown(self._shown(), format, options, folder)
-        return self.offer(written, format)
+        for lost in written.lost:
+            text = f"{written.file.name}: {lost}"
+            self.tabs.publish(events.Log(level="warning", text=text))
+        return self.offer(written.file, format)
 
     def _shown(self) -> Shown:
         """The state on the screen now."""

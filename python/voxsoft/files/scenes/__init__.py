@@ -1,0 +1,1 @@
+"""Scenes of other programs: body, objects and drives of a design in one file, MJCF or USD."""
