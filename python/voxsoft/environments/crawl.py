@@ -21,7 +21,7 @@ _PROBES = ("rear", "middle", "front")
 class Crawl(Task):
     """Go forward along x: a reward of 1 for each mm by which the body as a whole moves on."""
 
-    def told(self, seen: Observation) -> Mapping[str, float]:
+    def shown(self, seen: Observation) -> Mapping[str, float]:
         """Return by how much the body is shorter and its middle higher than at rest, in mm."""
         rear, middle, front = (1e3 * seen.probes[name] for name in _PROBES)
         return {
@@ -44,7 +44,7 @@ def _place(seen: Observation) -> float:
 
 
 def crawl(**options: Any) -> SoftRobotEnv:  # noqa: ANN401 - those of the environment
-    """Make the environment ``VoxSoft/Crawl-v0``: options are those of :class:`SoftRobotEnv`."""
+    """Make the environment ``VoxSoft/Crawl-v0``, with options of :class:`SoftRobotEnv`."""
     sensors = [f"probes.{name}.velocity" for name in _PROBES]
     given: dict[str, Any] = {
         "drives": [Drive(command=name, low=0.0, rate=2.0) for name in ("rear", "front")],

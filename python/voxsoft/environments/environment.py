@@ -50,7 +50,7 @@ class SoftRobotEnv(gymnasium.Env[Floats32, Floats32]):
         ``{"pressure": (0, "20 kPa")}``. Default: all but gravity, between the state in which
         nothing is driven and the value of the design.
     sensors
-        Quantities that the agent sees, as those of a :class:`~voxsoft.Simulator`: names
+        Quantities that the agent sees, as a :class:`~voxsoft.Simulator` takes them: names
         (``"probes.tip"``), or :class:`~voxsoft.Sensor` with noise, drift and delay.
     period
         Time between two actions; default 0.1 s.
@@ -61,7 +61,7 @@ class SoftRobotEnv(gymnasium.Env[Floats32, Floats32]):
     settle
         Time for which the body settles under its weight before an episode; default 0.
     randomize
-        What is drawn anew for each episode: a :class:`Randomization`. Default: nothing.
+        Draws of materials and parameters for each episode, a :class:`Randomization`. Default: none.
     damping
         Damping of the simulator; default ``"10 1/s"``. That of the simulator itself,
         ``"critical"``, slows down a body that moves as a whole.
@@ -92,8 +92,8 @@ class SoftRobotEnv(gymnasium.Env[Floats32, Floats32]):
 
     An observation has the sensors, in the units in which designs are written (mm, kPa, N, m/s: the
     first of each kind in :data:`voxsoft.units.KINDS`); then each drive where it is now, from -1 to
-    1; then what the task tells. Both are float32. A quantity that is not there, as the place of a
-    contact that does not touch, is 0.
+    1; then the numbers that the task shows. Both are float32. A quantity that is not there, as the
+    place of a contact that does not touch, is 0.
 
     An episode is *terminated* by its task alone. It is *truncated* after its time, and where the
     simulation cannot go on: the body has diverged or is inside out, which ``info["status"]`` says;
@@ -157,13 +157,13 @@ class SoftRobotEnv(gymnasium.Env[Floats32, Floats32]):
         self._stage = self._room() if stage is None else stage
         self._steps, self._over = 0, True
         self._drawn: dict[str, float] = {}
-        # Names of what the task tells are known once it has started.
+        # A task shows its numbers once it has started.
         self.task.start(self.simulator.state, np.random.default_rng(0), {})
-        told = self.task.told(self.simulator.state)
+        shown = self.task.shown(self.simulator.state)
         self.seen = (
             *((name, unit) for name, (unit, _) in self._units),
             *((each.name, "1") for each in self.channels),
-            *((name, "1") for name in told),
+            *((name, "1") for name in shown),
         )
         self.action_space = Box(-1.0, 1.0, (len(self.channels),), np.float32)
         self.observation_space = Box(-np.inf, np.inf, (len(self.seen),), np.float32)
@@ -315,8 +315,8 @@ class SoftRobotEnv(gymnasium.Env[Floats32, Floats32]):
         sensed = np.nan_to_num(np.concatenate(parts)) if parts else np.zeros(0)
         sizes = np.array([size for _, (_, size) in self._units])
         drives = [each.share(_value(state, each)) for each in self.channels]
-        told = list(self.task.told(state).values())
-        return np.concatenate([sensed / sizes, drives, told]).astype(np.float32)
+        shown = list(self.task.shown(state).values())
+        return np.concatenate([sensed / sizes, drives, shown]).astype(np.float32)
 
     def _info(self) -> dict[str, Any]:
         state = self.simulator.state
@@ -326,7 +326,7 @@ class SoftRobotEnv(gymnasium.Env[Floats32, Floats32]):
 
 
 def _refuse_a_fork() -> None:
-    """Refuse what would wait for ever: a fork has none of the threads of the core's pool.
+    """Refuse a process that would wait forever: a fork has no thread of the core's pool.
 
     Raises
     ------

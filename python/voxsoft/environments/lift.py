@@ -43,7 +43,7 @@ class Lift(Task):
 
 
 def lift(**options: Any) -> SoftRobotEnv:  # noqa: ANN401 - those of the environment
-    """Make the environment ``VoxSoft/Lift-v0``: options are those of :class:`SoftRobotEnv`."""
+    """Make the environment ``VoxSoft/Lift-v0``, with options of :class:`SoftRobotEnv`."""
     given: dict[str, Any] = {
         "drives": [
             Drive(command="fingers", low=0.0, rate=1.0),

@@ -27,7 +27,7 @@ class Peg(Task):
     The peg lies up to 2 mm aside, drawn for each episode as a parameter of the design.
     """
 
-    def told(self, seen: Observation) -> Mapping[str, float]:
+    def shown(self, seen: Observation) -> Mapping[str, float]:
         """Return the way of the peg to its place in mm, and its turn in rad."""
         x, y, _ = seen.objects["peg"].position
         (cosine, *_), (sine, *_), _ = seen.objects["peg"].rotation
@@ -56,7 +56,7 @@ def _distance(seen: Observation) -> float:
 
 
 def peg(**options: Any) -> SoftRobotEnv:  # noqa: ANN401 - those of the environment
-    """Make the environment ``VoxSoft/Peg-v0``: options are those of :class:`SoftRobotEnv`."""
+    """Make the environment ``VoxSoft/Peg-v0``, with options of :class:`SoftRobotEnv`."""
     given: dict[str, Any] = {
         "drives": [
             Drive(command="wrist", axis="x", low=0.0, high="45 mm", rate="15 mm"),

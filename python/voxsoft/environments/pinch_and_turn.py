@@ -43,7 +43,7 @@ class PinchAndTurn(Task):
                 what = f"{self.angle} is no angle"
                 raise SimulationError("options.angle", what, "give one in rad")
 
-    def told(self, seen: Observation) -> Mapping[str, float]:
+    def shown(self, seen: Observation) -> Mapping[str, float]:
         """Return the angle of the bar and the rest of its turn, rad."""
         return {"turn": _turn(seen), "rest": self.angle - _turn(seen)}
 

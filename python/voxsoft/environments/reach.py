@@ -50,7 +50,7 @@ class Reach(Task):
                 what = f"{options['goal']!r} is no displacement"
                 raise SimulationError("options.goal", what, "give x, y and z in m")
 
-    def told(self, seen: Observation) -> Mapping[str, float]:
+    def shown(self, seen: Observation) -> Mapping[str, float]:
         """Return the way from the tip to the goal, mm."""
         x, y, z = (1e3 * (self.goal - seen.probes["tip"])).tolist()
         return {"goal.x": x, "goal.y": y, "goal.z": z}
@@ -69,7 +69,7 @@ class Reach(Task):
 
 
 def reach(**options: Any) -> SoftRobotEnv:  # noqa: ANN401 - those of the environment
-    """Make the environment ``VoxSoft/Reach-v0``: options are those of :class:`SoftRobotEnv`."""
+    """Make the environment ``VoxSoft/Reach-v0``, with options of :class:`SoftRobotEnv`."""
     tendons = ("right", "left", "back", "ahead")
     given: dict[str, Any] = {
         "drives": [Drive(command=each, low=0.0, high="8 mm", rate="20 mm") for each in tendons],

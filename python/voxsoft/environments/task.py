@@ -37,11 +37,11 @@ class Task(ABC):
         generator
             Source of all random numbers of the task, seeded by ``reset(seed=...)``.
         options
-            Those of ``reset(options=...)``.
+            Options of ``reset(options=...)``.
         """
 
-    def told(self, seen: Observation) -> Mapping[str, float]:
-        """Return what an agent is told beside the sensors, by name: the goal, for example.
+    def shown(self, seen: Observation) -> Mapping[str, float]:
+        """Return numbers that an agent sees beside the sensors, by name: the goal, for example.
 
         The names and their number are those of the first episode, always.
         """

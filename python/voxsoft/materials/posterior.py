@@ -95,7 +95,7 @@ class Posterior:
         material
             A rubber or a lattice.
         share
-            By how much of its value each modulus is uncertain (95 %): 0.3 for a third more and as
+            Share of its value by which each modulus is uncertain (95 %): 0.3 for 30 % more and as
             many times less.
 
         Raises

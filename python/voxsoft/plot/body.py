@@ -176,7 +176,7 @@ def body_image(
         Quantity shown in color, as in :func:`plot_body`.
     room
         Lowest and highest corner of the room that the picture shows, (2, 3), m, so that pictures of
-        a motion fit each other; default: what the body needs.
+        a motion fit each other; default: as much as the body needs.
 
     Returns
     -------
@@ -197,7 +197,8 @@ def body_image(
     colors = _colors(body, mesh, surface, field, "")
     seen = rasterize(camera.project(positions), surface.triangles, camera.width, camera.height)
     picture = _paint(seen, positions, surface, colors, camera, None)
-    picture = around.drawn_over(picture, seen, camera, positions)
+    # The floor of a room stays where the body goes.
+    picture = around.drawn_over(picture, seen, camera, positions if room is None else shown)
     return np.rint(255.0 * np.clip(_averaged(picture), 0.0, 1.0)).astype(np.uint8)
 
 

@@ -1,5 +1,8 @@
 """Environments of Gymnasium: spaces, seeds, ends, drives, pictures."""
 
+import subprocess
+import sys
+
 import gymnasium
 import numpy as np
 import pytest
@@ -20,7 +23,7 @@ CUP = families.cylinder(radius="20 mm", height="30 mm")
 
 
 class Rise(Task):
-    """Lift the top; told its height, and done above a height."""
+    """Lift the top; shown its height, and done above a height."""
 
     def __init__(self, done=np.inf):
         self.done, self.started = done, []
@@ -28,7 +31,7 @@ class Rise(Task):
     def start(self, seen, generator, options):
         self.started.append((float(generator.uniform()), dict(options)))
 
-    def told(self, seen):
+    def shown(self, seen):
         return {"height": 1e3 * float(seen.probes["top"][2])}
 
     def reward(self, before, after):
@@ -84,7 +87,7 @@ def test_a_seed_decides_all_bits(name):
     assert (once == other) == (name in ("Lift", "Crawl"))
 
 
-def test_an_observation_has_sensors_in_their_units_then_drives_then_what_is_told():
+def test_an_observation_has_sensors_then_drives_then_numbers_of_the_task():
     env = rise()
     assert env.seen == (
         ("probes.top.x", "mm"),
@@ -150,7 +153,7 @@ def test_an_episode_is_terminated_by_its_task():
 
 
 @pytest.mark.long
-def test_a_body_that_breaks_truncates_the_episode_without_a_reward():
+def test_a_body_that_breaks_truncates_its_episode_without_a_reward():
     # Ten times the modulus blows the wall up.
     env = rise(done=1e-9, drives={"pressure": (0, "600 kPa")})
     env.reset(seed=0)
@@ -221,13 +224,13 @@ def test_a_picture_shows_one_room_for_all_of_an_episode():
         ({"render_mode": "human"}, "render_mode"),
     ],
 )
-def test_a_setting_that_cannot_be_is_an_error_of_the_design(options, where):
+def test_an_impossible_setting_is_an_error_of_the_design(options, where):
     with pytest.raises(DesignError, match=where):
         rise(**options)
 
 
 @pytest.mark.parametrize("action", [np.zeros(2), np.array([np.nan]), np.array(0.0)])
-def test_what_is_no_action_moves_nothing(action):
+def test_an_invalid_action_moves_nothing(action):
     env = rise()
     env.reset(seed=0)
     with pytest.raises(SimulationError, match="is no action"):
@@ -238,3 +241,27 @@ def test_what_is_no_action_moves_nothing(action):
 def test_a_step_without_an_episode_is_an_error():
     with pytest.raises(SimulationError, match="no episode"):
         rise().step(np.array([0.0], np.float32))
+
+
+@pytest.mark.long
+def test_the_import_without_gymnasium_says_how_to_get_it():
+    code = """
+import sys
+sys.modules["gymnasium"] = None
+import voxsoft as vs
+vs.Simulator
+try:
+    import voxsoft.environments
+except vs.errors.MissingPackageError as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "pip install 'voxsoft[environments]'" in done.stdout
+
+
+@pytest.mark.long
+def test_the_import_in_the_name_is_enough():
+    name = "voxsoft.environments:VoxSoft/Reach-v0"
+    code = f"import gymnasium; print(gymnasium.make({name!r}).spec.id)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "VoxSoft/Reach-v0"

@@ -74,6 +74,6 @@ def test_each_episode_has_a_draw_that_the_seed_repeats():
         ({}, "finds no card with a posterior"),
     ],
 )
-def test_what_cannot_be_drawn_is_an_error_of_the_design(options, what):
+def test_a_draw_of_nothing_is_an_error_of_the_design(options, what):
     with pytest.raises(DesignError, match=what):
         draw(robot("crawl"), **options)

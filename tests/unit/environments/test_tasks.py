@@ -75,7 +75,7 @@ def test_a_tip_reaches_its_goal_by_the_tendons_of_that_side():
 
 
 @pytest.mark.long
-def test_a_body_goes_forward_as_its_halves_bend_in_turn_and_back_the_other_way_around():
+def test_a_body_crawls_forward_or_back_by_the_order_of_its_halves():
     def gait(lag):
         def policy(env, _):
             turn = 2.0 * np.pi * (env.simulator.state.time / 2.0 + np.array([0.0, lag]))

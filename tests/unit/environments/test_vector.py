@@ -114,6 +114,6 @@ def test_infos_hold_an_entry_for_each():
         (lambda: ThreadVectorEnv([reach]).step(ACTIONS[0]), "have 2 rows, for 1"),
     ],
 )
-def test_what_cannot_be_is_an_error(call, what):
+def test_impossible_vectors_are_errors(call, what):
     with pytest.raises(SimulationError, match=what):
         call()
