@@ -5,7 +5,7 @@
 - ``python research/crawl_policy.py sine`` tries gaits of two sines: periods, phases and strokes;
 - ``python research/crawl_policy.py train one`` trains soft actor-critic for three seeds, one after
   the other, on one thread, and keeps returns and the policies in `research/crawl_policy`; ``train
-  many`` does with friction from 0.3 to 0.8 and another stiffness in each episode;
+  many 0`` does so for one seed, with another friction and another stiffness in each episode;
 - ``python research/crawl_policy.py fine`` repeats the best sine and the policies with four steps of
   25 ms in each period, in place of one of 100 ms, and with other friction: a gait that lives on
   large steps would not survive;
@@ -40,6 +40,8 @@ KEPT = ROOT / "research" / "crawl_policy"
 SEEDS = (0, 1, 2)
 #: Steps of training of each seed, and between two episodes without exploration.
 STEPS, BETWEEN = 9_000, 900
+#: Seeds of actions that are shaken.
+SHAKEN = (1, 2, 3, 4)
 #: Text of an array with all of its numbers.
 _ALL = {"threshold": 10**9, "separator": ",", "max_line_width": 10**9, "floatmode": "unique"}
 
@@ -57,12 +59,17 @@ def environment(**options):
     return gymnasium.make("VoxSoft/Crawl-v0", **options)
 
 
-def episode(env, policy: Policy, seed: int = 0) -> float:
-    """Return of one episode under a policy of observation and step."""
-    seen, _ = env.reset(seed=seed)
+def episode(env, policy: Policy, shaken: int | None = None) -> float:
+    """Return of one episode under a policy of observation and step.
+
+    Actions may be shaken by a millionth, by numbers of a seed.
+    """
+    seen, _ = env.reset(seed=0)
+    shakes = np.random.default_rng(shaken).standard_normal((1000, 2)) * 1e-6
     total, step, over = 0.0, 0, False
     while not over:
-        seen, reward, terminated, truncated, _ = env.step(policy(seen, step))
+        action = policy(seen, step) + (0.0 if shaken is None else shakes[step])
+        seen, reward, terminated, truncated, _ = env.step(action)
         total, step, over = total + reward, step + 1, terminated or truncated
     return total
 
@@ -94,8 +101,8 @@ def scan() -> None:
             file.flush()
 
 
-def train(way: str) -> None:
-    """Train all seeds; keep the returns of episodes and the policies."""
+def train(way: str, *seeds: str) -> None:
+    """Train seeds, or all; keep the returns of episodes and the policies."""
     import torch
     from stable_baselines3 import SAC
     from stable_baselines3.common.callbacks import BaseCallback
@@ -127,7 +134,7 @@ def train(way: str) -> None:
     with (KEPT / f"returns_{way}.csv").open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(["seed", "step", "kind", "return_mm", "processor_seconds"])
-        for seed in SEEDS:
+        for seed in map(int, seeds or SEEDS):
             begun = time.process_time()
             env = VecNormalize(
                 DummyVecEnv([lambda: Monitor(environment(**WAYS[way]))]), norm_reward=False
@@ -195,7 +202,7 @@ def best_gait() -> tuple[Policy, dict[str, float]]:
 
 
 def fine() -> None:
-    """Repeat the best gait and the policies with other steps of time, friction and stiffness."""
+    """Repeat the best gait and the policies: other steps of time, other friction, shaken."""
     ways = {
         "as learned": {},
         "25 ms steps": {"substeps": 4},
@@ -211,9 +218,10 @@ def fine() -> None:
     }
     with (KEPT / "fine.csv").open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(["policy", *ways])
+        rows.writerow(["policy", *ways, *(f"shaken {shaken}" for shaken in SHAKEN)])
         for name, policy in policies.items():
             found = [episode(environment(**options), policy) for options in ways.values()]
+            found += [episode(environment(), policy, shaken) for shaken in SHAKEN]
             rows.writerow([name, *(round(each, 2) for each in found)])
             file.flush()
 
