@@ -1,9 +1,15 @@
-"""Steps per second of simulators under random commands, on one core.
+"""Steps per second of simulators and environments under random commands.
 
 ``python benchmarks/environments.py [--json]``. Processor time of `vs.Simulator.step` at a control
 period of 20 ms, by the median of the steps, each drive walking at random between rest and its value
 in the design. A figure counts once a restored state goes on to the same bits. The ratio is that to
 the target: 60 steps per second of a finger, 20 of the crawler.
+
+Then the registered environments, each step 0.1 s, by processor time: all actions drawn evenly, from
+-1 to 1, over the whole of 40 steps, whose dearest are many times dearer than the median. At last
+eight crawlers by the wall clock, in one process, on two threads of one, and four in each of two
+processes, the least of three runs of 15 steps; the ratio is that to the first. Anything else on the
+machine spoils these three.
 """
 
 from __future__ import annotations
@@ -13,18 +19,25 @@ import os
 # One core, so that processor time is what a user waits; read when the core starts its threads.
 os.environ["RAYON_NUM_THREADS"] = "1"
 
+import multiprocessing
 import statistics
 import time
 from pathlib import Path
 
+import gymnasium
 import numpy as np
+from gymnasium.vector import SyncVectorEnv
 from measure import Report
 
 import voxsoft as vs
+from voxsoft.environments import ThreadVectorEnv
+from voxsoft.environments.crawl import crawl
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 #: Steps before the first one that counts, and those that do.
 WARM, STEPS = 5, 40
+#: Steps of several environments at a time, and runs of them.
+TOGETHER, RUNS = 15, 3
 #: Largest change of a command in a step, of the way to its value in the design.
 STRIDE = 0.05
 
@@ -85,9 +98,48 @@ def rate(design: vs.Design) -> tuple[float, int]:
     return 1.0 / statistics.median(times[WARM:]), len(seen.result.mesh.tets) // 5
 
 
+def environment_rate(name: str) -> float:
+    """Steps per second of a registered environment, all steps together."""
+    env = gymnasium.make(f"VoxSoft/{name}-v0")
+    env.action_space.seed(0)
+    env.reset(seed=0)
+    seconds = 0.0
+    for _ in range(STEPS):
+        action = env.action_space.sample()
+        begun = time.process_time()
+        *_, terminated, truncated, info = env.step(action)
+        seconds += time.process_time() - begun
+        if info["status"] == "diverged":
+            raise SystemExit(f"wrong answer: {name} has diverged")
+        if terminated or truncated:
+            env.reset()
+    return STEPS / seconds
+
+
+def crawled(seeds: list[int], threads: int | None) -> float:
+    """Seconds of the steps of crawlers by the wall clock, in turn or on threads."""
+    os.environ["RAYON_NUM_THREADS"] = str(threads or 1)  # the core has no threads here yet
+    makers = [crawl] * len(seeds)
+    envs = SyncVectorEnv(makers) if threads is None else ThreadVectorEnv(makers, threads=threads)
+    envs.reset(seed=seeds)
+    actions = [np.random.default_rng(seed).uniform(-1, 1, (TOGETHER, 2)) for seed in seeds]
+    begun = time.perf_counter()
+    for step in range(TOGETHER):
+        envs.step(np.array([each[step] for each in actions], dtype=np.float32))
+    seconds = time.perf_counter() - begun
+    envs.close()
+    return seconds
+
+
+def vector_seconds(*ways: tuple[list[int], int | None]) -> float:
+    """Seconds of processes side by side: of the slower one, in the best run."""
+    with multiprocessing.get_context("spawn").Pool(len(ways)) as pool:
+        return min(max(pool.starmap(crawled, ways, chunksize=1)) for _ in range(RUNS))
+
+
 def main() -> None:
     """Measure all robots."""
-    report = Report("Steps per second of a simulator at 20 ms, one core")
+    report = Report("Steps per second of simulators at 20 ms and environments at 100 ms")
     robots = {
         "finger": (finger(touching=False), 60.0),
         "finger with a post": (finger(touching=True), 60.0),
@@ -97,6 +149,18 @@ def main() -> None:
     for name, (design, target) in robots.items():
         found, voxels = rate(design)
         report.add(f"{name}, {voxels:,} voxels", found, "1/s", found / target)
+    for name in ("Reach", "Lift", "Crawl", "Peg", "PinchAndTurn"):
+        report.add(f"VoxSoft/{name}-v0", environment_rate(name), "1/s")
+    seeds = list(range(8))
+    alone = vector_seconds((seeds, None))
+    vectors = {
+        "in turn": alone,
+        "on two threads": vector_seconds((seeds, 2)),
+        "in two processes": vector_seconds((seeds[:4], None), (seeds[4:], None)),
+    }
+    for name, seconds in vectors.items():
+        rate_of_all = len(seeds) * TOGETHER / seconds
+        report.add(f"eight crawlers {name}", rate_of_all, "1/s", alone / seconds)
     report.show()
 
 

@@ -7,13 +7,8 @@ from pathlib import Path
 
 import pytest
 
-PACKAGES = [
-    "voxsoft",
-    *(
-        f"voxsoft.{each}"
-        for each in ("comparison", "control", "files", "jobs", "plot", "simulation", "study")
-    ),
-]
+NAMES = ("comparison", "control", "environments", "files", "jobs", "plot", "simulation", "study")
+PACKAGES = ["voxsoft", *(f"voxsoft.{each}" for each in NAMES)]
 
 
 @pytest.mark.parametrize("name", PACKAGES)

@@ -73,7 +73,7 @@ FOREIGN = re.compile(
 )
 #: Files that others wrote, or that hold words on purpose.
 OTHERS = re.compile(
-    r"LICENSE|package-lock\.json|Cargo\.lock|\.(?:png|webp|zip|csv|svg|vtu|stl|scene|wasm)$"
+    r"LICENSE|package-lock\.json|Cargo\.lock|\.(?:png|gif|webp|zip|csv|svg|vtu|stl|scene|wasm)$"
     rf"|{THIS}|docs/reference/words\.md|examples/data/|tests/data/files/[^/]*\.(?!py$|toml$)"
 )
 

@@ -29,6 +29,7 @@ from voxsoft.materials.mooney_rivlin import MooneyRivlin
 from voxsoft.materials.mullins import Mullins
 from voxsoft.materials.neo_hookean import NeoHookean
 from voxsoft.materials.ogden import Ogden
+from voxsoft.materials.posterior import Posterior
 from voxsoft.materials.relaxing import relaxing_stress
 from voxsoft.materials.rigid import Rigid
 from voxsoft.materials.softening import cycled_stress
@@ -53,6 +54,7 @@ __all__ = [
     "Mullins",
     "NeoHookean",
     "Ogden",
+    "Posterior",
     "PronyTerm",
     "Rigid",
     "StableRange",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -154,7 +155,12 @@ def plot_body(
 
 
 def body_image(
-    body: Result | Design | Mesh, *, pixels: int = 320, view: tuple[float, float] = (-60.0, 25.0)
+    body: Result | Design | Mesh,
+    *,
+    pixels: int = 320,
+    view: tuple[float, float] = (-60.0, 25.0),
+    field: str | None = None,
+    room: ArrayLike | None = None,
 ) -> NDArray[np.uint8]:
     """Draw a small picture of a body without words, as for a list.
 
@@ -166,6 +172,11 @@ def body_image(
         Size of the longer side in pixels.
     view
         Azimuth and elevation of the eye in degrees.
+    field
+        Quantity shown in color, as in :func:`plot_body`.
+    room
+        Lowest and highest corner of the room that the picture shows, (2, 3), m, so that pictures of
+        a motion fit each other; default: as much as the body needs.
 
     Returns
     -------
@@ -180,13 +191,22 @@ def body_image(
     """
     mesh, positions = _drawn(body)
     around = _around(body)
-    camera = Camera.around(around.near(positions), view, pixels * _FINER)
+    shown = around.near(positions) if room is None else _corners(room)
+    camera = Camera.around(shown, view, pixels * _FINER)
     surface = boundary_of(mesh, np.ones(len(mesh.tets), dtype=bool))
-    colors = _colors(body, mesh, surface, None, "")
+    colors = _colors(body, mesh, surface, field, "")
     seen = rasterize(camera.project(positions), surface.triangles, camera.width, camera.height)
     picture = _paint(seen, positions, surface, colors, camera, None)
-    picture = around.drawn_over(picture, seen, camera, positions)
+    # The floor of a room stays where the body goes.
+    picture = around.drawn_over(picture, seen, camera, positions if room is None else shown)
     return np.rint(255.0 * np.clip(_averaged(picture), 0.0, 1.0)).astype(np.uint8)
+
+
+def _corners(room: ArrayLike) -> Floats:
+    """Return the corners of a box from its lowest and highest one, (8, 3)."""
+    low, high = np.asarray(room, dtype=np.float64)
+    corners: Floats = np.array(list(product(*zip(low, high, strict=True))))
+    return corners
 
 
 def _design_of(body: Result | Design | Mesh) -> Design | None:

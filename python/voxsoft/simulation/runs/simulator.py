@@ -183,7 +183,7 @@ class Simulator:
 
     @property
     def time_step(self) -> float:
-        """Length of each step in s."""
+        """Seconds of each step."""
         return self._settings.time_step
 
     @property
