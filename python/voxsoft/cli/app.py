@@ -16,6 +16,7 @@ from voxsoft.cli.material import material
 from voxsoft.cli.mesh import mesh
 from voxsoft.cli.new import new
 from voxsoft.cli.refine import refine
+from voxsoft.cli.respond import respond
 from voxsoft.cli.run import run
 from voxsoft.cli.studio import studio
 from voxsoft.cli.study import optimize, sweep
@@ -32,7 +33,7 @@ app = typer.Typer(
     pretty_exceptions_show_locals=False,
 )
 _COMMANDS = (
-    *(new, check, mesh, run, refine, workspace, calibrate, sweep, optimize),
+    *(new, check, mesh, run, refine, workspace, respond, calibrate, sweep, optimize),
     *(compare, verify, again, export, studio),
 )
 for command in _COMMANDS:

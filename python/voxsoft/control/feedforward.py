@@ -65,17 +65,32 @@ class StaticInverse:
         part = 1.0
         for _ in range(_MOST):
             value, metric, slope = min(self._known, key=lambda each: abs(each[1] - target))
-            step = (target - metric) / slope
             if abs(metric - target) <= near:
-                return value + step
+                return value + (target - metric) / slope
             try:
-                self._solve(value + part * step)
+                self._solve(self._next(target, part))
                 part = 1.0
             except SimulationError:
                 # A tangent that leads past a limit of the load: half the way.
                 part *= 0.5
         what = f"{self._metric} = {target:g} was not reached by {self._number} in {_MOST} solutions"
         raise SimulationError("feed-forward", what, "give a target within the range at rest")
+
+    def _next(self, target: float, part: float) -> float:
+        """Return the value to solve for next.
+
+        That of the tangent at the nearest equilibrium, or `part` of the way there; between two
+        equilibria on both sides of the target it stays between them.
+        """
+        sides = [[each for each in self._known if (each[1] > target) == above] for above in (0, 1)]
+        ends = [min(side, key=lambda each: abs(each[1] - target)) for side in sides if side]
+        ends.sort(key=lambda each: abs(each[1] - target))
+        guesses = [value + (target - metric) / slope for value, metric, slope in ends]
+        if len(ends) < 2:
+            return ends[0][0] + part * (guesses[0] - ends[0][0])
+        low, high = sorted(each[0] for each in ends)
+        within = [each for each in guesses if low < each < high]
+        return within[0] if within else 0.5 * (low + high)
 
     def _solve(self, value: float) -> None:
         varied = with_number(self._design, self._number, value)

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxsoft.plot.quantities import scale_for
-from voxsoft.plot.style import BLUE, GRAY, RED, empty_figure, plain_axes, plain_legend
+from voxsoft.plot.style import (
+    BLUE,
+    GRAY,
+    RED,
+    empty_figure,
+    plain_axes,
+    plain_legend,
+    plain_log_axis,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -55,6 +63,7 @@ def plot_bode(response: FrequencyResponse) -> Figure:
     degrees = np.degrees(response.phase)
     lower.semilogx(response.frequencies, degrees, color=BLUE, marker="o", markersize=3)
     plain_axes(lower, x="frequency (Hz)", y="phase (°)")
+    plain_log_axis(lower.xaxis)
     return figure
 
 
