@@ -79,8 +79,8 @@ class StaticInverse:
     def _next(self, target: float, part: float) -> float:
         """Return the value to solve for next.
 
-        That of the tangent at the nearest equilibrium, or `part` of the way there; between two
-        equilibria on both sides of the target it stays between them.
+        Follows the tangent at the nearest equilibrium, or `part` of its way; stays between two
+        equilibria on both sides of the target.
         """
         sides = [[each for each in self._known if (each[1] > target) == above] for above in (0, 1)]
         ends = [min(side, key=lambda each: abs(each[1] - target)) for side in sides if side]

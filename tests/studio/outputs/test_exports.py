@@ -10,6 +10,7 @@ import meshio
 import mujoco
 import numpy as np
 import pytest
+from own_loop import run
 from pxr import Usd, UsdGeom
 
 from voxsoft.files import read_mesh
@@ -63,7 +64,7 @@ def test_a_scene_opens_in_mujoco_and_its_losses_are_in_the_log(studio, tmp_path)
             return answer
 
     file = tmp_path / "cylinder.xml"
-    file.write_bytes(asyncio.run(scenario()).content)
+    file.write_bytes(run(scenario()).content)
     model = mujoco.MjModel.from_xml_path(str(file))
     assert model.nflexvert == 660
     assert model.actuator("loads[0]").ctrllimited == 0

@@ -57,7 +57,9 @@ impl Run {
     /// Largest displacement of a vertex from the unloaded body, m.
     fn largest_move(&self) -> f64 {
         let pairs = self.state.positions.iter().zip(self.problem.body().rest());
-        pairs.map(|(x, rest)| norm(sub(*x, *rest))).fold(0.0, f64::max)
+        pairs
+            .map(|(x, rest)| norm(sub(*x, *rest)))
+            .fold(0.0, f64::max)
     }
 
     /// Distance (m) from the end of a step to rest along its way, as the decrease of the net forces by the step

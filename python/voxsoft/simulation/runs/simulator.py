@@ -278,8 +278,7 @@ class Simulator:
             self._live.command(courses)
         report = self._live.advance_to(end)
         self._steps += 1
-        rests = report.status != _core.LiveStatus.MOVING
-        late = driven.late + (end - report.time if rests else 0.0)
+        late = driven.late + (end - report.time) * (report.status != _core.LiveStatus.MOVING)
         values = tuple(
             command.at(report.time) if index in driven.following else value
             for index, (command, value) in enumerate(

@@ -165,8 +165,17 @@ impl InnerSearch for Newton {
     }
 
     /// A load acts with its new value for all of the next step, whose work counts in the balance of energy.
+    /// Supports still carry the inertia of the moving body.
     fn wake(&self, run: &mut Run) {
-        run.now = run.look_at(&run.state);
+        let found = run.look_at(&run.state);
+        let then = std::mem::replace(&mut run.now, found);
+        if then.reactions.len() == run.now.external.len() {
+            let loads = run.now.external.iter().zip(&then.external);
+            let each = then.reactions.iter().zip(loads);
+            run.now.reactions = each
+                .map(|(r, (new, old))| sub(*r, sub(*new, *old)))
+                .collect();
+        }
     }
 
     fn solve(
