@@ -1,0 +1,110 @@
+"""All examples in a simulator for a hundred steps of random commands.
+
+``python evidence/simulator_examples.py [--json] [--steps 100] [--only NAME]``. Every drive walks at
+random between rest and its value in the design. The state after half of the steps is saved, and the
+second half is repeated from it, by this process and by one with another number of threads: each
+row is the mean time of a step, and 1 where all positions have the same bits in the end, 0
+otherwise. The walk ends where a body diverges, which is told.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from measure import Report
+
+import voxsoft as vs
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+#: Largest change of a command in a step, of the way to its value in the design.
+STRIDE = 0.05
+
+
+def walk(simulator: vs.Simulator, steps: int) -> list[dict[str, Any]]:
+    """Return random commands for some steps."""
+    generator, found = np.random.default_rng(0), list[dict[str, Any]]()
+    shares = dict.fromkeys(simulator.commands, 0.0)
+    for _ in range(steps):
+        commands: dict[str, Any] = {}
+        for name, command in simulator.commands.items():
+            if command.kind == "acceleration":
+                continue
+            walked = shares[name] + generator.uniform(-STRIDE / 2, STRIDE)
+            shares[name] = float(np.clip(walked, 0.0, 1.0))
+            first, last = np.asarray(command.first), np.asarray(command.design)
+            value = first + shares[name] * (last - first)
+            commands[name] = tuple(value.tolist()) if command.shape else float(value)
+        found.append(commands)
+    return found
+
+
+def bits(seen: Any) -> str:
+    """Return the digest of a state."""
+    return hashlib.sha256(seen.positions.tobytes() + seen.velocities.tobytes()).hexdigest()
+
+
+def run(name: str, steps: int) -> dict[str, Any]:
+    """Walk, go back to the middle, and walk on again."""
+    simulator = vs.Simulator(vs.load(EXAMPLES / f"{name}.toml"))
+    given, begun, taken = walk(simulator, steps), time.perf_counter(), 0
+    saved = simulator.state
+    for index, commands in enumerate(given):
+        if index == steps // 2:
+            saved = simulator.state
+        if simulator.state.status == "diverged":
+            break
+        simulator.step(commands)
+        taken += 1
+    seconds = (time.perf_counter() - begun) / taken
+    last = simulator.state
+    simulator.restore(saved)
+    for commands in given[saved.steps : taken]:
+        simulator.step(commands)
+    return {
+        "seconds": seconds,
+        "steps": taken,
+        "status": last.status,
+        "bits": bits(last),
+        "again": bits(simulator.state),
+    }
+
+
+def main() -> None:
+    """Run every example in two processes, with one thread and with two."""
+    if sys.argv[1:2] == ["--one"]:
+        print(json.dumps(run(sys.argv[2], int(sys.argv[3]))))
+        return
+    values = {"steps": (100, "steps of each walk")}
+    report = Report("Examples in a simulator", values=values, texts={"only": "one example"})
+    steps, only = int(report.options["steps"]), report.options["only"]
+    for name in [only] if only else sorted(path.stem for path in EXAMPLES.glob("*.toml")):
+        outcomes = []
+        for threads in ("1", "2"):
+            command = [sys.executable, __file__, "--one", name, str(steps)]
+            environment = {**os.environ, "RAYON_NUM_THREADS": threads}
+            done = subprocess.run(command, env=environment, capture_output=True, text=True)
+            if done.returncode:
+                raise SystemExit(f"{name}: {done.stderr[-500:]}")
+            outcomes.append(json.loads(done.stdout))
+        same = {each[key] for each in outcomes for key in ("bits", "again")}
+        note = (
+            "" if outcomes[0]["status"] != "diverged" else f", diverged at {outcomes[0]['steps']}"
+        )
+        report.add(f"{name}{note}: a step", outcomes[1]["seconds"], "s")
+        report.add(f"{name}: same bits", float(len(same) == 1), "")
+    report.show()
+
+
+if __name__ == "__main__":
+    main()
