@@ -226,7 +226,7 @@ def _parsed(of: str, seen: Observation, where: str) -> tuple[str, str, str]:
     if name in names:
         raise DesignError(where, f'"{quantity}" is none of {group}', closest(quantity, quantities))
     what = f'"{rest}" is none of the {group}'
-    raise DesignError(where, what, closest(rest, names) if names else "there are none")
+    raise DesignError(where, what, closest(rest, names) if any(names) else "none has a name")
 
 
 def kind_of(of: str, seen: Observation, where: str) -> str:
