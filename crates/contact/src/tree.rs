@@ -341,7 +341,7 @@ mod tests {
             let nodes = tree.fitted(&normals);
             let around = Bounds::of([[0.2; 3], [0.8; 3]]);
             let mut found = Vec::new();
-            tree.meeting_within(&around, |node| nodes[node].least_product(own) < 0.0, |i| found.push(i));
+            tree.meeting_within(&around, |node, _| nodes[node].least_product(own) < 0.0, |i| found.push(i));
             for i in 0..boxes.len() {
                 let meets = boxes[i].meets(&around);
                 let looks = normals[i].least_product(own) < 0.0;

@@ -57,7 +57,9 @@ pub(super) fn samples(
 pub(super) fn edges(triangles: &[[u32; 3]], surface_of: &[u32]) -> Vec<Sample> {
     let mut edges: BTreeMap<[u32; 2], Sample> = BTreeMap::new();
     for (t, [a, b, c]) in triangles.iter().copied().enumerate() {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
+        let sides = [(a, b), (b, c), (c, a)];
+        // A triangle of a damaged file may have a corner twice.
+        for (from, to) in sides.into_iter().filter(|(from, to)| from != to) {
             let ends = [from.min(to), from.max(to)];
             let edge = edges.entry(ends).or_insert_with(|| Sample {
                 ends,
