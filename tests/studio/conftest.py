@@ -175,7 +175,7 @@ async def visited(port, token, hello=True, **options):
         page = Page(socket)
         if hello:
             await page.send("hello", protocol=PROTOCOL)
-            await page.until("document", ack=False)
+            await page.until("document")
         yield page
 
 

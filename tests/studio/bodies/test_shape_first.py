@@ -72,6 +72,32 @@ def test_a_check_that_fails_is_reported_and_the_mesher_lives_on(monkeypatch):
         thread.join(20)
 
 
+def test_a_late_timer_does_not_announce_a_body_that_came(monkeypatch):
+    """A timer that woke just before it was cancelled calls its function all the same."""
+    late, heard = [], queue.SimpleQueue()
+
+    class Late:
+        def __init__(self, seconds, function, arguments=()):
+            late.append(lambda: function(*arguments))
+
+        def start(self):
+            pass
+
+        def cancel(self):
+            pass
+
+    monkeypatch.setattr(mesher.threading, "Timer", Late)
+    monkeypatch.setattr(mesher.StudioBody, "of", lambda design, rev, topology: rev)
+    thread = Mesher(lambda: heard.put("slow"), heard.put, *[lambda *_: None] * 3)
+    thread.start()
+    thread.ask(families.cylinder(), 7)
+    assert heard.get(timeout=20) == 7
+    late[0]()
+    assert heard.empty()
+    thread.end()
+    thread.join(20)
+
+
 def test_only_the_newest_of_several_requests_is_answered(requests):
     thread, begun, made, let, shown = requests
     design = families.cylinder()
@@ -96,7 +122,7 @@ class Heard:
 
     def __init__(self):
         self.reported = []
-        self._tab = Tab(socket=None)
+        self._tab = Tab(socket=None, greeted=True)
 
     def tabs(self):
         return [self._tab]
@@ -118,6 +144,21 @@ def test_the_shape_is_sent_before_all_that_is_reported_of_it(body):
     pictures.begin(body)
     pictures.paint_all()
     assert heard.reported == ["topology", "Body", "frame"]
+
+
+def test_a_tab_gets_no_frames_before_its_snapshot(body):
+    """They could not be acknowledged before the page heard its greeting."""
+    heard, playback = Heard(), Playback()
+    heard.send_to = lambda tab, event: heard.publish(event)
+    heard.topology_for = lambda tab, packed: heard.topology(packed, "surface")
+    (tab,) = heard.tabs()
+    tab.greeted = False
+    playback.begin(body)
+    pictures = Pictures(playback, heard)
+    pictures.paint_all()
+    assert heard.reported == []
+    pictures.send_snapshot(tab)
+    assert heard.reported == ["Body", "topology", "Plot", "frame"]
 
 
 def drawn(packed):

@@ -55,7 +55,7 @@ class Mesher(threading.Thread):
         self._request: _Request | None = None
         self._changed = threading.Condition()
         self._ended = False
-        self._count = 0
+        self._count = self._made = 0
 
     def ask(self, design: Design, rev: int) -> None:
         """Ask for a body; an older request that has not been begun is dropped."""
@@ -73,16 +73,24 @@ class Mesher(threading.Thread):
         """Answer requests until the end."""
         while (request := self._next()) is not None:
             self._count += 1
-            announcement = threading.Timer(SLOW, self._slow)
+            announcement = threading.Timer(SLOW, self._announce, [self._count])
             announcement.daemon = True
             announcement.start()
             body = self._body_of(request)
             announcement.cancel()
+            with self._changed:
+                self._made = self._count
             if body is None:
                 continue
             self._done(body)
             if self._idle():
                 self._examine(body, request.design)
+
+    def _announce(self, count: int) -> None:
+        """Announce a body that takes its time: a timer may wake after it was cancelled."""
+        with self._changed:
+            if count > self._made:
+                self._slow()
 
     def _body_of(self, request: _Request) -> StudioBody | None:
         """Make a body; None where that fails, which is told."""

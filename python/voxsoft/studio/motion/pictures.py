@@ -48,7 +48,8 @@ class Pictures:
                 self._bus.smooth_for(tab, smooth)
 
     def send_snapshot(self, tab: Tab) -> None:
-        """Give a new tab all there is of the body."""
+        """Give a new tab all there is of the body; from now on it gets frames."""
+        tab.greeted = True
         body, canvas = self._playback.body, self._playback.canvas
         if body is None or canvas is None:
             return

@@ -56,6 +56,9 @@ class Tab:
         View of the tab.
     credits
         Frames that may still be sent.
+    greeted
+        True from its snapshot on. Frames before it would go to a page that cannot acknowledge them
+        yet, and their credits would be lost.
     seq
         The last command of this tab.
     painted
@@ -65,6 +68,7 @@ class Tab:
     socket: Socket
     view: View = field(default_factory=lambda: View(seq=0))
     credits: int = CREDITS
+    greeted: bool = False
     seq: int = 0
     closed: bool = False
     painted: object = None
@@ -76,7 +80,8 @@ class Tab:
     @property
     def ready(self) -> bool:
         """True if a frame that is packed now would be sent at once."""
-        return self.credits > 0 and self._frame is None and self.view.visible and not self.closed
+        takes_frames = self.greeted and self.view.visible and not self.closed
+        return takes_frames and self.credits > 0 and self._frame is None
 
     def put(self, event: events.Event) -> None:
         """Queue an event."""
