@@ -116,10 +116,12 @@ if TYPE_CHECKING:
     )
     from voxsoft.simulation import (
         Result,
+        Rollout,
         Sensor,
         Simulator,
         follow,
         modes,
+        rollout,
         simulate,
         simulate_many,
         workspace,
@@ -197,6 +199,7 @@ _HOMES = {
     ),
     "voxsoft.simulation": (
         "Result",
+        "Rollout",
         "Sensor",
         "Simulator",
         "check",
@@ -204,6 +207,7 @@ _HOMES = {
         "gradient",
         "gradient_by_voxel",
         "modes",
+        "rollout",
         "simulate",
         "simulate_many",
         "workspace",

@@ -1033,6 +1033,29 @@ class Live:
     ) -> None:
         """Replace the courses of inputs: kind, index, number of the quantity, times, values."""
 
+    def vary(self, offset: float) -> int:
+        """Add a parameter by which a converged motion is differentiated from now on.
+
+        Its neighbors are at ``offset`` from its value; returns its number.
+        """
+
+    def forget_variations(self) -> None:
+        """Forget all parameters of derivatives."""
+
+    def command_variation(
+        self,
+        parameter: int,
+        above: bool,
+        inputs: Sequence[tuple[str, int, int, Sequence[float], Sequence[float]]],
+    ) -> None:
+        """Replace courses of inputs of the neighbor of a parameter above its value, or below."""
+
+    def slopes(self, parameter: int) -> list[NDArray[np.float64]]:
+        """Derivatives of positions (m) and velocities (m/s) per unit of a parameter.
+
+        An `ArithmeticError` says why there are none.
+        """
+
     def grab(self, number: int, vertex: int, target: Sequence[float], stiffness: float) -> None: ...
     def release(self, number: int) -> bool: ...
     def grabs(self) -> list[tuple[int, int, list[float], list[float], float]]:

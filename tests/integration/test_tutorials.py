@@ -44,6 +44,7 @@ LONG = {
     "error-bars.md",
     "export.md",
     "fluids.md",
+    "gait.md",
     "grip.md",
     "gripper.md",
     "layers-and-fibers.md",

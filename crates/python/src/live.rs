@@ -8,10 +8,12 @@ use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyBytes;
+use voxsoft_contact::surface_contact::SurfaceContact;
 use voxsoft_frames::FrameHead;
 use voxsoft_player::{converging, stepper};
 use voxsoft_solid::vector::{Vec3, norm, sub};
 use voxsoft_solid::{Ask, Grab, Look, Method, Problem, State, Stepper};
+use voxsoft_statics::{Motion, Side};
 use voxsoft_xpbd::Dynamics;
 
 use crate::answer::PyAdvance;
@@ -50,6 +52,17 @@ impl PyLive {
         let mut guard = self.lock(py)?;
         let live = guard.as_mut();
         Ok(py.detach(|| work(live)))
+    }
+
+    /// Runs short work on a converged motion.
+    fn with_motion<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Motion) -> T + Send,
+    ) -> PyResult<T> {
+        let found = self.with(py, |live| live.as_any().downcast_mut().map(work))?;
+        let message = "only converged steps are differentiated";
+        found.ok_or_else(|| PyValueError::new_err(message))
     }
 
     fn report(
@@ -153,6 +166,48 @@ impl PyLive {
             return Err(PyValueError::new_err(message));
         }
         self.with(py, |live| live.prefer_step(seconds))
+    }
+
+    /// Adds a parameter by which a converged motion is differentiated from now on, with neighbors at `offset` from its
+    /// value; returns its number.
+    fn vary(&self, py: Python<'_>, offset: f64) -> PyResult<usize> {
+        if !(offset > 0.0 && offset.is_finite()) {
+            let message = format!("offset must be above zero, got {offset}");
+            return Err(PyValueError::new_err(message));
+        }
+        self.with_motion(py, |motion| motion.vary::<SurfaceContact>(offset))
+    }
+
+    /// Forgets all parameters of derivatives.
+    fn forget_variations(&self, py: Python<'_>) -> PyResult<()> {
+        self.with_motion(py, Motion::forget_variations)
+    }
+
+    /// Commands the neighbor of a parameter above its value, or that below.
+    fn command_variation(
+        &self,
+        py: Python<'_>,
+        parameter: usize,
+        above: bool,
+        inputs: Vec<InputArgument>,
+    ) -> PyResult<()> {
+        let inputs = inputs_of(inputs)?;
+        let side = if above { Side::Above } else { Side::Below };
+        self.with_motion(py, |motion| {
+            motion.command_variation(parameter, side, &inputs)
+        })?
+        .map_err(to_python)
+    }
+
+    /// Slopes of positions (m) and velocities (m/s) by a parameter, per unit of it.
+    fn slopes<'py>(
+        &self,
+        py: Python<'py>,
+        parameter: usize,
+    ) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
+        let slopes = self.with_motion(py, |motion| motion.slopes(parameter))?;
+        let slopes = slopes.map_err(crate::equilibrium::to_python)?;
+        Ok([&slopes.positions, &slopes.velocities].map(|rows| from_rows(py, rows)))
     }
 
     /// Takes `substeps` substeps, fewer at rest or after a breakdown.

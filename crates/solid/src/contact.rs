@@ -194,6 +194,9 @@ pub trait RecordedContact: Contact {
     /// The contact state at a moment.
     type Memory: Clone + PartialEq + Send + Sync;
 
+    /// The present contact state, settled at `positions` (m).
+    fn moment(&self, positions: &[Vec3]) -> Moment<Self::Memory>;
+
     /// Starts recording at the next [`reset`](Contact::reset).
     fn record(&mut self);
 
@@ -205,6 +208,10 @@ pub trait RecordedContact: Contact {
 
     /// Takes over the contact pairs that another contact had at a moment.
     fn face_as(&mut self, moment: &Moment<Self::Memory>);
+
+    /// Begins a step of a motion that ends at a moment: points that have come into contact get anchors from the way to
+    /// `positions`, one for each contact of the group, and multipliers have those of the moment as their mean.
+    fn begin_step(group: &mut [&mut Self], positions: &[Vec<Vec3>], moment: &Moment<Self::Memory>);
 
     /// Carries the multipliers and anchors of contacts from a moment to the `next`, with their vertices at `positions`.
     /// The contacts are those of problems with parameters around the recorded one, which is their mean.

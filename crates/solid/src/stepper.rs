@@ -1,5 +1,7 @@
 //! Interface of steppers, which move a problem through time while its caller changes loads and pulls at it.
 
+use std::any::Any;
+
 use crate::breakdown::Breakdown;
 use crate::loads::grabs::Grab;
 use crate::vector::Vec3;
@@ -74,7 +76,10 @@ pub enum Method {
 }
 
 /// A problem in motion, whatever the method.
-pub trait Stepper: Send {
+pub trait Stepper: Send + Any {
+    /// Access to the concrete stepper, to be downcast by callers that know its type.
+    fn as_any(&mut self) -> &mut dyn Any;
+
     /// The time integration method.
     fn method(&self) -> Method;
 

@@ -53,7 +53,7 @@ pub use linear::options::LinearSolver;
 pub use linear::stiffness::{BlockRows, LinearSolution, Stiffness};
 pub use motion::integrator::Integrator;
 pub use motion::modes::{Mode, modes};
-pub use motion::newton::{Motion, Transient};
+pub use motion::newton::{Motion, Side, Slopes, Transient};
 pub use motion::quasi_newton::Implicit;
 pub use motion::run::ImplicitSettings;
 pub use path::follow::{Start, solve};

@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::any::Any;
+
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -201,6 +203,10 @@ fn suite_catches_faults_of_a_solver() {
 struct FaultyStepper(Implicit, Law, f64);
 
 impl Stepper for FaultyStepper {
+    fn as_any(&mut self) -> &mut dyn Any {
+        self
+    }
+
     fn method(&self) -> Method {
         self.0.method()
     }

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from voxsoft.simulation.runs.many import Ensemble, Settled, simulate_many
     from voxsoft.simulation.runs.observation import ChamberState, Observation
     from voxsoft.simulation.runs.over import Over
+    from voxsoft.simulation.runs.rollout import Rollout, rollout
     from voxsoft.simulation.runs.run import ProgressCallback, balance, relax, simulate
     from voxsoft.simulation.runs.sensors import Sensor
     from voxsoft.simulation.runs.simulator import Simulator
@@ -44,6 +45,7 @@ __all__ = [
     "ProgressCallback",
     "Recording",
     "Result",
+    "Rollout",
     "Sensor",
     "Settled",
     "Setup",
@@ -62,6 +64,7 @@ __all__ = [
     "modes",
     "named_regions",
     "relax",
+    "rollout",
     "simulate",
     "simulate_many",
     "workspace",
@@ -86,6 +89,7 @@ __getattr__, __dir__ = lazy_names(
         "ProgressCallback": "voxsoft.simulation.runs.run",
         "Recording": "voxsoft.simulation.results.result",
         "Result": "voxsoft.simulation.results.result",
+        "Rollout": "voxsoft.simulation.runs.rollout",
         "Settled": "voxsoft.simulation.runs.many",
         "Sensor": "voxsoft.simulation.runs.sensors",
         "Setup": "voxsoft.simulation.setup.setup",
@@ -104,6 +108,7 @@ __getattr__, __dir__ = lazy_names(
         "modes": "voxsoft.simulation.results.vibration",
         "named_regions": "voxsoft.simulation.setup.setup",
         "relax": "voxsoft.simulation.runs.run",
+        "rollout": "voxsoft.simulation.runs.rollout",
         "simulate": "voxsoft.simulation.runs.run",
         "simulate_many": "voxsoft.simulation.runs.many",
         "workspace": "voxsoft.simulation.runs.workspace",

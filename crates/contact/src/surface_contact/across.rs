@@ -48,6 +48,7 @@ impl SurfaceContact {
             multiplier: memory.normal,
             penalty: self.penalty(meeting.sample),
             gap,
+            pressed: memory.regime.map(|regime| regime.pressed),
             area: if reaches {
                 self.area_across(meeting, points)
             } else {

@@ -68,7 +68,7 @@ impl Friction {
         law_of: impl FnOnce(u32) -> &'a dyn Law,
         corners_of: impl FnOnce(u32) -> [Vec3; 3],
     ) -> Option<Self> {
-        let anchor = memory.anchor.filter(|_| memory.bound > 0.0)?;
+        let anchor = memory.anchor.filter(|_| memory.rubs())?;
         let kept = |v: Vec3| [0, 1, 2].map(|axis| if free[axis] { v[axis] } else { 0.0 });
         let n = if free == [true; 3] {
             memory.plane
@@ -95,6 +95,7 @@ impl Friction {
             normal: n,
             free,
             bound,
+            slips: memory.regime.and_then(|regime| regime.slips),
         });
         Some(Self {
             found,
@@ -112,7 +113,7 @@ impl SurfaceContact {
         positions: &[Vec3],
         mut take: impl FnMut(u32, Friction),
     ) {
-        if !state.now.iter().any(|memory| memory.bound > 0.0) {
+        if !state.now.iter().any(SampleMemory::rubs) {
             return;
         }
         let points = self.points_at(positions);

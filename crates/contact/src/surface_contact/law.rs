@@ -22,6 +22,8 @@ pub struct Across {
     pub gap: f64,
     /// Area in the unloaded body that the sample stands for, m²; 0 if the law has no [`range`](Law::range).
     pub area: f64,
+    /// Prescribed answer to whether surfaces press on each other, if there is one.
+    pub pressed: Option<bool>,
 }
 
 /// Forces of a sample across the surface that it faces.
@@ -64,6 +66,8 @@ pub struct Along {
     pub free: [bool; 3],
     /// Bound of friction, N.
     pub bound: f64,
+    /// Prescribed answer to whether the force is at its bound, if there is one.
+    pub slips: Option<bool>,
 }
 
 /// Friction of a sample.
@@ -94,10 +98,12 @@ pub trait Law: Debug + Send + Sync {
             multiplier,
             penalty,
             gap,
+            pressed,
             ..
         } = across;
         let pressure = multiplier - penalty * gap;
-        (pressure > 0.0).then(|| Normal {
+        let pressed = pressed.unwrap_or(pressure > 0.0);
+        pressed.then(|| Normal {
             pressure,
             pull: 0.0,
             stiffness: penalty,
@@ -119,10 +125,11 @@ pub trait Law: Debug + Send + Sync {
             normal: n,
             free,
             bound,
+            slips,
         } = along;
         let trial = sub(multiplier, scale(k, slip));
         let size = norm(trial);
-        let slips = size > bound;
+        let slips = slips.unwrap_or(size > bound);
         let (force, energy) = if slips {
             let energy = bound * (size - bound / 2.0) / k;
             (scale(bound / size, trial), energy)
@@ -276,7 +283,7 @@ mod tests {
     proptest! {
         #[test]
         fn hard_contact_has_a_potential(multiplier in 0.0..2.0f64, gap in -1e-3..1e-3f64) {
-            let across = Across { multiplier, penalty: 1e3, gap, area: 0.0 };
+            let across = Across { multiplier, penalty: 1e3, gap, area: 0.0, pressed: None };
             // Away from the kink, where contact opens.
             prop_assume!((multiplier - 1e3 * gap).abs() > 1e-4);
             prop_assert_eq!(check_slopes(&Unilateral, across, 1e-8), Ok(()));
@@ -284,7 +291,7 @@ mod tests {
 
         #[test]
         fn adhesion_has_a_potential(multiplier in 0.0..2.0f64, gap in -1e-3..2e-3f64) {
-            let across = Across { multiplier, penalty: 1e3, gap, area: 1e-4 };
+            let across = Across { multiplier, penalty: 1e3, gap, area: 1e-4, pressed: None };
             // Away from the kinks, where contact opens and where adhesion begins.
             prop_assume!((multiplier - 1e3 * gap).abs() > 1e-4 && gap.abs() > 1e-6);
             let law = Adhesive::new(2e3, 1e-3).unwrap();
@@ -304,6 +311,7 @@ mod tests {
                 normal: [0.0, 0.0, 1.0],
                 free: [true; 3],
                 bound,
+                slips: None,
             };
             let slip = [slip[0], slip[1], 0.0];
             let found = Unilateral.tangential(along(slip));
@@ -337,6 +345,7 @@ mod tests {
                 penalty: 1e3,
                 gap,
                 area: 1.0,
+                pressed: None,
             };
             law.normal(apart).unwrap_or_default()
         };

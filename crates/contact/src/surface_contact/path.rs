@@ -323,16 +323,20 @@ impl SurfaceContact {
         let mut now: Vec<SampleMemory> = state.now.iter().map(SampleMemory::anchor_only).collect();
         self.each_contact(state, positions, |meeting, normal, points| {
             let pressure = normal.pressure;
-            if !(pressure > 0.0) {
-                return;
-            }
             let sample = meeting.sample as usize;
             let memory = &state.now[sample];
+            if !memory.is_pressed(pressure) {
+                return;
+            }
             let friction = self.friction(state, meeting.sample, points);
             let law = self.law(meeting.sample, meeting.triangle);
             let coefficient = self.coefficient(meeting.sample, meeting.triangle);
             let bound = law.bound(coefficient, pressure);
             let mut force = friction.map_or([0.0; 3], |friction| friction.found.force);
+            if memory.slips_as_prescribed() {
+                // Its direction is that of its multiplier and its slip: a bound near zero must not turn it.
+                force = memory.friction;
+            }
             let size = norm(force);
             if memory.unbounded && size > bound {
                 force = scale(bound / size, force);
@@ -351,6 +355,7 @@ impl SurfaceContact {
                 along,
                 since,
                 unbounded: false,
+                regime: memory.regime,
             };
         });
         (now, beyond)
@@ -360,11 +365,12 @@ impl SurfaceContact {
     pub(super) fn carried_on(&self, state: &ContactState, positions: &[Vec3]) -> Vec<SampleMemory> {
         let mut moved = vec![SampleMemory::default(); self.samples.len()];
         self.each_contact(state, positions, |meeting, normal, points| {
-            if !(normal.pressure > 0.0) {
+            let memory = &mut moved[meeting.sample as usize];
+            let now = &state.now[meeting.sample as usize];
+            if !now.is_pressed(normal.pressure) {
                 return;
             }
-            let memory = &mut moved[meeting.sample as usize];
-            *memory = state.now[meeting.sample as usize];
+            *memory = *now;
             let friction = self.friction(state, meeting.sample, points);
             if friction.is_none_or(|friction| friction.found.slips) {
                 memory.friction = friction.map_or([0.0; 3], |friction| friction.found.force);

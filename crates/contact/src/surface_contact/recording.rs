@@ -3,13 +3,16 @@
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, sub};
 use voxsoft_solid::{Contact, Moment, RecordedContact};
 
-use super::state::{ContactState, Facing, Held, Recording, SampleMemory};
+use super::state::{ContactState, Facing, Held, Recording, Regime, SampleMemory};
 use super::{CREEP, SurfaceContact};
 use crate::gap::normal;
 
 /// Smallest cosine between the normal at an edge and that of the triangle there for which the facing turns with the
 /// triangle: 0.08 degrees. Surfaces in contact are so near that the normal to the closest point is rounded to 10⁻⁵.
 const FLUSH: f64 = 1.0 - 1e-6;
+
+/// Friction bound that counts as nothing, as a part of the largest one.
+const NOTHING: f64 = 1e-4;
 
 impl ContactState {
     /// Records an equilibrium before its correction, if the path is recorded.
@@ -25,6 +28,7 @@ impl ContactState {
                     stick: self.stick,
                     extrapolated,
                     precise: true,
+                    regimes: Vec::new(),
                 },
             });
         }
@@ -60,6 +64,24 @@ impl ContactState {
 impl RecordedContact for SurfaceContact {
     type Memory = Held;
 
+    fn moment(&self, positions: &[Vec3]) -> Moment<Held> {
+        let state = &self.state;
+        let mut moment = Moment {
+            positions: positions.to_vec(),
+            settled: true,
+            memory: Held {
+                now: state.now.clone(),
+                facing: state.facing.clone(),
+                stick: state.stick,
+                extrapolated: None,
+                precise: true,
+                regimes: self.regimes_at(positions),
+            },
+        };
+        self.turn_with_planes(&mut moment);
+        moment
+    }
+
     fn record(&mut self) {
         self.state.recording = Some(Recording::default());
     }
@@ -91,15 +113,27 @@ impl RecordedContact for SurfaceContact {
         state.stick = moment.memory.stick;
     }
 
+    fn begin_step(group: &mut [&mut Self], positions: &[Vec<Vec3>], moment: &Moment<Held>) {
+        let given = parts_since(moment);
+        for (contact, positions) in group.iter_mut().zip(positions) {
+            contact.state.given_since.clone_from(&given);
+            contact.face_as(moment);
+            contact.anchor_as(moment, positions);
+            let memories = contact.state.now.iter_mut();
+            for (memory, regime) in memories.zip(&moment.memory.regimes) {
+                memory.regime = Some(*regime);
+            }
+        }
+        bring_all_around(group, moment);
+    }
+
     fn follow_on(
         group: &mut [&mut Self],
         positions: &[Vec<Vec3>],
         moment: &Moment<Held>,
         next: Option<&Moment<Held>>,
     ) {
-        let since = |memory: &SampleMemory| memory.since;
-        let given: Vec<f64> =
-            next.map_or_else(Vec::new, |next| next.memory.now.iter().map(since).collect());
+        let given = next.map_or_else(Vec::new, parts_since);
         for (contact, positions) in group.iter_mut().zip(positions) {
             contact.state.given_since.clone_from(&given);
             contact.follow_to(positions, moment.settled);
@@ -109,15 +143,27 @@ impl RecordedContact for SurfaceContact {
                 contact.extrapolate(ratio);
             }
         }
-        let Some(next) = next else { return };
-        let mut states: Vec<_> = group.iter_mut().map(|contact| &mut contact.state).collect();
-        for (sample, own) in next.memory.now.iter().enumerate() {
-            let mut of_sample: Vec<&mut SampleMemory> = states
-                .iter_mut()
-                .map(|state| &mut state.now[sample])
-                .collect();
-            bring_around(&mut of_sample, own);
+        if let Some(next) = next {
+            bring_all_around(group, next);
         }
+    }
+}
+
+/// Parts of the step that remained for all samples of a moment when they came into contact.
+fn parts_since(moment: &Moment<Held>) -> Vec<f64> {
+    let memories = moment.memory.now.iter();
+    memories.map(|memory| memory.since).collect()
+}
+
+/// Shifts the multipliers and anchors of contacts so that their mean is that of a moment.
+fn bring_all_around(group: &mut [&mut SurfaceContact], moment: &Moment<Held>) {
+    let mut states: Vec<_> = group.iter_mut().map(|contact| &mut contact.state).collect();
+    for (sample, own) in moment.memory.now.iter().enumerate() {
+        let mut of_sample: Vec<&mut SampleMemory> = states
+            .iter_mut()
+            .map(|state| &mut state.now[sample])
+            .collect();
+        bring_around(&mut of_sample, own);
     }
 }
 
@@ -162,6 +208,43 @@ fn bring_around(around: &mut [&mut SampleMemory], own: &SampleMemory) {
 }
 
 impl SurfaceContact {
+    /// Takes first anchors of samples that have come into contact by a moment, from the way to `positions` (m).
+    fn anchor_as(&mut self, moment: &Moment<Held>, positions: &[Vec3]) {
+        let points = self.points_at(positions);
+        let samples = moment.memory.now.iter().zip(&moment.memory.facing);
+        for (sample, (own, facing)) in samples.enumerate() {
+            if own.anchor.is_none() || self.state.now[sample].anchor.is_some() {
+                continue;
+            }
+            let meeting = facing.and_then(|facing| self.meeting(sample as u32, facing, &points));
+            if let Some(meeting) = meeting {
+                let (anchor, along, since) = self.first_anchor(&self.state, &meeting, &points);
+                let memory = &mut self.state.now[sample];
+                (memory.anchor, memory.along, memory.since) = (Some(anchor), along, since);
+            }
+        }
+    }
+
+    /// Regime of each sample at `positions` (m). Friction that is [`NOTHING`] has no direction to the first order.
+    fn regimes_at(&self, positions: &[Vec3]) -> Vec<Regime> {
+        let state = &self.state;
+        let points = self.points_at(positions);
+        let bounds = state.now.iter().map(|memory| memory.bound);
+        let least = NOTHING * bounds.fold(0.0, f64::max);
+        let of_sample = |(sample, memory): (usize, &SampleMemory)| Regime {
+            pressed: false,
+            slips: self
+                .friction(state, sample as u32, &points)
+                .filter(|_| memory.bound > least)
+                .map(|friction| friction.found.slips),
+        };
+        let mut regimes: Vec<Regime> = state.now.iter().enumerate().map(of_sample).collect();
+        self.each_contact(state, positions, |meeting, normal, _| {
+            regimes[meeting.sample as usize].pressed = normal.pressure > 0.0;
+        });
+        regimes
+    }
+
     /// Corrects the multipliers, or accepts the state if contact has `settled`.
     fn follow_to(&mut self, positions: &[Vec3], settled: bool) {
         if !settled {
@@ -172,6 +255,8 @@ impl SurfaceContact {
         let moved = self.carried_on(&self.state, positions);
         let state = &mut self.state;
         state.accepted_points = points;
+        let mut moved = moved;
+        moved.iter_mut().for_each(|memory| memory.regime = None);
         state.before = std::mem::replace(&mut state.accepted, moved.clone());
         state.now = moved;
     }

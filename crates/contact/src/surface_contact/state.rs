@@ -24,15 +24,43 @@ pub struct SampleMemory {
     pub since: f64,
     /// True while it sticks whatever its bound, for one iteration.
     pub unbounded: bool,
+    /// Regime of the sample, prescribed while a motion is differentiated.
+    pub regime: Option<Regime>,
+}
+
+/// Side of the kinks of contact on which a sample is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Regime {
+    /// True if surfaces press on each other there.
+    pub pressed: bool,
+    /// With friction, true if that is at its bound.
+    pub slips: Option<bool>,
 }
 
 impl SampleMemory {
+    /// Tests whether a sample with a pressure (N) presses on a surface.
+    pub fn is_pressed(&self, pressure: f64) -> bool {
+        self.regime.map_or(pressure > 0.0, |regime| regime.pressed)
+    }
+
+    /// Tests whether friction acts.
+    pub fn rubs(&self) -> bool {
+        self.regime
+            .map_or(self.bound > 0.0, |regime| regime.slips.is_some())
+    }
+
+    /// Tests whether friction is prescribed to be at its bound.
+    pub fn slips_as_prescribed(&self) -> bool {
+        self.regime.is_some_and(|regime| regime.slips == Some(true))
+    }
+
     /// The anchor without any force.
     pub fn anchor_only(&self) -> Self {
         Self {
             anchor: self.anchor,
             along: self.along,
             since: self.since,
+            regime: self.regime,
             ..Self::default()
         }
     }
@@ -78,6 +106,8 @@ pub struct Held {
     pub(super) stick: f64,
     pub(super) extrapolated: Option<f64>,
     pub(super) precise: bool,
+    /// Regime of each sample; empty where it is not prescribed.
+    pub(super) regimes: Vec<Regime>,
 }
 
 /// State to which contact returns from iterations with predicted multipliers that did not converge.

@@ -66,7 +66,7 @@ impl From<FactorError> for Stop {
 }
 
 /// Search for the end of a step, with its own memory of the last ones.
-pub trait InnerSearch: Send {
+pub trait InnerSearch: Send + 'static {
     /// True if a step that failed is taken again without its past: from a body whose acceleration is unknown.
     const FORGETS: bool;
 
@@ -102,6 +102,22 @@ pub trait InnerSearch: Send {
 
     /// Tests whether a step that has looked back has to be taken again by backward Euler.
     fn takes_again(&mut self, run: &Run, outcome: &Result<(State, Now), Stop>) -> bool;
+
+    /// Tests whether the motion has variations, which take each step too.
+    fn varies(&self) -> bool {
+        false
+    }
+
+    /// Takes a step that was found, before it is accepted, for the variations of the motion.
+    fn vary(
+        &mut self,
+        _run: &mut Run,
+        _step: &Step,
+        _next: &State,
+        _asker: &mut Asker<'_>,
+    ) -> Result<(), Stop> {
+        Ok(())
+    }
 
     /// Accepts contact at the end of a step; `false` if it is not sound.
     fn accept_contact(&mut self, problem: &mut Problem, next: &State) -> bool;
@@ -252,12 +268,12 @@ impl<S: InnerSearch> Integrator<S> {
             let outcome = self.find(length, true, asker);
             if !self.search.takes_again(&self.run, &outcome) {
                 let (next, found) = outcome?;
-                return self.accept(next, found);
+                return self.accept(next, found, true, asker);
             }
             self.run.rollback();
         }
         let (next, found) = self.find(length, false, asker)?;
-        self.accept(next, found)
+        self.accept(next, found, false, asker)
     }
 
     /// Error of a step as a part of the allowed one; zero where the past does not tell it.
@@ -280,6 +296,22 @@ impl<S: InnerSearch> Integrator<S> {
         ERROR_OVER_DISTANCE * (sum / all).sqrt() / (run.settings.accuracy * run.shortest_edge)
     }
 
+    /// The step of a length (s) from the state, by the second-order formula or by backward Euler.
+    fn step_of(&self, length: f64, second_order: bool) -> Step {
+        let run = &self.run;
+        let before = run.before.as_ref().filter(|_| second_order);
+        let start = Start::new(&run.state, before, length, run.stage);
+        let travel = ANCHOR_SPEED * length * run.shortest_edge;
+        Step {
+            length,
+            time: run.state.time + length,
+            second_order,
+            braked: start.rate + run.damping_rate,
+            grabs: run.grabs.clone().follow(travel),
+            start,
+        }
+    }
+
     /// Finds the end of a step from the state, by the second-order formula or by backward Euler.
     fn find(
         &mut self,
@@ -287,19 +319,9 @@ impl<S: InnerSearch> Integrator<S> {
         second_order: bool,
         asker: &mut Asker<'_>,
     ) -> Result<(State, Now), Stop> {
+        let step = self.step_of(length, second_order);
+        let time = step.time;
         let run = &mut self.run;
-        let before = run.before.as_ref().filter(|_| second_order);
-        let start = Start::new(&run.state, before, length, run.stage);
-        let time = run.state.time + length;
-        let travel = ANCHOR_SPEED * length * run.shortest_edge;
-        let step = Step {
-            length,
-            time,
-            second_order,
-            braked: start.rate + run.damping_rate,
-            grabs: run.grabs.clone().follow(travel),
-            start,
-        };
         run.problem.begin(time);
         let positions = self.search.solve(run, &step, asker)?;
         let pairs = positions.iter().zip(&step.start.positions);
@@ -319,11 +341,21 @@ impl<S: InnerSearch> Integrator<S> {
 
     /// Accepts the end of a step, if it is accurate and contact is sound there; returns its error as a part of the allowed
     /// one.
-    fn accept(&mut self, next: State, found: Now) -> Result<f64, Stop> {
+    fn accept(
+        &mut self,
+        next: State,
+        found: Now,
+        second_order: bool,
+        asker: &mut Asker<'_>,
+    ) -> Result<f64, Stop> {
         let length = next.time - self.run.state.time;
         let error = self.error(&next, length);
         if error > 1.0 && length > self.run.settings.step * (1.0 + SAME_TIME) / MOST_PARTS {
             return Err(Stop::Coarse);
+        }
+        if self.search.varies() {
+            let step = self.step_of(length, second_order);
+            self.search.vary(&mut self.run, &step, &next, asker)?;
         }
         let run = &mut self.run;
         if !self.search.accept_contact(&mut run.problem, &next) {

@@ -1,5 +1,7 @@
 //! Stepper interface of implicit motions.
 
+use std::any::Any;
+
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::loads::grabs::{checked_state, still_state};
 use voxsoft_solid::vector::Vec3;
@@ -16,6 +18,10 @@ use super::scheme::Stage;
 pub(super) const STEPS: [f64; 2] = [1e-6, 0.1];
 
 impl<S: InnerSearch> Stepper for Integrator<S> {
+    fn as_any(&mut self) -> &mut dyn Any {
+        self
+    }
+
     fn method(&self) -> Method {
         Method::Implicit
     }

@@ -1,5 +1,7 @@
 //! Interactive run that continues between calls, with changes of loads and grabs.
 
+use std::any::Any;
+
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::loads::grabs::{Grabs, checked_state, loads_end, shortest_edge, still_state};
 use voxsoft_solid::vector::Vec3;
@@ -192,6 +194,10 @@ impl Live {
 }
 
 impl Stepper for Live {
+    fn as_any(&mut self) -> &mut dyn Any {
+        self
+    }
+
     fn method(&self) -> Method {
         Method::Explicit
     }

@@ -21,20 +21,24 @@
 
 mod energy;
 mod search;
+mod variations;
 
 use std::ops::ControlFlow;
 
 use voxsoft_solid::breakdown::Breakdown;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Damping, Memory, Observer, Problem, Progress, Solution, Solver, State, Status,
+    Damping, History, Input, Memory, Observer, Problem, ProblemError, Progress, RecordedContact,
+    Solution, Solver, State, Status,
 };
 
 pub use self::search::Newton;
+pub use self::variations::{Side, Slopes};
 use super::integrator::{Integrator, SAME_TIME, Stop};
 use super::run::{ImplicitSettings, Run};
 use crate::linear::error::FactorError;
 use crate::linear::options::LinearSolver;
+use crate::sensitivity::adjoint::AdjointError;
 
 /// Settings of implicit dynamics with contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -161,6 +165,40 @@ impl Motion {
     pub fn new(problem: Problem, settings: Transient) -> Result<Self, Status> {
         let start = State::at_rest(problem.body());
         Self::from_state(problem, &settings, start).map_err(|(error, _)| error.into())
+    }
+
+    /// Adds a parameter by which the motion is differentiated from the present state on, with contact of a kind; its
+    /// neighbors, which [`Self::command_variation`] commands, are at `offset` from its value. Returns its number.
+    pub fn vary<C: RecordedContact>(&mut self, offset: f64) -> usize {
+        self.search.add_variation::<C>(&self.run, offset)
+    }
+
+    /// Forgets all parameters of derivatives.
+    pub fn forget_variations(&mut self) {
+        self.search.forget_variations();
+    }
+
+    /// Replaces courses of inputs of a neighbor of a parameter, which otherwise keeps those it had.
+    ///
+    /// # Errors
+    ///
+    /// A parameter or an input that there is not.
+    pub fn command_variation(
+        &mut self,
+        parameter: usize,
+        side: Side,
+        inputs: &[(Input, History)],
+    ) -> Result<(), ProblemError> {
+        self.search.command_variation(parameter, side, inputs)
+    }
+
+    /// First-order change of the state by a parameter.
+    ///
+    /// # Errors
+    ///
+    /// A parameter that there is not, a singular tangent, or contact that does not settle to the first order.
+    pub fn slopes(&self, parameter: usize) -> Result<Slopes, AdjointError> {
+        self.search.slopes(parameter)
     }
 
     /// Starts from a state; without memory for the tangent the run is returned.

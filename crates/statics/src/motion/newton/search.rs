@@ -5,8 +5,12 @@ use std::sync::Arc;
 
 use voxsoft_solid::element::hex8::Within;
 use voxsoft_solid::vector::{Vec3, add, dot, scale, sub};
-use voxsoft_solid::{Observer, Problem, Progress, State, Term, elastic};
+use voxsoft_solid::{
+    History, Input, Observer, Problem, ProblemError, Progress, RecordedContact, State, Term,
+    elastic,
+};
 
+use super::variations::{Side, Slopes, Variations, Vary};
 use crate::inertia::Inertia;
 use crate::linear::error::FactorError;
 use crate::linear::options::LinearOptions;
@@ -17,6 +21,7 @@ use crate::path::contact_loop::AtLoad;
 use crate::path::equilibrium::Equilibrium;
 use crate::path::load_parameter::LoadParameter;
 use crate::path::settings::Settings;
+use crate::sensitivity::adjoint::AdjointError;
 
 /// Relative residual of the equilibrium of a step.
 const STEP_TOLERANCE: f64 = 1e-7;
@@ -32,6 +37,8 @@ pub struct Newton {
     options: LinearOptions,
     /// Forces and energies at the beginning of the step of which the state is the first stage.
     pub(super) begun: Now,
+    /// Variations of the motion by parameters, if it has any.
+    variations: Option<Box<dyn Vary>>,
 }
 
 impl Newton {
@@ -48,7 +55,40 @@ impl Newton {
             inertia,
             options,
             begun: Now::default(),
+            variations: None,
         })
+    }
+
+    /// Adds a parameter of variations ([`super::Motion::vary`]).
+    pub(super) fn add_variation<C: RecordedContact>(&mut self, run: &Run, offset: f64) -> usize {
+        let variations = self
+            .variations
+            .get_or_insert_with(|| Box::new(Variations::<C>::new()));
+        variations.add(run, offset)
+    }
+
+    pub(super) fn forget_variations(&mut self) {
+        self.variations = None;
+    }
+
+    pub(super) fn command_variation(
+        &mut self,
+        parameter: usize,
+        side: Side,
+        inputs: &[(Input, History)],
+    ) -> Result<(), ProblemError> {
+        let none = ProblemError::Index {
+            what: "parameter",
+            index: parameter,
+            count: 0,
+        };
+        let variations = self.variations.as_mut().ok_or(none)?;
+        variations.command(parameter, side, inputs)
+    }
+
+    pub(super) fn slopes(&self, parameter: usize) -> Result<Slopes, AdjointError> {
+        let variations = self.variations.as_ref();
+        variations.map_or(Err(AdjointError::Unsettled), |all| all.slopes(parameter))
     }
 
     /// Finds the positions at the end of a step, with the contact of the run.
@@ -150,6 +190,7 @@ impl InnerSearch for Newton {
     }
 
     fn start(&mut self, run: &mut Run, _at_rest: bool) {
+        self.variations = None;
         if run.problem.is_viscous() {
             run.problem.set_within(None);
         }
@@ -214,6 +255,27 @@ impl InnerSearch for Newton {
     fn takes_again(&mut self, run: &Run, outcome: &Result<(State, Now), Stop>) -> bool {
         let gains = |(next, found): &(State, Now)| self.gains_energy(run, next, found);
         outcome.as_ref().is_ok_and(gains)
+    }
+
+    fn varies(&self) -> bool {
+        self.variations.is_some()
+    }
+
+    fn vary(
+        &mut self,
+        run: &mut Run,
+        step: &Step,
+        next: &State,
+        asker: &mut Asker<'_>,
+    ) -> Result<(), Stop> {
+        let Some(variations) = &mut self.variations else {
+            return Ok(());
+        };
+        let equilibrium = &mut self.equilibrium;
+        run.problem.exchange_contact(&mut equilibrium.problem);
+        let outcome = variations.follow(equilibrium, run, step, next, &mut || !asker(None));
+        run.problem.exchange_contact(&mut equilibrium.problem);
+        outcome
     }
 
     fn accept_contact(&mut self, problem: &mut Problem, next: &State) -> bool {
