@@ -329,6 +329,16 @@ class ProblemParts:
         history: _History = None,
         voids: tuple[NDArray[np.uint32], NDArray[np.float64]] | None = None,
     ) -> None: ...
+    def drag(
+        self,
+        triangles: NDArray[np.uint32],
+        law: Sequence[float],
+        flow: Sequence[float],
+        share: float,
+        history: _History = None,
+        skin: Skin | None = None,
+        first: int = 0,
+    ) -> None: ...
     def fluid(
         self,
         network: _core_data.Network,

@@ -119,6 +119,7 @@ SAMPLES = {
         "parts": [soft(remanence=["20 mT", 0, 0])],
     },
     "immersion": {"loads": [GRAVITY, {"kind": "immersion", "level": "0.1 m"}]},
+    "drag": {"loads": [GRAVITY, {"kind": "drag", "linear": "1 mm/s", "flow": [0, 0, "10 cm/s"]}]},
     "load over time": {"loads": [{**PRESSURE, "history": RAMP}]},
     "floor": {"loads": [GRAVITY], "floor": {"z": "-1 mm"}},
     "contact": {"contact": {"friction": 0.2}},

@@ -14,6 +14,7 @@ from voxsoft.design.layer import Layer
 from voxsoft.design.line import Pump, Valve
 from voxsoft.design.load import (
     AnyLoad,
+    Drag,
     Floor,
     Force,
     Gravity,
@@ -57,6 +58,7 @@ __all__ = [
     "ContactPair",
     "Design",
     "Dielectric",
+    "Drag",
     "FiberStrain",
     "FileMesh",
     "Floor",

@@ -1,4 +1,4 @@
-"""Loads: gravity, pressures, forces, tractions, magnetic fields, immersion; and the floor."""
+"""Loads: gravity, pressures, forces, tractions, magnetic fields, liquids; and the floor."""
 
 from __future__ import annotations
 
@@ -11,11 +11,21 @@ from voxsoft.design.chamber import CavityChoice
 from voxsoft.design.clamp import check_direction
 from voxsoft.design.history import History
 from voxsoft.design.region import Region
+from voxsoft.errors import DesignError
 from voxsoft.records import Record
-from voxsoft.units import Acceleration, Length, PositiveDensity, Vector
+from voxsoft.units import (
+    Acceleration,
+    Length,
+    NonNegative,
+    NonNegativeSpeed,
+    PositiveDensity,
+    Speed,
+    Vector,
+)
 
 Forces = tuple[units.Force, units.Force, units.Force]
 Stresses = tuple[units.Pressure, units.Pressure, units.Pressure]
+Velocity = tuple[Speed, Speed, Speed]
 FluxDensity = tuple[units.MagneticField, units.MagneticField, units.MagneticField]
 
 
@@ -175,7 +185,8 @@ class Immersion(Record):
 
     Notes
     -----
-    Drag and the liquid that moves along with the body are left out; objects feel no liquid.
+    Drag is a load of its own, :class:`Drag`; the liquid that moves along with the body is left
+    out, and objects feel no liquid.
 
     Examples
     --------
@@ -190,8 +201,62 @@ class Immersion(Record):
     history: History | None = None
 
 
+class Drag(Record):
+    """Drag of a fluid on the outer surface of the body, against its motion through the fluid.
+
+    An element of the surface with the area A and the outward normal n, which moves by u relative
+    to the fluid, feels −ρ A (w u + cₜ/2 |uₜ| uₜ + cₙ/2 max(u·n, 0)² n): a linear part, friction
+    along it, and a pressure on the side of the body that meets the fluid.
+
+    Parameters
+    ----------
+    value
+        Density ρ of the fluid; default: water.
+    normal
+        Coefficient cₙ of the pressure, by Newton's law of the squared sine: a plate across the
+        flow and a box have the drag coefficient cₙ, a ball half of it. Default 1.
+    tangential
+        Coefficient cₜ of the friction along the surface; default 0.
+    linear
+        Speed w of the linear part, for slow flow: of a ball of the radius R it is 3ν/(2R) with the
+        kinematic viscosity ν (of water 1e-6 m²/s). Default 0.
+    flow
+        Velocity of the fluid along x, y, z; default: at rest.
+    history
+        The factor over time, not below zero; default: constant.
+
+    Notes
+    -----
+    It acts in motions by implicit steps, which a run over time with it takes. At rest only the
+    flow is felt.
+
+    Examples
+    --------
+    >>> Drag(normal=1.2, flow=("0.3 m/s", 0, 0)).flow
+    (0.3, 0.0, 0.0)
+    """
+
+    kind: Literal["drag"] = "drag"
+    value: PositiveDensity = 1000.0
+    normal: NonNegative = 1.0
+    tangential: NonNegative = 0.0
+    linear: NonNegativeSpeed = 0.0
+    flow: Velocity = (0.0, 0.0, 0.0)
+    history: History | None = None
+
+    @field_validator("history")
+    @classmethod
+    def _takes_energy(cls, history: History | None) -> History | None:
+        least = 0.0 if history is None else min(history.factors)
+        if least < 0.0:
+            what = f"has the factor {least:g}, and drag below zero would drive the body"
+            raise DesignError("", what, "give factors from 0 on; a flow drives it")
+        return history
+
+
 AnyLoad = Annotated[
-    Gravity | Pressure | Force | Traction | MagneticField | Immersion, Field(discriminator="kind")
+    Gravity | Pressure | Force | Traction | MagneticField | Immersion | Drag,
+    Field(discriminator="kind"),
 ]
 
 

@@ -226,6 +226,16 @@ _REFUSED: Final[tuple[tuple[str, tuple[str, ...], Reason], ...]] = (
     ("mesh of a file", ("comparison", "confirmation"), _NO_VOXELS),
     ("immersion", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without it")),
     ("immersion", ("symmetry",), Reason(_WITH_PLANES.what, "leave the planes out")),
+    (
+        "drag",
+        ("explicit dynamics",),
+        Reason(
+            "is known to steps that are implicit, and the settings mean {who}",
+            'write method = "dynamics", or leave drag out',
+        ),
+    ),
+    ("drag", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without it")),
+    ("drag", ("symmetry",), Reason(_WITH_PLANES.what, "leave the planes out")),
     ("floor", ("outside codes",), Reason(_OUTSIDE.what, "clamp the foot instead")),
     ("layers", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without them")),
     ("springs and the like", ("outside codes",), _OUTSIDE),

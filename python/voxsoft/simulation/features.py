@@ -198,6 +198,7 @@ FEATURES: Final[Mapping[str, _Places]] = MappingProxyType(
         "traction": _loads("traction"),
         "magnetic field": _loads("magnetic_field"),
         "immersion": _loads("immersion"),
+        "drag": _loads("drag"),
         "load over time": _load_histories,
         "floor": _key("floor"),
         "contact": _contact,

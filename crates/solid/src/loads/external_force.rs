@@ -66,6 +66,12 @@ pub trait ExternalForce: Debug + Send + Sync {
         false
     }
 
+    /// Tests whether the forces depend on the velocities within a time step, which are functions of the positions at its
+    /// end ([`crate::Problem::begin_motion`]).
+    fn feels_motion(&self) -> bool {
+        false
+    }
+
     /// Tests whether the forces have a potential, so that their derivative is symmetric.
     fn is_conservative(&self) -> bool {
         true

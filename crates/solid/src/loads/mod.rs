@@ -2,6 +2,7 @@
 
 pub(crate) mod clamp;
 mod dielectric;
+mod drag;
 pub(crate) mod eigenstrain;
 pub(crate) mod external_force;
 pub mod grabs;
@@ -11,6 +12,9 @@ mod hydrostatic;
 mod point_forces;
 mod pressure;
 mod tendon;
+mod velocities;
+
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -19,11 +23,13 @@ use crate::{History, Mirrored};
 use external_force::ExternalForce;
 
 pub use dielectric::{Dielectric, Element};
+pub use drag::{Drag, DragLaw};
 pub use gravity::Gravity;
 pub use hydrostatic::Hydrostatic;
 pub use point_forces::PointForces;
 pub use pressure::{Pressure, enclosed_volume};
 pub use tendon::{Drive, Place, Tendon, TendonMemory, TendonState};
+pub use velocities::Velocities;
 
 /// The kinds of loads.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -42,14 +48,25 @@ pub enum LoadKind {
     Tendon(Tendon),
     /// The squeeze of a sheet by its electrodes.
     Dielectric(Dielectric),
+    /// The drag of a fluid on a surface.
+    Drag(Drag),
 }
 
 impl LoadKind {
-    /// This load with its friction bounds held constant during a step, which gives a tendon with friction a potential.
+    /// This load within the steps of a motion, which gives it a potential: a tendon with its friction bounds held constant,
+    /// drag with the areas that it begins a step with.
     pub(crate) fn held(&self) -> Self {
         match self {
             Self::Tendon(tendon) => Self::Tendon(tendon.held()),
+            Self::Drag(drag) => Self::Drag(drag.in_motion()),
             other => other.clone(),
+        }
+    }
+
+    /// Gives it the velocities within a time step, and positions (m) near its end, if it feels motion.
+    pub(crate) fn begin(&mut self, velocities: &Arc<Velocities>, near: &[Vec3]) {
+        if let Self::Drag(drag) = self {
+            drag.begin(velocities, near);
         }
     }
 }
@@ -66,6 +83,7 @@ impl std::ops::Deref for LoadKind {
             Self::MirroredPressure(pressure) => pressure,
             Self::Tendon(tendon) => tendon,
             Self::Dielectric(sheet) => sheet,
+            Self::Drag(drag) => drag,
         }
     }
 }
@@ -97,6 +115,12 @@ impl From<Tendon> for LoadKind {
 impl From<Dielectric> for LoadKind {
     fn from(sheet: Dielectric) -> Self {
         Self::Dielectric(sheet)
+    }
+}
+
+impl From<Drag> for LoadKind {
+    fn from(drag: Drag) -> Self {
+        Self::Drag(drag)
     }
 }
 

@@ -36,6 +36,7 @@ SENTENCES: Final[Mapping[str, str]] = MappingProxyType(
         "traction": "",
         "magnetic field": "",
         "immersion": "",
+        "drag": "is not held: MuJoCo's flexes feel no fluid",
         "load over time": "",
         "floor": "",
         "contact": "",

@@ -13,6 +13,7 @@ from voxsoft.design import Design, History, Region
 from voxsoft.design.chamber import CavityChoice
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.loads.actions import Action, Vertices
+from voxsoft.simulation.loads.surface import OuterSurface
 
 Quantity = Literal["acceleration", "force", "pressure", "magnetic field", "density"]
 Triple = tuple[float, float, float]
@@ -29,6 +30,10 @@ class LoadedBody(Protocol):
     @property
     def mesh(self) -> Mesh:
         """The tetrahedra; cavities have the names of the design's chambers."""
+
+    @property
+    def outer_surfaces(self) -> tuple[OuterSurface, ...]:
+        """The outer surface of each of its bodies."""
 
     def vertices_in(self, region: Region, where: str) -> Vertices:
         """Vertices that a region catches; `where` is the place an error names."""

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from voxsoft.design import Force, Gravity, Immersion, MagneticField, Pressure, Traction
+from voxsoft.design import Drag, Force, Gravity, Immersion, MagneticField, Pressure, Traction
 from voxsoft.design.chamber import chosen_cavities
 from voxsoft.errors import DesignError
 from voxsoft.simulation.loads.actions import (
@@ -17,6 +17,7 @@ from voxsoft.simulation.loads.actions import (
     DepthPressure,
     FieldForces,
     SharedForce,
+    SurfaceDrag,
     SurfacePressure,
     SurfaceTraction,
     Triangles,
@@ -161,6 +162,19 @@ class ImmersionKind(LoadKind[Immersion]):
 _NO_TRIANGLE: Final[Triangles] = np.zeros((0, 3), dtype=np.int32)
 
 
+class DragKind(LoadKind[Drag]):
+    """Drag of a fluid on the outer surface: one action for each body."""
+
+    def read(self, load: Drag) -> LoadReading:
+        """Describe the load."""
+        return LoadReading(load.kind, "drag", "density", (load.value,), load.flow, load.history)
+
+    def actions(self, load: Drag, body: LoadedBody, where: str) -> list[SurfaceDrag]:
+        """Return the actions of the load."""
+        law = (load.value, load.normal, load.tangential, load.linear)
+        return [SurfaceDrag(each, *law, np.asarray(load.flow)) for each in body.outer_surfaces]
+
+
 #: Kind of load of each model.
 KINDS: Final[Mapping[type[object], LoadKind[Any]]] = MappingProxyType(
     {
@@ -170,5 +184,6 @@ KINDS: Final[Mapping[type[object], LoadKind[Any]]] = MappingProxyType(
         Traction: TractionKind(),
         MagneticField: MagneticFieldKind(),
         Immersion: ImmersionKind(),
+        Drag: DragKind(),
     }
 )

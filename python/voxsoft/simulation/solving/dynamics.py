@@ -29,8 +29,11 @@ DEFAULT_RECORD_INTERVAL: Final = 0.02
 
 
 def converges_each_step(design: Design) -> bool:
-    """Return True if every step of a motion has to converge: states depend on the way to them."""
-    return any(has_feature(design, name) for name in ("contact", "supplies", "softening"))
+    """Return True if every step of a motion has to converge.
+
+    States depend on the way to them, or forces on velocities.
+    """
+    return any(has_feature(design, name) for name in ("contact", "supplies", "softening", "drag"))
 
 
 class Dynamics(Method):
