@@ -16,12 +16,13 @@ use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
     Attachment, Carried, Clamp, CutSurface, Dielectric, Drag, DragLaw, Element, Filling, Floor,
-    Fluid, Gravity, History, Hydrostatic, Images, Load, LoadKind, Membrane, MembraneMaterial,
-    Membranes, Mirrored, Motion, PointForces, Pressure, ProblemError,
+    Fluid, ForceField, Gravity, History, Hydrostatic, Images, Load, LoadKind, Membrane,
+    MembraneMaterial, Membranes, Mirrored, Motion, PointForces, Pressure, ProblemError,
 };
 
 use crate::arrays::rows;
 use crate::errors::to_python;
+use crate::formula::PyFormula;
 use crate::plain::plain;
 use crate::skin::PySkin;
 use crate::surface_contact::{BodyPart, BondPart, ContactParts, Freedom, ObjectPart, Way, Whole};
@@ -210,6 +211,19 @@ impl PyProblemParts {
         };
         let points = surface.points.into_iter().map(moved).collect();
         self.load(Drag::new(points, surface.triangles, share, law), history)
+    }
+
+    /// Adds an acceleration (m/s²) of vertices by a formula for each of its components.
+    #[pyo3(signature = (vertices, formulas, history=None))]
+    fn force_field(
+        &mut self,
+        vertices: PyReadonlyArray1<'_, u32>,
+        formulas: [PyRef<'_, PyFormula>; 3],
+        history: HistoryArgument,
+    ) -> PyResult<()> {
+        let formulas = formulas.map(|formula| formula.0.clone());
+        let vertices = vertices.as_array().to_vec();
+        self.load(ForceField::new(vertices, formulas), history)
     }
 
     /// Sets the gas or liquid in chambers: a network by the names of its fields, and for each of its chambers the walls,

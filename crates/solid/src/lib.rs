@@ -49,6 +49,7 @@ mod error;
 pub mod fields;
 mod floor;
 pub mod fluid;
+pub mod formula;
 pub mod hyperelastic;
 pub mod lattice;
 pub mod loads;
@@ -87,8 +88,8 @@ pub use loads::external_force::{ExternalForce, Vertices};
 pub use loads::grabs::{Grab, Grabs};
 pub use loads::history::History;
 pub use loads::{
-    Dielectric, Drag, DragLaw, Drive, Element, Gravity, Hydrostatic, Load, LoadKind, Place,
-    PointForces, Pressure, Tendon, TendonMemory, TendonState, Velocities, enclosed_volume,
+    Dielectric, Drag, DragLaw, Drive, Element, ForceField, Gravity, Hydrostatic, Load, LoadKind,
+    Place, PointForces, Pressure, Tendon, TendonMemory, TendonState, Velocities, enclosed_volume,
 };
 pub use material::Material;
 pub use problem::{Input, Memory, Past, Problem};

@@ -306,16 +306,6 @@ impl Problem {
         Cow::Owned(problem)
     }
 
-    /// This problem for the steps of a motion, within which tendons with friction and drag have a potential.
-    #[must_use]
-    pub fn with_held_loads(mut self) -> Self {
-        for load in &mut self.loads {
-            load.kind = load.kind.held();
-        }
-        self.conservative = self.loads.iter().all(|load| load.kind.is_conservative());
-        self
-    }
-
     /// Positions with tied vertices placed by their ties.
     fn seen<'a>(&self, positions: &'a [Vec3]) -> Cow<'a, [Vec3]> {
         self.body.ties().seen(positions)
@@ -365,10 +355,11 @@ impl Problem {
         visit: Visitor<'_>,
     ) {
         let (ties, positions) = (self.body.ties(), &*self.seen(positions));
+        let on = self.vertices(positions);
         let mut tied = |corners: &[u32], matrix: &[f64]| ties.visit(corners, matrix, visit);
         for load in self.loads.iter().filter(|load| load.kind.follows()) {
             let factor = factor_of(load);
-            load.kind.visit_stiffness(positions, factor, &mut tied);
+            load.kind.visit_stiffness(on, factor, &mut tied);
         }
         if let Some(fluid) = &self.fluid {
             fluid.visit_stiffness(positions, fluid.instant(factor_of), &mut tied);

@@ -1,12 +1,20 @@
-"""Loads: gravity, pressures, forces, tractions, magnetic fields, liquids; and the floor."""
+"""Loads: gravity, pressures, forces, tractions, liquids, fields; and the floor."""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, Tag, field_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Discriminator,
+    Field,
+    Tag,
+    WithJsonSchema,
+    field_validator,
+)
 
-from voxsoft import units
+from voxsoft import _core, units
 from voxsoft.design.chamber import CavityChoice
 from voxsoft.design.clamp import check_direction
 from voxsoft.design.history import History
@@ -14,11 +22,14 @@ from voxsoft.design.region import Region
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
 from voxsoft.units import (
+    KINDS,
     Acceleration,
+    Dimensionless,
     Length,
     NonNegative,
     NonNegativeSpeed,
     PositiveDensity,
+    Quantity,
     Speed,
     Vector,
 )
@@ -254,8 +265,71 @@ class Drag(Record):
         return history
 
 
+def _as_text(value: object) -> object:
+    """Write numbers, and the values of formulas of the design, as text."""
+    if isinstance(value, Quantity):
+        if value.dimension != KINDS["acceleration"].dimension:
+            raise DesignError("", f"is {value}, not an acceleration", "give one, in m/s^2")
+        return repr(value.value)
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return repr(float(value))
+    return value
+
+
+def _readable(text: str) -> str:
+    _core.Formula(text)
+    return text
+
+
+#: Text of a function of x, y, z [m], vx, vy, vz [m/s] and t [s], checked; or a number.
+FormulaText = Annotated[
+    str,
+    BeforeValidator(_as_text),
+    AfterValidator(_readable),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "number"}]}),
+]
+
+
+class ForceField(Record):
+    """An acceleration of all mass of the body, a function of place, velocity and time.
+
+    Parameters
+    ----------
+    acceleration
+        Components along x, y, z in m/s², as functions of ``x``, ``y``, ``z`` in m, ``vx``, ``vy``,
+        ``vz`` in m/s and ``t`` in s: numbers, or text in the grammar of
+        :class:`voxsoft.shapes.Expression`, whose numbers are in SI units.
+    value
+        A factor on it; default 1.
+    history
+        Another factor, over time; default: constant.
+
+    Notes
+    -----
+    At rest velocities are zero, and statics refuses a field that changes with ``t``. Objects feel
+    no field.
+
+    Examples
+    --------
+    >>> swirl = ForceField(acceleration=("-4*x - 8*vx", "-4*y - 8*vy", "-9.81"))
+    >>> swirl.acceleration[2]
+    '-9.81'
+    >>> ForceField(acceleration=(0, 0, "-9.81*z/hight"))
+    Traceback (most recent call last):
+    ...
+    voxsoft.errors.DesignError: acceleration[2]: at character 9: "hight" is not known; known are \
+x y z vx vy vz t pi abs acos asin atan atan2 ceil cos exp floor hypot log max min sin sqrt tan. \
+Try: write a function of x, y, z in m, vx, vy, vz in m/s and t in s, such as "-9.81 - 8*vz"
+    """
+
+    kind: Literal["force_field"] = "force_field"
+    acceleration: tuple[FormulaText, FormulaText, FormulaText]
+    value: Dimensionless = 1.0
+    history: History | None = None
+
+
 AnyLoad = Annotated[
-    Gravity | Pressure | Force | Traction | MagneticField | Immersion | Drag,
+    Gravity | Pressure | Force | Traction | MagneticField | Immersion | Drag | ForceField,
     Field(discriminator="kind"),
 ]
 

@@ -199,6 +199,7 @@ FEATURES: Final[Mapping[str, _Places]] = MappingProxyType(
         "magnetic field": _loads("magnetic_field"),
         "immersion": _loads("immersion"),
         "drag": _loads("drag"),
+        "force field": _loads("force_field"),
         "load over time": _load_histories,
         "floor": _key("floor"),
         "contact": _contact,

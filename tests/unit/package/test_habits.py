@@ -95,7 +95,7 @@ def test_signatures_in_words():
         "(radius: Length, *, center: (Length, Length, Length) = (0.0, 0.0, 0.0))"
     )
     assert "shape: str | Shape | None = None" in str(inspect.signature(vs.Probe))
-    kinds = "Gravity | Pressure | Force | Traction | MagneticField | Immersion | Drag"
+    kinds = "Gravity | Pressure | Force | Traction | MagneticField | Immersion | Drag | ForceField"
     assert f"loads: [{kinds}, ...] = ()" in str(inspect.signature(vs.Design))
 
 

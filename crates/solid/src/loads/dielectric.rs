@@ -191,7 +191,8 @@ impl ExternalForce for Dielectric {
         true
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {
+    fn visit_stiffness(&self, on: Vertices<'_>, factor: f64, visit: Visitor<'_>) {
+        let positions = on.positions;
         let mut matrix = [[0.0; 24]; 24];
         for element in &self.elements {
             let hessian = element.squeeze(positions, true).hessian;

@@ -352,7 +352,8 @@ impl ExternalForce for Drag {
         self.moves || self.law.flow == [0.0; 3]
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {
+    fn visit_stiffness(&self, on: Vertices<'_>, factor: f64, visit: Visitor<'_>) {
+        let positions = on.positions;
         let Some(step) = &self.step else {
             if !self.is_still() {
                 self.visit_at_rest(positions, factor, visit);

@@ -5,6 +5,7 @@ mod dielectric;
 mod drag;
 pub(crate) mod eigenstrain;
 pub(crate) mod external_force;
+mod field;
 pub mod grabs;
 mod gravity;
 pub(crate) mod history;
@@ -24,6 +25,7 @@ use external_force::ExternalForce;
 
 pub use dielectric::{Dielectric, Element};
 pub use drag::{Drag, DragLaw};
+pub use field::ForceField;
 pub use gravity::Gravity;
 pub use hydrostatic::Hydrostatic;
 pub use point_forces::PointForces;
@@ -50,6 +52,8 @@ pub enum LoadKind {
     Dielectric(Dielectric),
     /// The drag of a fluid on a surface.
     Drag(Drag),
+    /// An acceleration by formulas.
+    Field(ForceField),
 }
 
 impl LoadKind {
@@ -65,8 +69,17 @@ impl LoadKind {
 
     /// Gives it the velocities within a time step, and positions (m) near its end, if it feels motion.
     pub(crate) fn begin(&mut self, velocities: &Arc<Velocities>, near: &[Vec3]) {
-        if let Self::Drag(drag) = self {
-            drag.begin(velocities, near);
+        match self {
+            Self::Drag(drag) => drag.begin(velocities, near),
+            Self::Field(field) => field.begin(velocities),
+            _ => {}
+        }
+    }
+
+    /// Gives it the time in s, if it varies by itself.
+    pub(crate) fn set_time(&mut self, time: f64) {
+        if let Self::Field(field) = self {
+            field.set_time(time);
         }
     }
 }
@@ -84,6 +97,7 @@ impl std::ops::Deref for LoadKind {
             Self::Tendon(tendon) => tendon,
             Self::Dielectric(sheet) => sheet,
             Self::Drag(drag) => drag,
+            Self::Field(field) => field,
         }
     }
 }
@@ -121,6 +135,12 @@ impl From<Dielectric> for LoadKind {
 impl From<Drag> for LoadKind {
     fn from(drag: Drag) -> Self {
         Self::Drag(drag)
+    }
+}
+
+impl From<ForceField> for LoadKind {
+    fn from(field: ForceField) -> Self {
+        Self::Field(field)
     }
 }
 

@@ -7,6 +7,16 @@ use crate::vector::Vec3;
 use crate::{Fluid, Load, Velocities};
 
 impl Problem {
+    /// This problem for the steps of a motion, within which tendons with friction and drag have a potential.
+    #[must_use]
+    pub fn with_held_loads(mut self) -> Self {
+        for load in &mut self.loads {
+            load.kind = load.kind.held();
+        }
+        self.conservative = self.loads.iter().all(|load| load.kind.is_conservative());
+        self
+    }
+
     /// Tests whether some loads depend on velocities.
     pub fn feels_motion(&self) -> bool {
         self.loads.iter().any(|load| load.kind.feels_motion())

@@ -37,6 +37,7 @@ SENTENCES: Final[Mapping[str, str]] = MappingProxyType(
         "magnetic field": "",
         "immersion": "",
         "drag": "is not held: MuJoCo's flexes feel no fluid",
+        "force field": "is not held: MuJoCo has no forces by formulas",
         "load over time": "",
         "floor": "",
         "contact": "",

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft import _core
 from voxsoft.cavity import MeshCavity
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.loads.surface import OuterSurface
@@ -53,6 +54,9 @@ class LoadReceiver(ABC):
 
     def drag(self, drag: SurfaceDrag) -> None:  # noqa: B027 - few receivers know velocities
         """Take the drag of a fluid; by default none, as of a body at rest in a fluid at rest."""
+
+    def field(self, field: FieldAcceleration) -> None:  # noqa: B027 - few receivers know any
+        """Take an acceleration by formulas; by default none."""
 
     def traction(self, triangles: Triangles, stress: Floats) -> None:
         """Take a dead force for each undeformed area of triangles, (3,), Pa."""
@@ -270,6 +274,25 @@ class SurfaceDrag(Action):
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
         """Return the point where the flow through the middle enters the bounds, as an arrow."""
         return _into_bounds(rest, _unit(self.flow))
+
+
+@dataclass(frozen=True, eq=False)
+class FieldAcceleration(Action):
+    """An acceleration of all mass by formulas in m/s² along x, y and z, times a factor."""
+
+    value: float
+    formulas: tuple[_core.Formula, _core.Formula, _core.Formula]
+
+    def give_to(self, receiver: LoadReceiver) -> None:
+        """Hand this to its receiver."""
+        receiver.field(self)
+
+    def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
+        """Return the point where a line along it in the middle enters the bounds, as an arrow."""
+        middle, still = rest.mean(axis=0, keepdims=True), np.zeros((1, 3))
+        found = np.concatenate([each.at(middle, still, 0.0) for each in self.formulas])
+        known = self.value * np.where(np.isfinite(found), found, 0.0)
+        return _into_bounds(rest, _unit(known))
 
 
 def _into_bounds(rest: Floats, direction: Floats) -> tuple[Floats, Floats]:

@@ -15,7 +15,7 @@ from voxsoft.mesh import Mesh
 from voxsoft.simulation.loads.actions import Action, Vertices
 from voxsoft.simulation.loads.surface import OuterSurface
 
-Quantity = Literal["acceleration", "force", "pressure", "magnetic field", "density"]
+Quantity = Literal["acceleration", "force", "pressure", "magnetic field", "density", "number"]
 Triple = tuple[float, float, float]
 L = TypeVar("L")
 
@@ -59,6 +59,8 @@ class LoadReading:
         Its factor over time.
     cavity
         Its cavity, if it acts in one.
+    varies
+        True if it changes with time by itself.
     """
 
     kind: str
@@ -68,6 +70,7 @@ class LoadReading:
     direction: Triple
     history: History | None
     cavity: CavityChoice | None = None
+    varies: bool = False
 
     @property
     def size(self) -> float:

@@ -6,8 +6,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from voxsoft import _core
 
@@ -52,6 +50,9 @@ def outward(points: NDArray[np.float64], triangles: NDArray[np.uint32]) -> NDArr
     >>> outward(np.concatenate([corners, 0.1 + 0.1 * corners]), both).tolist()
     [True, True, True, True, False, False, False, False]
     """
+    from scipy.sparse import coo_array  # slow to load
+    from scipy.sparse.csgraph import connected_components
+
     count = len(triangles)
     edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     keys = edges[:, 0].astype(np.int64) * len(points) + edges[:, 1]

@@ -455,8 +455,8 @@ def _load_drafts(setup: Setup, one: Setup) -> Iterator[_Draft]:
 
         nothing: Value = (0.0, 0.0, 0.0) if count > 1 else 0.0
         history = _course(load.history, partial(_times_of, load.value))
-        # Gravity and a fluid around the body are there before anybody commands them.
-        is_around = reading.quantity in ("acceleration", "density")
+        # Gravity, a fluid around the body and fields are there before anybody commands them.
+        is_around = reading.quantity in ("acceleration", "density", "number")
         first = load.value if is_around else nothing
         yield _Draft(
             names[index],

@@ -34,7 +34,7 @@ from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
-from voxsoft.simulation.loads.actions import DepthPressure, SurfaceDrag
+from voxsoft.simulation.loads.actions import DepthPressure, FieldAcceleration, SurfaceDrag
 from voxsoft.simulation.loads.surface import OuterSurface
 from voxsoft.simulation.setup.chambers import check_chambers, with_chamber_names
 from voxsoft.simulation.setup.contact import (
@@ -617,3 +617,10 @@ class _CoreLoads(LoadReceiver):
             surface.skin,
             surface.first,
         )
+
+    def field(self, field: FieldAcceleration) -> None:
+        assert isinstance(self._parts, _core.ProblemParts)  # planes of symmetry refuse it
+        times, factors = self._history or ([0.0], [1.0])
+        history = (times, [field.value * factor for factor in factors])
+        vertices = np.arange(len(self.mesh.vertices), dtype=np.uint32)
+        self._parts.force_field(vertices, field.formulas, history)
