@@ -190,3 +190,32 @@ def test_a_field_over_time_needs_a_motion():
         vs.simulate(cube(field(0, "t"), contact=None, solver={"method": "statics"}))
     with pytest.raises(SimulationError, match=r"loads\[0\]: is known .* method = \"dynamics\""):
         vs.simulate(cube(field(0, "x"), contact=None), method="xpbd")
+
+
+def test_gradients_in_a_skew_field_are_those_of_differences():
+    goal = {"reach": {"maximize": "displacement", "probe": "tip", "axis": "z"}}
+
+    def at(young):
+        soft = NeoHookean(young=young, poisson=0.45, density=1100.0)
+        return vs.Design(
+            name="bar",
+            voxel_size=5 * mm,
+            parts=[
+                vs.Part(
+                    shape=Box(size=(30 * mm, 10 * mm, 10 * mm), corner=(0, 0, 0)), material=soft
+                )
+            ],
+            clamps=[vs.Clamp(region=Region(x=(0, 0)))],
+            loads=[field("20*y", "-60*x", "-9.81 + 30*x")],
+            probes={"tip": vs.Probe(x=(30 * mm, 30 * mm))},
+            objectives=goal,
+        )
+
+    def reach(young):
+        return vs.simulate(at(young), method="statics", tolerance=1e-11).probes["tip"][2]
+
+    rest = vs.simulate(at(100e3), method="statics", tolerance=1e-10)
+    name = "parts.0.material.young"
+    found = vs.gradient(rest, ["reach"], [name])["reach"][name]
+    # The slope changes by a millionth of it over a thousandth of the modulus.
+    assert found == pytest.approx((reach(100.1e3) - reach(99.9e3)) / 200.0, rel=1e-5)
