@@ -13,7 +13,7 @@ import numpy as np
 import pint
 from pydantic import StringConstraints, WithJsonSchema
 
-from voxsoft.design import Design, Dielectric, Parameter, Region, ShapeMemory
+from voxsoft.design import Design, Dielectric, ForceField, Parameter, Region, ShapeMemory
 from voxsoft.design.activation import FiberStrain, Strain, Swelling, Thermal
 from voxsoft.design.body import Body
 from voxsoft.design.clamp import Clamp, Rotation
@@ -133,6 +133,11 @@ INNER = {
     "clamps": [{"region": {"z": ["-inf", 0]}}],
     "probes": {"top": {"point": [0, 0, 0]}},
 }
+SPECIAL[ForceField, "acceleration"] = (
+    (0, 0, "-9.81"),
+    ["-2*vx", "sin(3*t)*x", 1 / 3],
+    ("= p_acceleration", 0, "-1/3"),
+)
 SPECIAL[History, "expression"] = ("1 - exp(-t)", "sin(2*pi*t)^2")
 ACTIVATIONS = (Dielectric, FiberStrain, ShapeMemory, Strain, Swelling, Thermal)
 SPECIAL[Profile, "axis"] = ("x", "z")

@@ -329,6 +329,22 @@ class ProblemParts:
         history: _History = None,
         voids: tuple[NDArray[np.uint32], NDArray[np.float64]] | None = None,
     ) -> None: ...
+    def drag(
+        self,
+        triangles: NDArray[np.uint32],
+        law: Sequence[float],
+        flow: Sequence[float],
+        share: float,
+        history: _History = None,
+        skin: Skin | None = None,
+        first: int = 0,
+    ) -> None: ...
+    def force_field(
+        self,
+        vertices: NDArray[np.uint32],
+        formulas: Sequence[Formula],
+        history: _History = None,
+    ) -> None: ...
     def fluid(
         self,
         network: _core_data.Network,
@@ -500,6 +516,17 @@ class TouchHistory:
     def loads(self) -> list[float]: ...
     @property
     def momentum(self) -> list[list[float]]: ...
+
+@final
+class Formula:
+    """A function of place [m], velocity [m/s] and time [s], from its text."""
+
+    def __new__(cls, text: str) -> Formula: ...
+    def at(
+        self, points: NDArray[np.float64], velocities: NDArray[np.float64], time: float
+    ) -> NDArray[np.float64]: ...
+    @property
+    def variables(self) -> list[str]: ...
 
 @final
 class Skin:

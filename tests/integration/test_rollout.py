@@ -171,3 +171,16 @@ def test_bad_weights_are_named():
         found.gradient({"tip": [0, 0, 1]})
     with pytest.raises(DesignError, match=r"give \(3,\) or \(2, 3\)"):
         found.gradient({"top": [0, 1]})
+
+
+def test_slopes_know_the_drag_of_a_fluid():
+    rubber = vs.NeoHookean(young=1e5, poisson=0.3, density=2000)
+    sinking = vs.Design(
+        name="sinking",
+        voxel_size=0.01,
+        parts=[vs.Part(shape=vs.Box(size=(0.02, 0.02, 0.02)), material=rubber)],
+        loads=[vs.Gravity(), vs.design.Drag(normal=1.0, tangential=0.1)],
+        probes={"middle": {"point": (0.01, 0.01, 0.01)}},
+    )
+    simulator = vs.Simulator(sinking, damping=0, time_step=0.05)
+    assert worst_error(simulator, {"gravity": [9.81, 5.0]}, 1e-2, 8) < SMOOTH

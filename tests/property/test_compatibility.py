@@ -119,6 +119,10 @@ SAMPLES = {
         "parts": [soft(remanence=["20 mT", 0, 0])],
     },
     "immersion": {"loads": [GRAVITY, {"kind": "immersion", "level": "0.1 m"}]},
+    "drag": {"loads": [GRAVITY, {"kind": "drag", "linear": "1 mm/s", "flow": [0, 0, "10 cm/s"]}]},
+    "force field": {
+        "loads": [{"kind": "force_field", "acceleration": ["-2*vx", "4*y", "-9.81 + 20*z"]}]
+    },
     "load over time": {"loads": [{**PRESSURE, "history": RAMP}]},
     "floor": {"loads": [GRAVITY], "floor": {"z": "-1 mm"}},
     "contact": {"contact": {"friction": 0.2}},

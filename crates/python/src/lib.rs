@@ -13,6 +13,7 @@ mod ensemble;
 mod equilibrium;
 mod errors;
 mod fields;
+mod formula;
 mod gate;
 mod handle;
 mod inputs;
@@ -52,6 +53,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<contact_answer::PyContact>()?;
     module.add_class::<contact_field::PyContactField>()?;
     module.add_class::<skin::PySkin>()?;
+    module.add_class::<formula::PyFormula>()?;
     module.add_class::<contact_answer::PyObjectPose>()?;
     module.add_class::<contact_answer::PyTouchHistory>()?;
     module.add_class::<simulate::PyProblem>()?;

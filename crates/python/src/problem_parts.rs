@@ -7,6 +7,7 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use voxsoft_contact::surface::Surface;
 use voxsoft_contact::surface_contact::Flip;
 use voxsoft_contact::surface_contact::law::Adhesive;
 use voxsoft_contact::surface_contact::rigid::Frame;
@@ -14,13 +15,14 @@ use voxsoft_solid::fluid::{Network, Walls};
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Attachment, Clamp, CutSurface, Dielectric, Element, Filling, Floor, Fluid, Gravity, History,
-    Hydrostatic, Images, Load, LoadKind, Membrane, MembraneMaterial, Membranes, Mirrored, Motion,
-    PointForces, Pressure, ProblemError,
+    Attachment, Carried, Clamp, CutSurface, Dielectric, Drag, DragLaw, Element, Filling, Floor,
+    Fluid, ForceField, Gravity, History, Hydrostatic, Images, Load, LoadKind, Membrane,
+    MembraneMaterial, Membranes, Mirrored, Motion, PointForces, Pressure, ProblemError,
 };
 
 use crate::arrays::rows;
 use crate::errors::to_python;
+use crate::formula::PyFormula;
 use crate::plain::plain;
 use crate::skin::PySkin;
 use crate::surface_contact::{BodyPart, BondPart, ContactParts, Freedom, ObjectPart, Way, Whole};
@@ -167,6 +169,61 @@ impl PyProblemParts {
             origin,
         };
         self.load(load, history)
+    }
+
+    /// Adds the drag of a fluid on triangles of vertices, or of the points of a skin on the vertices from `first` on: its
+    /// density (kg/m³), the coefficients along the normal and the surface, the speed (m/s) of the linear part, and its
+    /// flow (m/s). Areas count by their `share`.
+    #[pyo3(signature = (triangles, law, flow, share, history=None, skin=None, first=0))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments of one Python call"
+    )]
+    fn drag(
+        &mut self,
+        triangles: PyReadonlyArray2<'_, u32>,
+        law: [f64; 4],
+        flow: Vec3,
+        share: f64,
+        history: HistoryArgument,
+        skin: Option<PyRef<'_, PySkin>>,
+        first: u32,
+    ) -> PyResult<()> {
+        let triangles: Vec<[u32; 3]> = rows("triangles", &triangles)?;
+        let surface = match &skin {
+            Some(skin) => Surface {
+                points: skin.0.surface.points.clone(),
+                triangles,
+            },
+            None => Surface::of_triangles(&triangles),
+        };
+        let moved = |point: Carried| Carried {
+            vertices: point.vertices.iter().map(|v| v + first).collect(),
+            ..point
+        };
+        let [density, normal, tangential, linear] = law;
+        let law = DragLaw {
+            density,
+            normal,
+            tangential,
+            linear,
+            flow,
+        };
+        let points = surface.points.into_iter().map(moved).collect();
+        self.load(Drag::new(points, surface.triangles, share, law), history)
+    }
+
+    /// Adds an acceleration (m/s²) of vertices by a formula for each of its components.
+    #[pyo3(signature = (vertices, formulas, history=None))]
+    fn force_field(
+        &mut self,
+        vertices: PyReadonlyArray1<'_, u32>,
+        formulas: [PyRef<'_, PyFormula>; 3],
+        history: HistoryArgument,
+    ) -> PyResult<()> {
+        let formulas = formulas.map(|formula| formula.0.clone());
+        let vertices = vertices.as_array().to_vec();
+        self.load(ForceField::new(vertices, formulas), history)
     }
 
     /// Sets the gas or liquid in chambers: a network by the names of its fields, and for each of its chambers the walls,

@@ -11,7 +11,7 @@ use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
     Body, Fluid, Hex8, Load, Material, Membrane, Mesh, PerBlock, Problem, ProblemError, State,
-    elastic,
+    Velocities, elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Status, Trial, relax, simulate};
 
@@ -512,7 +512,7 @@ impl PyProblem {
         }
         let positions = &answer.state.positions;
         let own = self.own();
-        let problem = self.now();
+        let problem = in_motion(self.now(), &answer.state);
         let (contacts, objects) = match &self.touching {
             Some(touching) => (
                 touching.contacts(py, &problem, positions)?,
@@ -575,6 +575,16 @@ impl PyProblem {
             contact_field,
         })
     }
+}
+
+/// The problem with the velocities of a state, for loads that depend on them.
+fn in_motion(mut problem: Arc<Problem>, state: &State) -> Arc<Problem> {
+    if problem.feels_motion() {
+        let (positions, velocities) = (&state.positions, &state.velocities);
+        let moving = || Velocities::of(positions, velocities, 1.0);
+        Arc::make_mut(&mut problem).begin_motion(moving, positions);
+    }
+    problem
 }
 
 /// Keeps the first `own` of every `all` points.

@@ -128,7 +128,7 @@ impl Motion {
         Self {
             elastic: stored - touching,
             kinetic,
-            loads: problem.load_potential(now.positions, &|load| load.history.at(now.time)),
+            loads: problem.stored_load_potential(now.positions, &|load| load.history.at(now.time)),
             momentum,
         }
     }

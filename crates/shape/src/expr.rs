@@ -65,7 +65,7 @@ pub enum Binary {
 /// One node of an expression.
 #[derive(Debug)]
 pub enum Node {
-    /// Coordinate 0 = x, 1 = y, 2 = z, in m
+    /// Coordinate 0 = x, 1 = y, 2 = z, in m; other numbers are variables of functions that are no shapes
     Axis(usize),
     /// A number
     Constant(f64),
@@ -91,7 +91,12 @@ pub struct Expr(Arc<Node>);
 impl Expr {
     /// The coordinates x, y, z.
     pub fn axes() -> [Self; 3] {
-        [0, 1, 2].map(|axis| Self(Arc::new(Node::Axis(axis))))
+        [0, 1, 2].map(Self::variable)
+    }
+
+    /// A coordinate by its number, or another variable of a function that is no shape.
+    pub fn variable(number: usize) -> Self {
+        Self(Arc::new(Node::Axis(number)))
     }
 
     /// A number.

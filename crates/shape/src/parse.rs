@@ -26,6 +26,22 @@ const FUNCTIONS: &str =
 /// # Ok::<(), voxsoft_shape::ParseError>(())
 /// ```
 pub fn parse(text: &str) -> Result<Expr, ParseError> {
+    parse_of(text, &["x", "y", "z"])
+}
+
+/// Reads an expression in variables of these names: the first is [`crate::Node::Axis`] 0, and so on.
+///
+/// # Errors
+/// As for [`parse`].
+///
+/// ```
+/// use voxsoft_shape::{Node, parse_of};
+/// let brake = parse_of("-8*vx", &["x", "vx"])?;
+/// assert!(matches!(brake.node(), Node::Binary(..)));
+/// assert!(parse_of("-8*vy", &["x", "vx"]).is_err());
+/// # Ok::<(), voxsoft_shape::ParseError>(())
+/// ```
+pub fn parse_of(text: &str, variables: &[&str]) -> Result<Expr, ParseError> {
     if text.len() > LONGEST {
         let message = format!(
             "the text has {} bytes; at most {LONGEST} are read",
@@ -40,6 +56,7 @@ pub fn parse(text: &str) -> Result<Expr, ParseError> {
         text: text.chars().collect(),
         at: 0,
         depth: 0,
+        variables,
     };
     let expr = parser.sum()?;
     match parser.peek() {
@@ -51,13 +68,14 @@ pub fn parse(text: &str) -> Result<Expr, ParseError> {
     }
 }
 
-struct Parser {
+struct Parser<'a> {
     text: Vec<char>,
     at: usize,
     depth: usize,
+    variables: &'a [&'a str],
 }
 
-impl Parser {
+impl Parser<'_> {
     fn peek(&mut self) -> Option<char> {
         while self.text.get(self.at).is_some_and(|c| c.is_whitespace()) {
             self.at += 1;
@@ -201,17 +219,17 @@ impl Parser {
             self.at += 1;
         }
         let name: String = self.text[start..self.at].iter().collect();
-        let [x, y, z] = Expr::axes();
+        if let Some(number) = self.variables.iter().position(|known| *known == name) {
+            return Ok(Expr::variable(number));
+        }
         match name.as_str() {
-            "x" => Ok(x),
-            "y" => Ok(y),
-            "z" => Ok(z),
             "pi" => Ok(std::f64::consts::PI.into()),
             _ if FUNCTIONS.split(' ').any(|known| known == name) => self.call(&name, start),
             _ => {
                 self.at = start;
                 Err(self.error(&format!(
-                    "\"{name}\" is not known; known are x y z pi {FUNCTIONS}"
+                    "\"{name}\" is not known; known are {} pi {FUNCTIONS}",
+                    self.variables.join(" ")
                 )))
             }
         }

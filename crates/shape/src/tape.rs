@@ -12,11 +12,16 @@ const CHUNK: usize = 256;
 
 /// One operation; numbers refer to earlier operations.
 #[derive(Clone, Debug)]
-enum Step {
+pub enum Step {
+    /// A coordinate or another variable
     Axis(usize),
+    /// A number
     Constant(f64),
+    /// A function of one value
     Unary(Unary, usize),
+    /// A function of two values
     Binary(Binary, usize, usize),
+    /// A sampled field at the point of three values
     Field(Arc<dyn Field>, [usize; 3]),
 }
 
@@ -66,6 +71,11 @@ impl Tape {
         // Sharing may leave the result in the middle; everything after it would be unused.
         steps.truncate(index_of_node[&expr.key()] + 1);
         Self { steps }
+    }
+
+    /// All operations, the result last.
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
     }
 
     /// Number of operations.

@@ -40,6 +40,7 @@ mod batches;
 mod blocks;
 pub mod body;
 pub mod breakdown;
+mod carried;
 pub mod conformance;
 mod contact;
 pub mod elastic;
@@ -48,6 +49,7 @@ mod error;
 pub mod fields;
 mod floor;
 pub mod fluid;
+pub mod formula;
 pub mod hyperelastic;
 pub mod lattice;
 pub mod loads;
@@ -66,6 +68,7 @@ pub mod vector;
 pub use blocks::{Blocks, PerBlock};
 pub use body::{Body, Mesh};
 pub use breakdown::Breakdown;
+pub use carried::Carried;
 pub use contact::{Contact, ContactMemory, Moment, Precision, RecordedContact, Remembered};
 pub use element::cut_surface::CutSurface;
 pub use element::faces::{FaceConditions, WarpingModes};
@@ -85,8 +88,8 @@ pub use loads::external_force::{ExternalForce, Vertices};
 pub use loads::grabs::{Grab, Grabs};
 pub use loads::history::History;
 pub use loads::{
-    Dielectric, Drive, Element, Gravity, Hydrostatic, Load, LoadKind, Place, PointForces, Pressure,
-    Tendon, TendonMemory, TendonState, enclosed_volume,
+    Dielectric, Drag, DragLaw, Drive, Element, ForceField, Gravity, Hydrostatic, Load, LoadKind,
+    Place, PointForces, Pressure, Tendon, TendonMemory, TendonState, Velocities, enclosed_volume,
 };
 pub use material::Material;
 pub use problem::{Input, Memory, Past, Problem};

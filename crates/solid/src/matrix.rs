@@ -32,6 +32,12 @@ pub fn plus(a: &Mat3, s: f64, b: &Mat3) -> Mat3 {
     std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + s * b[i][j]))
 }
 
+/// `a bᵀ`.
+#[inline(always)]
+pub fn outer(a: Vec3, b: Vec3) -> Mat3 {
+    a.map(|x| b.map(|y| x * y))
+}
+
 /// `A x`.
 #[inline(always)]
 pub fn apply(a: &Mat3, x: Vec3) -> Vec3 {

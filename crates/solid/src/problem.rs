@@ -1,6 +1,7 @@
 mod creep;
 mod input;
 mod memory;
+mod motion;
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -234,11 +235,13 @@ impl Problem {
     }
 
     /// Adds the external forces (N) at `time` (s) except those of length-controlled tendons, whose stiffness would take
-    /// a prescribed motion for a vibration. Forces of a fluid are not added.
+    /// a prescribed motion for a vibration, and those that depend on velocities, which would count as stiffness. Forces
+    /// of a fluid are not added.
     pub fn add_soft_loads(&self, positions: &[Vec3], time: f64, forces: &mut [Vec3]) {
         let positions = &*self.seen(positions);
         let on = self.vertices(positions);
-        for load in self.loads.iter().filter(|load| !load.kind.holds_length()) {
+        let soft = |load: &&Load| !load.kind.holds_length() && !load.kind.feels_motion();
+        for load in self.loads.iter().filter(soft) {
             load.kind.add_forces(on, load.history.at(time), forces);
         }
         self.body.ties().hand_over(forces);
@@ -303,16 +306,6 @@ impl Problem {
         Cow::Owned(problem)
     }
 
-    /// This problem with the friction bounds of its tendons held during a step, so that these have a potential.
-    #[must_use]
-    pub fn with_held_loads(mut self) -> Self {
-        for load in &mut self.loads {
-            load.kind = load.kind.held();
-        }
-        self.conservative = self.loads.iter().all(|load| load.kind.is_conservative());
-        self
-    }
-
     /// Positions with tied vertices placed by their ties.
     fn seen<'a>(&self, positions: &'a [Vec3]) -> Cow<'a, [Vec3]> {
         self.body.ties().seen(positions)
@@ -362,10 +355,11 @@ impl Problem {
         visit: Visitor<'_>,
     ) {
         let (ties, positions) = (self.body.ties(), &*self.seen(positions));
+        let on = self.vertices(positions);
         let mut tied = |corners: &[u32], matrix: &[f64]| ties.visit(corners, matrix, visit);
         for load in self.loads.iter().filter(|load| load.kind.follows()) {
             let factor = factor_of(load);
-            load.kind.visit_stiffness(positions, factor, &mut tied);
+            load.kind.visit_stiffness(on, factor, &mut tied);
         }
         if let Some(fluid) = &self.fluid {
             fluid.visit_stiffness(positions, fluid.instant(factor_of), &mut tied);

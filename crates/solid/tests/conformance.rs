@@ -444,7 +444,7 @@ impl ExternalForce for Apart {
         self.1 != Law::Symmetry
     }
 
-    fn visit_stiffness(&self, _: &[Vec3], factor: f64, visit: Visitor<'_>) {
+    fn visit_stiffness(&self, _: Vertices<'_>, factor: f64, visit: Visitor<'_>) {
         let off = if self.1 == Law::Tangent { 0.99 } else { 1.0 };
         let mut matrix = [[0.0; 6]; 6];
         for i in 0..3 {

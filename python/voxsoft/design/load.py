@@ -1,21 +1,42 @@
-"""Loads: gravity, pressures, forces, tractions, magnetic fields, immersion; and the floor."""
+"""Loads: gravity, pressures, forces, tractions, liquids, fields; and the floor."""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, Tag, field_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Discriminator,
+    Field,
+    Tag,
+    WithJsonSchema,
+    field_validator,
+)
 
-from voxsoft import units
+from voxsoft import _core, units
 from voxsoft.design.chamber import CavityChoice
 from voxsoft.design.clamp import check_direction
 from voxsoft.design.history import History
 from voxsoft.design.region import Region
+from voxsoft.errors import DesignError
 from voxsoft.records import Record
-from voxsoft.units import Acceleration, Length, PositiveDensity, Vector
+from voxsoft.units import (
+    KINDS,
+    Acceleration,
+    Dimensionless,
+    Length,
+    NonNegative,
+    NonNegativeSpeed,
+    PositiveDensity,
+    Quantity,
+    Speed,
+    Vector,
+)
 
 Forces = tuple[units.Force, units.Force, units.Force]
 Stresses = tuple[units.Pressure, units.Pressure, units.Pressure]
+Velocity = tuple[Speed, Speed, Speed]
 FluxDensity = tuple[units.MagneticField, units.MagneticField, units.MagneticField]
 
 
@@ -175,7 +196,8 @@ class Immersion(Record):
 
     Notes
     -----
-    Drag and the liquid that moves along with the body are left out; objects feel no liquid.
+    Drag is a load of its own, :class:`Drag`; the liquid that moves along with the body is left
+    out, and objects feel no liquid.
 
     Examples
     --------
@@ -190,8 +212,125 @@ class Immersion(Record):
     history: History | None = None
 
 
+class Drag(Record):
+    """Drag of a fluid on the outer surface of the body, against its motion through the fluid.
+
+    An element of the surface with the area A and the outward normal n, which moves by u relative
+    to the fluid, feels −ρ A (w u + cₜ/2 |uₜ| uₜ + cₙ/2 max(u·n, 0)² n): a linear part, friction
+    along it, and a pressure on the side of the body that meets the fluid.
+
+    Parameters
+    ----------
+    value
+        Density ρ of the fluid; default: water.
+    normal
+        Coefficient cₙ of the pressure, by Newton's law of the squared sine: a plate across the
+        flow and a box have the drag coefficient cₙ, a ball half of it. Default 1.
+    tangential
+        Coefficient cₜ of the friction along the surface; default 0.
+    linear
+        Speed w of the linear part, for slow flow: of a ball of the radius R it is 3ν/(2R) with the
+        kinematic viscosity ν (of water 1e-6 m²/s). Default 0.
+    flow
+        Velocity of the fluid along x, y, z; default: at rest.
+    history
+        The factor over time, not below zero; default: constant.
+
+    Notes
+    -----
+    It acts in motions by implicit steps, which a run over time with it takes. At rest only the
+    flow is felt.
+
+    Examples
+    --------
+    >>> Drag(normal=1.2, flow=("0.3 m/s", 0, 0)).flow
+    (0.3, 0.0, 0.0)
+    """
+
+    kind: Literal["drag"] = "drag"
+    value: PositiveDensity = 1000.0
+    normal: NonNegative = 1.0
+    tangential: NonNegative = 0.0
+    linear: NonNegativeSpeed = 0.0
+    flow: Velocity = (0.0, 0.0, 0.0)
+    history: History | None = None
+
+    @field_validator("history")
+    @classmethod
+    def _takes_energy(cls, history: History | None) -> History | None:
+        least = 0.0 if history is None else min(history.factors)
+        if least < 0.0:
+            what = f"has the factor {least:g}, and drag below zero would drive the body"
+            raise DesignError("", what, "give factors from 0 on; a flow drives it")
+        return history
+
+
+def _as_text(value: object) -> object:
+    """Write numbers, and the values of formulas of the design, as text."""
+    if isinstance(value, Quantity):
+        if value.dimension != KINDS["acceleration"].dimension:
+            raise DesignError("", f"is {value}, not an acceleration", "give one, in m/s^2")
+        return repr(value.value)
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return repr(float(value))
+    return value
+
+
+def _readable(text: str) -> str:
+    _core.Formula(text)
+    return text
+
+
+#: Text of a function of x, y, z [m], vx, vy, vz [m/s] and t [s], checked; or a number.
+FormulaText = Annotated[
+    str,
+    BeforeValidator(_as_text),
+    AfterValidator(_readable),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "number"}]}),
+]
+
+
+class ForceField(Record):
+    """An acceleration of all mass of the body, a function of place, velocity and time.
+
+    Parameters
+    ----------
+    acceleration
+        Components along x, y, z in m/s², as functions of ``x``, ``y``, ``z`` in m, ``vx``, ``vy``,
+        ``vz`` in m/s and ``t`` in s: numbers, or text in the grammar of
+        :class:`voxsoft.shapes.Expression`, whose numbers are in SI units.
+    value
+        A factor on it; default 1.
+    history
+        Another factor, over time; default: constant.
+
+    Notes
+    -----
+    At rest velocities are zero, and statics refuses a field that changes with ``t``. Objects feel
+    no field.
+
+    Examples
+    --------
+    >>> swirl = ForceField(acceleration=("-4*x - 8*vx", "-4*y - 8*vy", "-9.81"))
+    >>> swirl.acceleration[2]
+    '-9.81'
+    >>> ForceField(acceleration=(0, 0, "-9.81*z/hight"))
+    Traceback (most recent call last):
+    ...
+    voxsoft.errors.DesignError: acceleration[2]: at character 9: "hight" is not known; known are \
+x y z vx vy vz t pi abs acos asin atan atan2 ceil cos exp floor hypot log max min sin sqrt tan. \
+Try: write a function of x, y, z in m, vx, vy, vz in m/s and t in s, such as "-9.81 - 8*vz"
+    """
+
+    kind: Literal["force_field"] = "force_field"
+    acceleration: tuple[FormulaText, FormulaText, FormulaText]
+    value: Dimensionless = 1.0
+    history: History | None = None
+
+
 AnyLoad = Annotated[
-    Gravity | Pressure | Force | Traction | MagneticField | Immersion, Field(discriminator="kind")
+    Gravity | Pressure | Force | Traction | MagneticField | Immersion | Drag | ForceField,
+    Field(discriminator="kind"),
 ]
 
 

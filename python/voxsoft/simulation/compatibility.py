@@ -111,6 +111,10 @@ _TENDONS_IMPLICIT: Final = Reason(
     "is pulled by statics and implicit dynamics, and the settings mean {who}",
     'write method = "statics", or method = "dynamics", or leave tendons out',
 )
+_IMPLICIT_STEPS: Final = Reason(
+    "is known to steps that are implicit, and the settings mean {who}",
+    'write method = "dynamics", or leave it out',
+)
 _SUPPLIES_BY: Final = Reason(
     "are known to load control and implicit dynamics, and the settings mean {who}",
     'write method = "statics", or method = "dynamics"',
@@ -226,6 +230,12 @@ _REFUSED: Final[tuple[tuple[str, tuple[str, ...], Reason], ...]] = (
     ("mesh of a file", ("comparison", "confirmation"), _NO_VOXELS),
     ("immersion", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without it")),
     ("immersion", ("symmetry",), Reason(_WITH_PLANES.what, "leave the planes out")),
+    ("drag", ("explicit dynamics",), _IMPLICIT_STEPS),
+    ("drag", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without it")),
+    ("drag", ("symmetry",), Reason(_WITH_PLANES.what, "leave the planes out")),
+    ("force field", ("explicit dynamics",), _IMPLICIT_STEPS),
+    ("force field", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without it")),
+    ("force field", ("symmetry",), Reason(_WITH_PLANES.what, "leave the planes out")),
     ("floor", ("outside codes",), Reason(_OUTSIDE.what, "clamp the foot instead")),
     ("layers", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without them")),
     ("springs and the like", ("outside codes",), _OUTSIDE),

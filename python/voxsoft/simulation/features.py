@@ -198,6 +198,8 @@ FEATURES: Final[Mapping[str, _Places]] = MappingProxyType(
         "traction": _loads("traction"),
         "magnetic field": _loads("magnetic_field"),
         "immersion": _loads("immersion"),
+        "drag": _loads("drag"),
+        "force field": _loads("force_field"),
         "load over time": _load_histories,
         "floor": _key("floor"),
         "contact": _contact,

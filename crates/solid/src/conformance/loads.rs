@@ -45,9 +45,8 @@ impl Check<'_> {
 
     fn stiffness_times(&self, direction: &[Vec3]) -> Vec<Vec3> {
         let mut product = vec![[0.0; 3]; direction.len()];
-        let positions = self.on.positions;
         self.load
-            .visit_stiffness(positions, 1.0, &mut |vertices, matrix| {
+            .visit_stiffness(self.on, 1.0, &mut |vertices, matrix| {
                 add_product(vertices, matrix, direction, &mut product);
             });
         product
@@ -173,13 +172,12 @@ impl Check<'_> {
             );
         });
         let mut covered = true;
-        self.load
-            .visit_stiffness(self.on.positions, 1.0, &mut |vertices, _| {
-                let mut all = vertices
-                    .iter()
-                    .flat_map(|&a| vertices.iter().map(move |&b| (a, b)));
-                covered &= all.all(|pair| pairs.contains(&pair));
-            });
+        self.load.visit_stiffness(self.on, 1.0, &mut |vertices, _| {
+            let mut all = vertices
+                .iter()
+                .flat_map(|&a| vertices.iter().map(move |&b| (a, b)));
+            covered &= all.all(|pair| pairs.contains(&pair));
+        });
         self.subject.holds(
             Law::Pattern,
             "the stiffness has entries that the pattern has not",

@@ -290,7 +290,7 @@ impl Fluid {
         let (_, bent) = self.answer(&self.volumes(positions), instant);
         for (walls, pressure) in self.walls.iter().zip(bent) {
             for wall in walls {
-                wall.visit_stiffness(positions, pressure, visit);
+                wall.visit_stiffness(bare(positions), pressure, visit);
             }
         }
     }

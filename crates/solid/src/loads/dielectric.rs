@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 use crate::ProblemError;
 use crate::assembly::{Visitor, check_indices};
 use crate::loads::external_force::{ExternalForce, Vertices, check_finite};
-use crate::matrix::{Mat3, cross_matrix};
+use crate::matrix::{Mat3, cross_matrix, outer};
 use crate::vector::{Vec3, axpy, cross, dot, scale};
 
 /// Volume ratio below which its inverse is continued as its Taylor polynomial of second order, so that the potential
@@ -58,10 +58,6 @@ fn inverse(volume: f64) -> [f64; 3] {
         first + off * second,
         second,
     ]
-}
-
-fn outer(a: Vec3, b: Vec3) -> Mat3 {
-    a.map(|x| scale(x, b))
 }
 
 fn add_scaled(sum: &mut Mat3, factor: f64, other: &Mat3) {
@@ -195,7 +191,8 @@ impl ExternalForce for Dielectric {
         true
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {
+    fn visit_stiffness(&self, on: Vertices<'_>, factor: f64, visit: Visitor<'_>) {
+        let positions = on.positions;
         let mut matrix = [[0.0; 24]; 24];
         for element in &self.elements {
             let hessian = element.squeeze(positions, true).hessian;

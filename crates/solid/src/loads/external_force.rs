@@ -66,6 +66,17 @@ pub trait ExternalForce: Debug + Send + Sync {
         false
     }
 
+    /// Tests whether the forces change with time under a constant factor.
+    fn varies(&self) -> bool {
+        false
+    }
+
+    /// Tests whether the forces depend on the velocities within a time step, which are functions of the positions at its
+    /// end ([`crate::Problem::begin_motion`]).
+    fn feels_motion(&self) -> bool {
+        false
+    }
+
     /// Tests whether the forces have a potential, so that their derivative is symmetric.
     fn is_conservative(&self) -> bool {
         true
@@ -83,7 +94,7 @@ pub trait ExternalForce: Debug + Send + Sync {
 
     /// Visits the element matrices of `factor` times minus the derivative of the forces by positions (N/m), as
     /// [`crate::Term::visit_stiffness`] does.
-    fn visit_stiffness(&self, _positions: &[Vec3], _factor: f64, _visit: Visitor<'_>) {}
+    fn visit_stiffness(&self, _on: Vertices<'_>, _factor: f64, _visit: Visitor<'_>) {}
 
     /// Visits the vertices of every element of that derivative.
     fn visit_pattern(&self, _visit: &mut dyn FnMut(&[u32])) {}

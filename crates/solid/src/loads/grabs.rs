@@ -188,6 +188,9 @@ pub fn checked_state(problem: &Problem, state: State) -> Result<State, ProblemEr
 
 /// The time (s) after which loads, motions, fluid and materials of a problem no longer vary.
 pub fn loads_end(problem: &Problem) -> f64 {
+    if problem.loads().iter().any(|load| load.kind.varies()) {
+        return f64::INFINITY;
+    }
     let loads = problem.loads().iter().map(|load| &load.history);
     let clamps = problem.clamps().iter();
     let motions = clamps.filter_map(|clamp| clamp.motion.as_ref());

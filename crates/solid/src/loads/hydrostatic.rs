@@ -112,7 +112,8 @@ impl ExternalForce for Hydrostatic {
         true
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {
+    fn visit_stiffness(&self, on: Vertices<'_>, factor: f64, visit: Visitor<'_>) {
+        let positions = on.positions;
         for &triangle in &self.triangles {
             let (corners, mean) = self.seen(triangle, positions);
             let (_, gradients) = volume_and_gradients(corners);

@@ -2,8 +2,10 @@
 
 pub(crate) mod clamp;
 mod dielectric;
+mod drag;
 pub(crate) mod eigenstrain;
 pub(crate) mod external_force;
+mod field;
 pub mod grabs;
 mod gravity;
 pub(crate) mod history;
@@ -11,6 +13,9 @@ mod hydrostatic;
 mod point_forces;
 mod pressure;
 mod tendon;
+mod velocities;
+
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -19,11 +24,14 @@ use crate::{History, Mirrored};
 use external_force::ExternalForce;
 
 pub use dielectric::{Dielectric, Element};
+pub use drag::{Drag, DragLaw};
+pub use field::ForceField;
 pub use gravity::Gravity;
 pub use hydrostatic::Hydrostatic;
 pub use point_forces::PointForces;
 pub use pressure::{Pressure, enclosed_volume};
 pub use tendon::{Drive, Place, Tendon, TendonMemory, TendonState};
+pub use velocities::Velocities;
 
 /// The kinds of loads.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -42,14 +50,36 @@ pub enum LoadKind {
     Tendon(Tendon),
     /// The squeeze of a sheet by its electrodes.
     Dielectric(Dielectric),
+    /// The drag of a fluid on a surface.
+    Drag(Drag),
+    /// An acceleration by formulas.
+    Field(ForceField),
 }
 
 impl LoadKind {
-    /// This load with its friction bounds held constant during a step, which gives a tendon with friction a potential.
+    /// This load within the steps of a motion, which gives it a potential: a tendon with its friction bounds held constant,
+    /// drag with the areas that it begins a step with.
     pub(crate) fn held(&self) -> Self {
         match self {
             Self::Tendon(tendon) => Self::Tendon(tendon.held()),
+            Self::Drag(drag) => Self::Drag(drag.in_motion()),
             other => other.clone(),
+        }
+    }
+
+    /// Gives it the velocities within a time step, and positions (m) near its end, if it feels motion.
+    pub(crate) fn begin(&mut self, velocities: &Arc<Velocities>, near: &[Vec3]) {
+        match self {
+            Self::Drag(drag) => drag.begin(velocities, near),
+            Self::Field(field) => field.begin(velocities),
+            _ => {}
+        }
+    }
+
+    /// Gives it the time in s, if it varies by itself.
+    pub(crate) fn set_time(&mut self, time: f64) {
+        if let Self::Field(field) = self {
+            field.set_time(time);
         }
     }
 }
@@ -66,6 +96,8 @@ impl std::ops::Deref for LoadKind {
             Self::MirroredPressure(pressure) => pressure,
             Self::Tendon(tendon) => tendon,
             Self::Dielectric(sheet) => sheet,
+            Self::Drag(drag) => drag,
+            Self::Field(field) => field,
         }
     }
 }
@@ -97,6 +129,18 @@ impl From<Tendon> for LoadKind {
 impl From<Dielectric> for LoadKind {
     fn from(sheet: Dielectric) -> Self {
         Self::Dielectric(sheet)
+    }
+}
+
+impl From<Drag> for LoadKind {
+    fn from(drag: Drag) -> Self {
+        Self::Drag(drag)
+    }
+}
+
+impl From<ForceField> for LoadKind {
+    fn from(field: ForceField) -> Self {
+        Self::Field(field)
     }
 }
 

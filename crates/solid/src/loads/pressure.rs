@@ -72,7 +72,8 @@ impl ExternalForce for Pressure {
 
     /// On a closed surface the forces are `p ∂V/∂x`, and a triangle's part of `V` is `−a·(b × c)/6`; an
     /// open one loads each corner with a third of `−p A n`, whose derivative is not symmetric.
-    fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {
+    fn visit_stiffness(&self, on: Vertices<'_>, factor: f64, visit: Visitor<'_>) {
+        let positions = on.positions;
         let pressure = factor * self.pressure;
         let closed = self.is_closed();
         for triangle in &self.triangles {

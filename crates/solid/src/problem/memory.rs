@@ -118,9 +118,12 @@ impl Problem {
         self.fluid.clone_from(&other.fluid);
     }
 
-    /// Sets the free stretches of all materials to those at a time in s.
+    /// Sets the free stretches of all materials, and fields that vary with time, to those at a time in s.
     pub fn begin(&mut self, time: f64) {
         self.time = time;
+        for load in &mut self.loads {
+            load.kind.set_time(time);
+        }
         if self.body.eigenstrain_end() > 0.0 {
             self.body_mut().begin(time);
         }

@@ -238,10 +238,11 @@ impl ExternalForce for Mirrored<Pressure> {
         self.elements.is_pressure()
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {
+    fn visit_stiffness(&self, on: Vertices<'_>, factor: f64, visit: Visitor<'_>) {
         let images = &self.images;
-        let seen = images.seen(positions);
-        (self.elements).visit_stiffness(&seen, factor, &mut |corners, matrix| {
+        let positions = &images.seen(on.positions);
+        let seen = Vertices { positions, ..on };
+        (self.elements).visit_stiffness(seen, factor, &mut |corners, matrix| {
             images.visit(corners, matrix, visit);
         });
     }

@@ -6,7 +6,7 @@
 
 use voxsoft_solid::breakdown::Breakdown;
 use voxsoft_solid::vector::{Vec3, dot, scale, sub};
-use voxsoft_solid::{Damping, Load, Problem, Progress, State};
+use voxsoft_solid::{Damping, Load, Problem, Progress, State, Velocities};
 
 use super::run::{Now, Run, Step};
 use super::scheme::{FIRST_PART, SECOND_OVER_FIRST, Stage, Start};
@@ -139,6 +139,21 @@ pub trait InnerSearch: Send + 'static {
     /// Tests whether the last step was found to its tolerance.
     fn settled(&self) -> bool {
         true
+    }
+}
+
+/// Gives the loads of a run, and of the copy of its search, the velocities of a step.
+fn begin_motion(run: &mut Run, copy: Option<&mut Problem>, step: &Step) {
+    if !run.problem.feels_motion() {
+        return;
+    }
+    let near = run.extrapolated(step.length, None);
+    for problem in std::iter::once(&mut run.problem).chain(copy) {
+        let velocities = || Velocities {
+            rate: step.start.rate,
+            from: step.start.positions.clone(),
+        };
+        problem.begin_motion(velocities, &near);
     }
 }
 
@@ -323,6 +338,7 @@ impl<S: InnerSearch> Integrator<S> {
         let time = step.time;
         let run = &mut self.run;
         run.problem.begin(time);
+        begin_motion(run, self.search.copy(), &step);
         let positions = self.search.solve(run, &step, asker)?;
         let pairs = positions.iter().zip(&step.start.positions);
         let velocities = pairs.map(|(x, from)| scale(step.start.rate, sub(*x, *from)));

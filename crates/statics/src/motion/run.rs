@@ -3,7 +3,7 @@
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::loads::grabs::{Grabs, shortest_edge};
 use voxsoft_solid::vector::{Vec3, axpy, sub};
-use voxsoft_solid::{Damping, Grab, LiveStatus, Past, Problem, State};
+use voxsoft_solid::{Damping, Grab, LiveStatus, Past, Problem, State, Velocities};
 
 use super::scheme::{Stage, Start};
 use crate::linear::options::LinearSolver;
@@ -135,6 +135,9 @@ impl Run {
         }
         self.problem.start_loads();
         self.problem.begin(start.time);
+        let (positions, velocities) = (&start.positions, &start.velocities);
+        let moving = || Velocities::of(positions, velocities, 1.0 / self.settings.step);
+        self.problem.begin_motion(moving, positions);
         self.state = start;
         self.now = Now::default();
         self.before = None;

@@ -36,6 +36,8 @@ SENTENCES: Final[Mapping[str, str]] = MappingProxyType(
         "traction": "",
         "magnetic field": "",
         "immersion": "",
+        "drag": "is not held: MuJoCo's flexes feel no fluid",
+        "force field": "is not held: MuJoCo has no forces by formulas",
         "load over time": "",
         "floor": "",
         "contact": "",

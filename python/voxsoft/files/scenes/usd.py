@@ -39,6 +39,8 @@ SENTENCES: Final[Mapping[str, str]] = MappingProxyType(
         "traction": _LOAD,
         "magnetic field": _LOAD,
         "immersion": _LOAD,
+        "drag": _LOAD,
+        "force field": _LOAD,
         "load over time": "is not held: the file has its final value",
         "floor": "",
         "contact": "",

@@ -12,8 +12,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft import _core
 from voxsoft.cavity import MeshCavity
 from voxsoft.mesh import Mesh
+from voxsoft.simulation.loads.surface import OuterSurface
 
 Floats = NDArray[np.float64]
 Vertices = NDArray[np.uint32]
@@ -49,6 +51,12 @@ class LoadReceiver(ABC):
         forces = volume.forces(self.mesh.vertices)
         loaded = np.flatnonzero(forces.any(axis=1)).astype(np.uint32)
         self.forces(loaded, forces[loaded])
+
+    def drag(self, drag: SurfaceDrag) -> None:  # noqa: B027 - few receivers know velocities
+        """Take the drag of a fluid; by default none, as of a body at rest in a fluid at rest."""
+
+    def field(self, field: FieldAcceleration) -> None:  # noqa: B027 - few receivers know any
+        """Take an acceleration by formulas; by default none."""
 
     def traction(self, triangles: Triangles, stress: Floats) -> None:
         """Take a dead force for each undeformed area of triangles, (3,), Pa."""
@@ -232,6 +240,59 @@ class DepthPressure(Action):
                 kept = corners[:, corner] >= 0
                 np.add.at(found, corners[kept, corner], each[kept, corner])
         return found
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceDrag(Action):
+    """Drag of a fluid on the outer surface of a body.
+
+    Attributes
+    ----------
+    surface
+        The surface.
+    density
+        Density of the fluid, kg/m³.
+    normal, tangential
+        Coefficients across the surface and along it.
+    linear
+        Speed of the linear part, m/s.
+    flow
+        Velocity of the fluid, (3,), m/s.
+    """
+
+    surface: OuterSurface
+    density: float
+    normal: float
+    tangential: float
+    linear: float
+    flow: Floats
+
+    def give_to(self, receiver: LoadReceiver) -> None:
+        """Hand this to its receiver."""
+        receiver.drag(self)
+
+    def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
+        """Return the point where the flow through the middle enters the bounds, as an arrow."""
+        return _into_bounds(rest, _unit(self.flow))
+
+
+@dataclass(frozen=True, eq=False)
+class FieldAcceleration(Action):
+    """An acceleration of all mass by formulas in m/s² along x, y and z, times a factor."""
+
+    value: float
+    formulas: tuple[_core.Formula, _core.Formula, _core.Formula]
+
+    def give_to(self, receiver: LoadReceiver) -> None:
+        """Hand this to its receiver."""
+        receiver.field(self)
+
+    def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
+        """Return the point where a line along it in the middle enters the bounds, as an arrow."""
+        middle, still = rest.mean(axis=0, keepdims=True), np.zeros((1, 3))
+        found = np.concatenate([each.at(middle, still, 0.0) for each in self.formulas])
+        known = self.value * np.where(np.isfinite(found), found, 0.0)
+        return _into_bounds(rest, _unit(known))
 
 
 def _into_bounds(rest: Floats, direction: Floats) -> tuple[Floats, Floats]:

@@ -13,8 +13,9 @@ from voxsoft.design import Design, History, Region
 from voxsoft.design.chamber import CavityChoice
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.loads.actions import Action, Vertices
+from voxsoft.simulation.loads.surface import OuterSurface
 
-Quantity = Literal["acceleration", "force", "pressure", "magnetic field", "density"]
+Quantity = Literal["acceleration", "force", "pressure", "magnetic field", "density", "number"]
 Triple = tuple[float, float, float]
 L = TypeVar("L")
 
@@ -29,6 +30,10 @@ class LoadedBody(Protocol):
     @property
     def mesh(self) -> Mesh:
         """The tetrahedra; cavities have the names of the design's chambers."""
+
+    @property
+    def outer_surfaces(self) -> tuple[OuterSurface, ...]:
+        """The outer surface of each of its bodies."""
 
     def vertices_in(self, region: Region, where: str) -> Vertices:
         """Vertices that a region catches; `where` is the place an error names."""
@@ -54,6 +59,8 @@ class LoadReading:
         Its factor over time.
     cavity
         Its cavity, if it acts in one.
+    varies
+        True if it changes with time by itself.
     """
 
     kind: str
@@ -63,6 +70,7 @@ class LoadReading:
     direction: Triple
     history: History | None
     cavity: CavityChoice | None = None
+    varies: bool = False
 
     @property
     def size(self) -> float:

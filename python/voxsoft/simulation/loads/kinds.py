@@ -8,15 +8,27 @@ from typing import Any, Final
 
 import numpy as np
 
-from voxsoft.design import Force, Gravity, Immersion, MagneticField, Pressure, Traction
+from voxsoft import _core
+from voxsoft.design import (
+    Drag,
+    Force,
+    ForceField,
+    Gravity,
+    Immersion,
+    MagneticField,
+    Pressure,
+    Traction,
+)
 from voxsoft.design.chamber import chosen_cavities
 from voxsoft.errors import DesignError
 from voxsoft.simulation.loads.actions import (
     Acceleration,
     Action,
     DepthPressure,
+    FieldAcceleration,
     FieldForces,
     SharedForce,
+    SurfaceDrag,
     SurfacePressure,
     SurfaceTraction,
     Triangles,
@@ -161,6 +173,49 @@ class ImmersionKind(LoadKind[Immersion]):
 _NO_TRIANGLE: Final[Triangles] = np.zeros((0, 3), dtype=np.int32)
 
 
+class DragKind(LoadKind[Drag]):
+    """Drag of a fluid on the outer surface: one action for each body."""
+
+    def read(self, load: Drag) -> LoadReading:
+        """Describe the load."""
+        return LoadReading(load.kind, "drag", "density", (load.value,), load.flow, load.history)
+
+    def actions(self, load: Drag, body: LoadedBody, where: str) -> list[SurfaceDrag]:
+        """Return the actions of the load."""
+        law = (load.value, load.normal, load.tangential, load.linear)
+        return [SurfaceDrag(each, *law, np.asarray(load.flow)) for each in body.outer_surfaces]
+
+
+class ForceFieldKind(LoadKind[ForceField]):
+    """Field of force: an acceleration by formulas."""
+
+    def read(self, load: ForceField) -> LoadReading:
+        """Describe the load."""
+        varies = any("t" in _core.Formula(text).variables for text in load.acceleration)
+        return LoadReading(
+            load.kind,
+            "force field",
+            "number",
+            (load.value,),
+            (0.0, 0.0, 0.0),
+            load.history,
+            varies=varies,
+        )
+
+    def actions(self, load: ForceField, body: LoadedBody, where: str) -> list[FieldAcceleration]:
+        """Return the actions of the load."""
+        x, y, z = (_core.Formula(text) for text in load.acceleration)
+        points = body.mesh.vertices
+        for axis, formula in enumerate((x, y, z)):
+            values = formula.at(points, np.zeros_like(points), 0.0)
+            if not np.isfinite(values).all():
+                first = ", ".join(f"{1e3 * c:.4g}" for c in points[~np.isfinite(values)][0])
+                what = f"has no finite value at ({first}) mm, for the body at rest and t = 0"
+                hint = "add a small number to what it divides by, or keep it where it has a value"
+                raise DesignError(f"{where}.acceleration[{axis}]", what, hint)
+        return [FieldAcceleration(load.value, (x, y, z))]
+
+
 #: Kind of load of each model.
 KINDS: Final[Mapping[type[object], LoadKind[Any]]] = MappingProxyType(
     {
@@ -170,5 +225,7 @@ KINDS: Final[Mapping[type[object], LoadKind[Any]]] = MappingProxyType(
         Traction: TractionKind(),
         MagneticField: MagneticFieldKind(),
         Immersion: ImmersionKind(),
+        Drag: DragKind(),
+        ForceField: ForceFieldKind(),
     }
 )

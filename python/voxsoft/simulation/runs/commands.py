@@ -455,8 +455,9 @@ def _load_drafts(setup: Setup, one: Setup) -> Iterator[_Draft]:
 
         nothing: Value = (0.0, 0.0, 0.0) if count > 1 else 0.0
         history = _course(load.history, partial(_times_of, load.value))
-        is_gravity = reading.quantity == "acceleration"
-        first = load.value if is_gravity else nothing
+        # Gravity, a fluid around the body and fields are there before anybody commands them.
+        is_around = reading.quantity in ("acceleration", "density", "number")
+        first = load.value if is_around else nothing
         yield _Draft(
             names[index],
             reading.quantity.replace(" ", "_"),

@@ -34,7 +34,8 @@ from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
-from voxsoft.simulation.loads.actions import DepthPressure
+from voxsoft.simulation.loads.actions import DepthPressure, FieldAcceleration, SurfaceDrag
+from voxsoft.simulation.loads.surface import OuterSurface
 from voxsoft.simulation.setup.chambers import check_chambers, with_chamber_names
 from voxsoft.simulation.setup.contact import (
     CoreHistory,
@@ -50,6 +51,7 @@ from voxsoft.simulation.setup.layers import LayerTriangles, all_layer_triangles,
 from voxsoft.simulation.setup.materials import core_materials, solid_materials
 from voxsoft.simulation.setup.missing_cavity import why_no_cavity
 from voxsoft.simulation.setup.other_split import OtherSplit, with_other_split
+from voxsoft.simulation.setup.outer_surface import outer_surfaces
 from voxsoft.simulation.setup.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.setup.profiles import check_profile_symmetry
 from voxsoft.simulation.setup.supports import clamped_vertices
@@ -200,6 +202,11 @@ class Setup:
     def other_split(self) -> OtherSplit:
         """Other split of the faces under pressure into triangles."""
         return OtherSplit.of(self.design, self.mesh)
+
+    @cached_property
+    def outer_surfaces(self) -> tuple[OuterSurface, ...]:
+        """Outer surface of each body."""
+        return outer_surfaces(self.design, self.other_split)
 
     @cached_property
     def points(self) -> NDArray[np.float64]:
@@ -597,3 +604,23 @@ class _CoreLoads(LoadReceiver):
             self._history,
             (volume.tets.astype(np.uint32), volume.parts),
         )
+
+    def drag(self, drag: SurfaceDrag) -> None:
+        assert isinstance(self._parts, _core.ProblemParts)  # planes of symmetry refuse it
+        surface = drag.surface
+        self._parts.drag(
+            surface.triangles,
+            [drag.density, drag.normal, drag.tangential, drag.linear],
+            drag.flow.tolist(),
+            surface.share,
+            self._history,
+            surface.skin,
+            surface.first,
+        )
+
+    def field(self, field: FieldAcceleration) -> None:
+        assert isinstance(self._parts, _core.ProblemParts)  # planes of symmetry refuse it
+        times, factors = self._history or ([0.0], [1.0])
+        history = (times, [field.value * factor for factor in factors])
+        vertices = np.arange(len(self.mesh.vertices), dtype=np.uint32)
+        self._parts.force_field(vertices, field.formulas, history)

@@ -20,6 +20,7 @@ from voxsoft.simulation.compatibility import (
     refused_features,
     refused_together,
 )
+from voxsoft.simulation.loads import readings
 from voxsoft.simulation.setup.contact import has_contact
 from voxsoft.simulation.setup.fluids import has_supplies
 from voxsoft.simulation.solving.dynamics import Dynamics, DynamicsToEnd, DynamicsToRest
@@ -181,6 +182,12 @@ def unused_settings(
     kind = kind_of(design, solver)
     yield from refusals(design, _use_of(kind, solver))
     yield from refused_together(design)
+    if kind not in DYNAMICS:
+        for index, load in enumerate(readings(design)):
+            if load.varies:
+                what = f"changes with t, and {kind.title} looks for rest"
+                hint = 'write method = "dynamics", or a field without t with a history'
+                yield ErrorDetail(f"loads[{index}].acceleration", what, hint)
     if kind in DYNAMICS and solver.method != "xpbd":
         for feature in refused_features(design, "explicit dynamics"):
             for name in _EXPLICIT:

@@ -222,7 +222,7 @@ def _motion(design: Design, mesh: Mesh, wall: float | None, mass: float) -> floa
             strain += abs(size) / young * slender * max(slender, 1.0)
         elif load.quantity == "pressure":
             force += abs(size) * thick * wide
-        else:
+        elif load.quantity not in ("density", "number"):  # a fluid around the body, a field
             along = np.abs(load.direction) / (np.linalg.norm(load.direction) or 1.0)
             force += size * (mass if load.quantity == "acceleration" else 1.0) * along
     axial = force[int(np.argmax(sizes))]

@@ -28,9 +28,16 @@ DEFAULT_TIME_STEP: Final = 0.01
 DEFAULT_RECORD_INTERVAL: Final = 0.02
 
 
+#: Features of designs whose motions are found step by step, each to its tolerance.
+_CONVERGED: Final = ("contact", "supplies", "softening", "drag", "force field")
+
+
 def converges_each_step(design: Design) -> bool:
-    """Return True if every step of a motion has to converge: states depend on the way to them."""
-    return any(has_feature(design, name) for name in ("contact", "supplies", "softening"))
+    """Return True if every step of a motion has to converge.
+
+    States depend on the way to them, or forces on velocities.
+    """
+    return any(has_feature(design, name) for name in _CONVERGED)
 
 
 class Dynamics(Method):

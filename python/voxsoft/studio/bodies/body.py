@@ -363,7 +363,7 @@ def _load(setup: Setup, index: int) -> events.BodyLoad:
     at, direction = _place(setup, index)
     value, kind = load.size * load.final_factor, load.quantity
     unit = format_quantity(value, kind).partition(" ")[2] if value else ""
-    unit = unit or KINDS[kind].units[0]
+    unit = unit or next(iter(KINDS[kind].units), "")
     return events.BodyLoad(
         index=index,
         kind=load.kind,
@@ -380,7 +380,7 @@ def _load(setup: Setup, index: int) -> events.BodyLoad:
 
 
 def _factor(unit: str, kind: str) -> float:
-    return parse(f"1 {unit}", kind)
+    return parse(f"1 {unit}", kind) if unit else 1.0
 
 
 def _place(setup: Setup, index: int) -> tuple[Triple, Triple]:

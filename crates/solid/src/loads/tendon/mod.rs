@@ -411,7 +411,8 @@ impl ExternalForce for Tendon {
         self.has_friction()
     }
 
-    fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {
+    fn visit_stiffness(&self, on: Vertices<'_>, factor: f64, visit: Visitor<'_>) {
+        let positions = on.positions;
         let pulled = self.pulled(positions, factor);
         if !self.is_in_pieces() {
             visit_carried(&self.places, &self.stiffness(&pulled), visit);

@@ -17,7 +17,8 @@ use std::marker::PhantomData;
 use voxsoft_solid::element::hex8::Within;
 use voxsoft_solid::vector::{Vec3, add, axpy, scale, sub};
 use voxsoft_solid::{
-    History, Input, Load, Moment, Problem, ProblemError, RecordedContact, State, elastic,
+    History, Input, Load, Moment, Problem, ProblemError, RecordedContact, State, Velocities,
+    elastic,
 };
 
 use crate::linear::system::System;
@@ -359,6 +360,20 @@ impl Neighbor {
         if let Some(fluid) = self.problem.fluid_mut() {
             fluid.begin(step.time, start.rate, start.weights);
         }
+        let velocities = || Velocities {
+            rate: start.rate,
+            from: start.positions.clone(),
+        };
+        let State {
+            positions: from,
+            velocities: speeds,
+            ..
+        } = &self.state;
+        let pairs = from.iter().zip(speeds);
+        let near: Vec<Vec3> = pairs
+            .map(|(x, v)| add(*x, scale(step.length, *v)))
+            .collect();
+        self.problem.begin_motion(velocities, &near);
         start
     }
 

@@ -6,9 +6,10 @@
 
 use voxsoft_solid::element::hex8::{Tangent, Within};
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Load, Problem, elastic};
+use voxsoft_solid::{Problem, elastic};
 
 use super::inverse::{Change, Inverse, inverse};
+use super::objective::factor_within;
 use super::turns::Turns;
 use crate::linear::error::FactorError;
 use crate::linear::options::LinearOptions;
@@ -68,11 +69,11 @@ impl Lagged {
         within: &[Within],
         tangent: Tangent,
     ) {
-        let loads = self.conservative && tangent == Tangent::Exact;
+        let loads = (self.conservative || problem.feels_motion()) && tangent == Tangent::Exact;
         self.inverse.assemble(&mut |add| {
             elastic::visit_tangent(problem.body(), positions, within, tangent, add);
             if loads {
-                let factor_of = |load: &Load| load.history.at(time);
+                let factor_of = factor_within(problem, time);
                 problem.visit_load_stiffness(positions, &factor_of, add);
             }
         });

@@ -2,7 +2,7 @@
 
 use voxsoft_solid::element::hex8::Within;
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
-use voxsoft_solid::{Grab, Problem, elastic};
+use voxsoft_solid::{Grab, Load, Problem, elastic};
 
 /// Data of a step, besides the problem.
 #[derive(Clone, Copy)]
@@ -16,8 +16,21 @@ pub(super) struct Goal<'a> {
     pub grabs: &'a [Grab],
     /// Pressure and viscous stress of every hyperelastic voxel within the step.
     pub within: &'a [Within],
-    /// Forces (N) of loads without a potential, held constant for the step.
+    /// Forces (N) of loads without a potential, held constant for the step; of all loads, if none feels motion.
     pub dead: Option<&'a [Vec3]>,
+}
+
+/// Factor of a load that has its present forces within a step. Drag would be unstable with forces held constant, so that
+/// loads with a potential keep it beside those without one.
+pub(super) fn factor_within(problem: &Problem, time: f64) -> impl Fn(&Load) -> f64 {
+    let (all, some) = (problem.is_conservative(), problem.feels_motion());
+    move |load| {
+        if all || (some && load.kind.is_conservative()) {
+            load.history.at(time)
+        } else {
+            0.0
+        }
+    }
 }
 
 /// Potential of one step, a function of the positions at its end.
@@ -65,9 +78,11 @@ impl Objective<'_> {
             for (force, x) in dead.iter().zip(positions) {
                 loads -= dot(*force, *x);
             }
-        } else {
-            problem.add_loads(positions, goal.time, &mut value.external);
-            loads += problem.load_potential(positions, &|load| load.history.at(goal.time));
+        }
+        if goal.dead.is_none() || problem.feels_motion() {
+            let factor_of = factor_within(problem, goal.time);
+            problem.add_scaled_loads(positions, &factor_of, &mut value.external);
+            loads += problem.load_potential(positions, &factor_of);
         }
         for grab in goal.grabs {
             let vertex = grab.vertex as usize;

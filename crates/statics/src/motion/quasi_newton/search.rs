@@ -1,14 +1,41 @@
 //! The quick search within the loop of steps.
 
 use voxsoft_solid::vector::{Vec3, add};
-use voxsoft_solid::{Problem, State, elastic};
+use voxsoft_solid::{Load, Problem, State, Velocities, elastic};
 
 use super::QuasiNewton;
 use super::contact::touches;
-use super::objective::Goal;
+use super::objective::{Goal, factor_within};
 use super::pressures::Pressures;
 use crate::motion::integrator::{Asker, InnerSearch, Stop};
 use crate::motion::run::{Now, Run, Step};
+
+/// Forces (N) of the loads that are held constant for a step: those at its beginning, at the time of its end.
+fn lagged_loads(run: &mut Run, step: &Step) -> Vec<Vec3> {
+    let positions = &run.state.positions;
+    let within = factor_within(&run.problem, step.time);
+    let factor_of = |load: &Load| {
+        if within(load) == 0.0 {
+            load.history.at(step.time)
+        } else {
+            0.0
+        }
+    };
+    let mut forces = vec![[0.0; 3]; positions.len()];
+    if !run.problem.feels_motion() {
+        run.problem
+            .add_scaled_loads(positions, &factor_of, &mut forces);
+        return forces;
+    }
+    let mut begun = run.problem.clone();
+    let velocities = &run.state.velocities;
+    begun.begin_motion(
+        || Velocities::of(positions, velocities, step.start.rate),
+        positions,
+    );
+    begun.add_scaled_loads(positions, &factor_of, &mut forces);
+    forces
+}
 
 impl InnerSearch for QuasiNewton {
     const FORGETS: bool = true;
@@ -55,12 +82,7 @@ impl InnerSearch for QuasiNewton {
             .zip(&start.velocities)
             .map(|(x, v)| std::array::from_fn(|i| x[i] + v[i] / step.braked))
             .collect();
-        let dead = (!run.problem.is_conservative()).then(|| {
-            let mut forces = vec![[0.0; 3]; free.len()];
-            run.problem
-                .add_loads(&run.state.positions, step.time, &mut forces);
-            forces
-        });
+        let dead = (!run.problem.is_conservative()).then(|| lagged_loads(run, step));
         let mut within = self.pressures.start(run.problem.body());
         run.problem
             .begin_viscosity(&run.state.positions, step.length, &mut within);
