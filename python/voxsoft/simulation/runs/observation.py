@@ -17,7 +17,8 @@ from voxsoft.records import closest
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.results.result import Result, Status
-from voxsoft.simulation.runs.commands import Commands, Course, Value
+from voxsoft.simulation.runs.commands import Commands, Course
+from voxsoft.simulation.runs.drives import Value
 from voxsoft.simulation.runs.local_motion import LocalMotion, Patch
 from voxsoft.simulation.runs.sensors import SensorState
 from voxsoft.simulation.runs.state import measured_result

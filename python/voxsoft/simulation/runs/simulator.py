@@ -17,8 +17,9 @@ from voxsoft.errors import SimulationError
 from voxsoft.records import Record
 from voxsoft.simulation.compatibility import refuse
 from voxsoft.simulation.results.fields import fields_of
-from voxsoft.simulation.runs.commands import Command, CommandName, Commands, Course, Value
+from voxsoft.simulation.runs.commands import Command, CommandName, Commands, Course
 from voxsoft.simulation.runs.critical_damping import critical_damping
+from voxsoft.simulation.runs.drives import Value
 from voxsoft.simulation.runs.observation import (
     Driven,
     Moment,
