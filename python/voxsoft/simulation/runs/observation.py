@@ -78,6 +78,12 @@ class Moment:
     def __post_init__(self) -> None:
         self.positions.flags.writeable = self.velocities.flags.writeable = False
 
+    def drives(
+        self, problem: _core.Problem, inputs: Sequence[Course]
+    ) -> tuple[Floats, list[_core.Tendon]]:
+        """Measure chambers, (c, 6), and tendons alone."""
+        return problem.drives(self.positions, self.time, self.memory, inputs)
+
     def measured(self, problem: _core.Problem, inputs: Sequence[Course]) -> _core.Answer:
         """Measure forces, contacts and chambers under these inputs of a problem."""
         return problem.measure(
@@ -152,6 +158,11 @@ class Subject:
         mesh = self.setup.mesh
         return {name: Patch.around(place, mesh) for name, place in self.setup.places.items()}
 
+    @cached_property
+    def fields(self) -> _core.Fields:
+        """Elements of the body, which say whether they are inside out."""
+        return _core.Fields(self.problem)
+
     def inputs(self, driven: Driven, time: float) -> list[Course]:
         """Inputs of the core as they act at a time in s and from there on."""
         found: list[Course] = []
@@ -223,10 +234,17 @@ class Observation:
 
     @cached_property
     def _answer(self) -> _core.Answer:
-        """Forces, contacts, tendons and chambers, measured on demand."""
+        """Forces and contacts, measured on demand."""
         subject = self._subject
         inputs = subject.inputs(self._driven, self._moment.time)
         return self._moment.measured(subject.problem, inputs)
+
+    @cached_property
+    def _drives(self) -> tuple[Floats, list[_core.Tendon]]:
+        """Chambers, (c, 6), and tendons, which every step asks for where there are any."""
+        subject = self._subject
+        inputs = subject.inputs(self._driven, self._moment.time)
+        return self._moment.drives(subject.problem, inputs)
 
     @cached_property
     def chambers(self) -> tuple[ChamberState, ...]:
@@ -240,7 +258,7 @@ class Observation:
             for cavity in pressed:
                 pressures[cavity] += value
         if (fluids := setup.fluids) is not None:
-            for supplied in fluids.states(self._answer.chambers):
+            for supplied in fluids.states(self._drives[0]):
                 for cavity in supplied.cavities:
                     pressures[cavity], flows[cavity] = supplied.pressure, supplied.flow
         rows = zip(cavities, pressures, flows, strict=True)
@@ -252,7 +270,7 @@ class Observation:
     @property
     def tendons(self) -> Mapping[str, TendonState]:
         """Tension, length, slack and points of each tendon by its name, N and m."""
-        found = zip(self._subject.setup.tendons, self._answer.tendons, strict=True)
+        found = zip(self._subject.setup.tendons, self._drives[1], strict=True)
         return {tendon.name: tendon.state(core) for tendon, core in found}
 
     @property

@@ -16,7 +16,6 @@ from voxsoft.design import Design, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.records import Record
 from voxsoft.simulation.compatibility import refuse
-from voxsoft.simulation.results.fields import fields_of
 from voxsoft.simulation.runs.commands import Command, CommandName, Commands, Course
 from voxsoft.simulation.runs.critical_damping import critical_damping
 from voxsoft.simulation.runs.drives import Value
@@ -445,7 +444,7 @@ class Simulator:
         subject, given = self._subject, dict[str, float]()
         fluids = subject.setup.fluids
         if fluids is not None:
-            for supplied in fluids.states(seen._answer.chambers):
+            for supplied in fluids.states(seen._drives[0]):
                 given[supplied.name] = supplied.energy
         work = before._driven.work
         for tendon in subject.setup.tendons:
@@ -481,10 +480,9 @@ class Simulator:
             point = ", ".join(f"{value * 1e3:.1f}" for value in place)
             what = f"diverged at ({point}) mm, after {when:.6g} s: the loads are too much for it"
             return "diverged", what
-        fields = fields_of(self.design, self._subject.setup.mesh, positions, self._subject.problem)
-        inverted = int((fields.volume_ratio <= 0.0).sum())
-        if inverted:
-            return "inverted", f"{inverted:,} of {len(fields.volume_ratio):,} voxels are inside out"
+        fields = self._subject.fields
+        if inverted := fields.inverted(positions):
+            return "inverted", f"{inverted:,} of {len(fields.blocks):,} voxels are inside out"
         if report.status == _core.LiveStatus.AT_REST:
             return "at-rest", f"at rest, residual {report.residual:.2g} of the load"
         return "moving", "moving"
@@ -495,7 +493,7 @@ def _with(
 ) -> Observation:
     """Return an observation with other drives, and all that was measured of it."""
     found = replace(seen, _driven=driven, sensors=seen.sensors if samples is None else samples)
-    for name in ("_answer", "chambers"):
+    for name in ("_answer", "_drives", "chambers"):
         if name in seen.__dict__:
             found.__dict__[name] = seen.__dict__[name]
     return found
