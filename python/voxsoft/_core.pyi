@@ -768,6 +768,9 @@ class Problem:
     ) -> tuple[NDArray[np.float64], list[Tendon]]:
         """Measure chambers, (c, 6), and tendons of such a state."""
 
+    def read_memory(self, bytes: bytes) -> Memory:
+        """Read the bytes of a memory of this problem."""
+
     def relax(
         self,
         *,
@@ -961,6 +964,9 @@ class LiveStatus:
 @final
 class Memory:
     """Data of a problem that depend on the load path, at one state."""
+
+    def bytes(self) -> bytes:
+        """All data, for `Problem.read_memory`."""
 
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...

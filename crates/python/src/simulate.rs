@@ -313,6 +313,14 @@ impl PyProblem {
         Ok((chambers, tendons(py, &problem, &positions, &factor_of)?))
     }
 
+    /// Reads the bytes of a memory of this problem.
+    fn read_memory(&self, bytes: &[u8]) -> PyResult<PyMemory> {
+        let memory = self.now().read_memory(bytes).map(PyMemory);
+        memory.ok_or_else(|| {
+            PyValueError::new_err("bytes: damaged, or the memory of another problem")
+        })
+    }
+
     /// Relaxes to equilibrium. `trial` is a number of steps and the residual above which the run then ends.
     #[pyo3(signature = (*, tolerance, max_steps, trial=None, start=None, progress=None))]
     fn relax(

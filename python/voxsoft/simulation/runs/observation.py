@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from voxsoft.simulation.runs.drives import Value
 from voxsoft.simulation.runs.local_motion import LocalMotion, Patch
 from voxsoft.simulation.runs.sensors import SensorState
 from voxsoft.simulation.runs.state import measured_result
+from voxsoft.simulation.runs.stored_observation import observation_bytes
 from voxsoft.simulation.setup.contact import ContactState, Pose
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.simulation.setup.tendons import TendonState
@@ -225,6 +226,82 @@ class Observation:
 
     def __repr__(self) -> str:
         return f"<Observation at {self.time:g} s: {self.status}>"
+
+    @classmethod
+    def of(
+        cls,
+        subject: Subject,
+        moment: Moment,
+        driven: Driven,
+        *,
+        steps: int,
+        status: MotionStatus,
+        message: str,
+        elastic_energy: float,
+        kinetic_energy: float,
+        before: Floats | None,
+        sensors: Mapping[str, Floats] = MappingProxyType({}),
+    ) -> Self:
+        """Observe a body at a moment; `before` are its velocities a step ago, if there is one."""
+        mesh, names = subject.setup.mesh, subject.commands.names
+        own = len(mesh.vertices)
+        positions = moment.positions[:own]
+        moved = positions - mesh.vertices
+        return cls(
+            time=steps * subject.step,
+            steps=steps,
+            status=status,
+            message=message,
+            positions=positions,
+            velocities=moment.velocities[:own],
+            probes={
+                name: place.weights @ moved[place.vertices]
+                for name, place in subject.setup.places.items()
+            },
+            commands=MappingProxyType(dict(zip(names, driven.values, strict=True))),
+            residual=moment.residual,
+            elastic_energy=elastic_energy,
+            kinetic_energy=kinetic_energy,
+            _moment=moment,
+            _subject=subject,
+            _driven=driven,
+            _before=before,
+            sensors=sensors,
+        )
+
+    def driven_by(self, driven: Driven, samples: Mapping[str, Floats] | None = None) -> Self:
+        """Return it with other drives, and all that was measured of it."""
+        found = replace(self, _driven=driven, sensors=self.sensors if samples is None else samples)
+        for name in ("_answer", "_drives", "chambers"):
+            if name in self.__dict__:
+                found.__dict__[name] = self.__dict__[name]
+        return found
+
+    def to_bytes(self) -> bytes:
+        """Return all that :meth:`~voxsoft.Simulator.restore` needs, for a file or another process.
+
+        Returns
+        -------
+        bytes
+            Content of an ``.npz`` file.
+
+        Raises
+        ------
+        DesignError
+            A shape of the design is made of a Python function.
+
+        Examples
+        --------
+        >>> import voxsoft as vs
+        >>> from voxsoft.design import families
+        >>> cup = families.cylinder(radius="20 mm", height="30 mm")
+        >>> seen = vs.Simulator(cup).step({"pressure": "1 kPa"})
+        >>> other = vs.Simulator(cup)
+        >>> restored = other.restore(seen.to_bytes())
+        >>> restored.time, bool((restored.positions == seen.positions).all())
+        (0.02, True)
+        """
+        return observation_bytes(self)
 
     @property
     def loads(self) -> Mapping[str, Value]:
