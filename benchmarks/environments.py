@@ -28,6 +28,7 @@ import gymnasium
 import numpy as np
 from gymnasium.vector import SyncVectorEnv
 from measure import Report
+from walk import walk
 
 import voxsoft as vs
 from voxsoft.environments import ThreadVectorEnv
@@ -38,8 +39,6 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 WARM, STEPS = 5, 40
 #: Steps of several environments at a time, and runs of them.
 TOGETHER, RUNS = 15, 3
-#: Largest change of a command in a step, of the way to its value in the design.
-STRIDE = 0.05
 
 
 def finger(*, touching: bool) -> vs.Design:
@@ -74,18 +73,8 @@ def finger(*, touching: bool) -> vs.Design:
 def rate(design: vs.Design) -> tuple[float, int]:
     """Steps per second, and voxels."""
     simulator = vs.Simulator(design)
-    generator, shares = np.random.default_rng(0), dict.fromkeys(simulator.commands, 0.0)
     times = []
-    for _ in range(WARM + STEPS):
-        commands = {}
-        for name, command in simulator.commands.items():
-            if command.kind == "acceleration":
-                continue
-            walked = shares[name] + generator.uniform(-STRIDE / 2, STRIDE)
-            shares[name] = float(np.clip(walked, 0.0, 1.0))
-            first, last = np.asarray(command.first), np.asarray(command.design)
-            value = first + shares[name] * (last - first)
-            commands[name] = tuple(value.tolist()) if command.shape else float(value)
+    for commands in walk(simulator, WARM + STEPS):
         saved = simulator.state
         begun = time.process_time()
         seen = simulator.step(commands)

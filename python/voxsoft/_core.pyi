@@ -786,6 +786,18 @@ class Problem:
     ) -> Answer:
         """Measure a moving state of all vertices, objects included; nothing is solved."""
 
+    def drives(
+        self,
+        positions: NDArray[np.float64],
+        time: float,
+        memory: Memory,
+        inputs: Sequence[tuple[str, int, int, Sequence[float], Sequence[float]]] = ...,
+    ) -> tuple[NDArray[np.float64], list[Tendon]]:
+        """Measure chambers, (c, 6), and tendons of such a state."""
+
+    def read_memory(self, bytes: bytes) -> Memory:
+        """Read the bytes of a memory of this problem."""
+
     def relax(
         self,
         *,
@@ -823,6 +835,9 @@ class Fields:
     def volumes(self) -> NDArray[np.float64]: ...
     def measure(self, positions: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         """Stress (e, 6), von_mises (e,), stretches (e, 3), energy_density, volume_ratio (e,)."""
+
+    def inverted(self, positions: NDArray[np.float64]) -> int:
+        """Count the elements with a volume ratio of zero or less."""
 
     def at_vertices(self, positions: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         """Stress (n, 6), von_mises, max_stretch, energy_density (n,)."""
@@ -976,6 +991,9 @@ class LiveStatus:
 @final
 class Memory:
     """Data of a problem that depend on the load path, at one state."""
+
+    def bytes(self) -> bytes:
+        """All data, for `Problem.read_memory`."""
 
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...

@@ -8,7 +8,8 @@ import pytest
 import voxsoft as vs
 from voxsoft.errors import DesignError
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+ROOT = Path(__file__).parents[2]
+EXAMPLES = ROOT / "examples"
 #: Examples of each way to drive whose steps take a fifth of a second.
 LIGHT = (
     "beam",
@@ -22,18 +23,9 @@ LIGHT = (
 ALL = sorted(path.stem for path in EXAMPLES.glob("*.toml"))
 
 
-def commands_of(simulator, generator, shares):
-    """Walk at random between the first value and that of the design, a twentieth at most."""
-    found = {}
-    for name, command in simulator.commands.items():
-        if command.kind == "acceleration":
-            continue
-        walked = shares.get(name, 0.0) + generator.uniform(-0.025, 0.05)
-        shares[name] = float(np.clip(walked, 0.0, 1.0))
-        first, last = np.asarray(command.first), np.asarray(command.design)
-        value = first + shares[name] * (last - first)
-        found[name] = tuple(value.tolist()) if command.shape else float(value)
-    return found
+@pytest.fixture(autouse=True)
+def beside_the_benchmarks(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
 
 
 def bits(seen):
@@ -49,9 +41,10 @@ def bits(seen):
 
 
 def drive(name, before, after):
+    from walk import walk
+
     simulator = vs.Simulator(vs.load(EXAMPLES / f"{name}.toml"))
-    generator, shares = np.random.default_rng(0), {}
-    given = [commands_of(simulator, generator, shares) for _ in range(before + after)]
+    given = walk(simulator, before + after)
     for commands in given[:before]:
         saved = simulator.step(commands)
         assert saved.status != "diverged", saved.message

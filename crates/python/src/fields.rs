@@ -80,6 +80,13 @@ impl PyFields {
         Ok(found)
     }
 
+    /// Number of inverted elements: those with a volume ratio of zero or less.
+    fn inverted(&self, py: Python<'_>, positions: PyReadonlyArray2<'_, f64>) -> PyResult<usize> {
+        let positions = self.positions(&positions)?;
+        let body = &*self.body();
+        gate::run(py, |_| self.fields.inverted(body, &positions))
+    }
+
     /// Stress and strain averaged on the vertices of the body, as the studio colors by them; vertices that carry
     /// objects are left out.
     fn at_vertices<'py>(

@@ -2,6 +2,7 @@
 use std::sync::{Arc, PoisonError, RwLock};
 
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use voxsoft_solid::{Memory, Problem};
 
 /// Problem of a `_core.Problem`, shared with its displays and fields.
@@ -31,3 +32,11 @@ impl Handle {
 #[pyclass(frozen, eq, name = "Memory", module = "voxsoft._core")]
 #[derive(PartialEq)]
 pub struct PyMemory(pub(crate) Memory);
+
+#[pymethods]
+impl PyMemory {
+    /// All data as bytes, for `Problem.read_memory`.
+    fn bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.0.bytes())
+    }
+}

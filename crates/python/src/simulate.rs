@@ -278,15 +278,7 @@ impl PyProblem {
             );
             return Err(PyValueError::new_err(message));
         }
-        let mut outcome = Ok(());
-        let inputs = inputs_of(inputs)?;
-        let there = self.with(|problem| {
-            outcome =
-                (inputs.into_iter()).try_for_each(|(input, course)| problem.command(input, course));
-            problem.remember(&memory.0);
-            problem.begin(time);
-        });
-        outcome.map_err(to_python)?;
+        let there = self.at(time, memory, inputs)?;
         let answer = Answer {
             state: State {
                 positions,
@@ -302,6 +294,31 @@ impl PyProblem {
         };
         let watch = Watch::new(None, Vec::new(), false);
         there.answer(py, answer, watch, &|load| load.history.at(time))
+    }
+
+    /// Measures chambers, (c, 6), and tendons alone, of a state like that of `measure`.
+    #[pyo3(signature = (positions, time, memory, inputs=vec![]))]
+    fn drives<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+        time: f64,
+        memory: &PyMemory,
+        inputs: Vec<InputArgument>,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Vec<Py<PyTendon>>)> {
+        let positions = self.positions(&positions)?;
+        let problem = self.at(time, memory, inputs)?.now();
+        let factor_of = |load: &Load| load.history.at(time);
+        let chambers = from_rows(py, &chambers(&problem, &positions, &factor_of));
+        Ok((chambers, tendons(py, &problem, &positions, &factor_of)?))
+    }
+
+    /// Reads the bytes of a memory of this problem.
+    fn read_memory(&self, bytes: &[u8]) -> PyResult<PyMemory> {
+        let memory = self.now().read_memory(bytes).map(PyMemory);
+        memory.ok_or_else(|| {
+            PyValueError::new_err("bytes: damaged, or the memory of another problem")
+        })
     }
 
     /// Relaxes to equilibrium. `trial` is a number of steps and the residual above which the run then ends.
@@ -498,6 +515,20 @@ impl PyProblem {
         Ok(positions)
     }
 
+    /// Returns the problem at a time in s, with its memory there and inputs that replace its own.
+    fn at(&self, time: f64, memory: &PyMemory, inputs: Vec<InputArgument>) -> PyResult<Self> {
+        let mut outcome = Ok(());
+        let inputs = inputs_of(inputs)?;
+        let there = self.with(|problem| {
+            outcome =
+                (inputs.into_iter()).try_for_each(|(input, course)| problem.command(input, course));
+            problem.remember(&memory.0);
+            problem.begin(time);
+        });
+        outcome.map_err(to_python)?;
+        Ok(there)
+    }
+
     /// Converts an answer for Python; `self` has the history variables of its end, and reactions are those under loads
     /// with these factors.
     pub(crate) fn answer(
@@ -528,10 +559,7 @@ impl PyProblem {
         let balance = balance_under(&problem, positions, factor_of);
         let (load, load_moment) = total_load_under(&problem, positions, factor_of);
         let sensors = watch.sensors.len();
-        let now = problem.fluid().map_or(Vec::new(), |fluid| {
-            fluid.read(positions, fluid.instant(factor_of))
-        });
-        let now: Vec<[f64; 6]> = now.iter().map(|reading| reading.numbers()).collect();
+        let now = chambers(&problem, positions, factor_of);
         let read = if watch.chambers.is_empty() {
             0
         } else {
@@ -585,6 +613,18 @@ fn in_motion(mut problem: Arc<Problem>, state: &State) -> Arc<Problem> {
         Arc::make_mut(&mut problem).begin_motion(moving, positions);
     }
     problem
+}
+
+/// Numbers of each chamber with fluid.
+fn chambers(
+    problem: &Problem,
+    positions: &[Vec3],
+    factor_of: &dyn Fn(&Load) -> f64,
+) -> Vec<[f64; 6]> {
+    let readings = problem.fluid().map_or(Vec::new(), |fluid| {
+        fluid.read(positions, fluid.instant(factor_of))
+    });
+    readings.iter().map(|reading| reading.numbers()).collect()
 }
 
 /// Keeps the first `own` of every `all` points.

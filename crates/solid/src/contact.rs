@@ -3,6 +3,9 @@
 use std::any::Any;
 use std::fmt::Debug;
 
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use crate::Term;
 use crate::vector::Vec3;
 
@@ -14,6 +17,12 @@ impl ContactMemory {
     /// Wraps the memory of a contact.
     pub fn new(memory: impl Remembered) -> Self {
         Self(Box::new(memory))
+    }
+
+    /// Reads the bytes of a memory of this type; `None` if they are damaged.
+    pub fn read<M: Remembered + DeserializeOwned>(bytes: &[u8]) -> Option<Self> {
+        let memory: M = postcard::from_bytes(bytes).ok()?;
+        Some(Self::new(memory))
     }
 
     /// The memory, if it is of this type.
@@ -35,8 +44,24 @@ impl PartialEq for ContactMemory {
     }
 }
 
-/// Data that contact may keep as memory: all that can be cloned, compared and sent.
+impl Serialize for ContactMemory {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.bytes().serialize(serializer)
+    }
+}
+
+/// Gives the bytes themselves as a memory, which [`Contact::read_memory`] turns into one of its own type.
+impl<'de> Deserialize<'de> for ContactMemory {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Vec::deserialize(deserializer).map(|bytes: Vec<u8>| Self::new(bytes))
+    }
+}
+
+/// Data that contact may keep as memory: all that can be cloned, compared, sent and stored.
 pub trait Remembered: Debug + Send + Sync + Any {
+    /// Returns the data in the format of the `postcard` crate.
+    fn bytes(&self) -> Vec<u8>;
+
     /// Clones the data.
     fn boxed(&self) -> Box<dyn Remembered>;
 
@@ -44,7 +69,11 @@ pub trait Remembered: Debug + Send + Sync + Any {
     fn equals(&self, other: &dyn Remembered) -> bool;
 }
 
-impl<M: Debug + Clone + PartialEq + Send + Sync + 'static> Remembered for M {
+impl<M: Debug + Clone + PartialEq + Serialize + Send + Sync + 'static> Remembered for M {
+    fn bytes(&self) -> Vec<u8> {
+        postcard::to_allocvec(self).expect("memory takes all bytes, and all lists have lengths")
+    }
+
     fn boxed(&self) -> Box<dyn Remembered> {
         Box::new(self.clone())
     }
@@ -92,6 +121,9 @@ pub trait Contact: Term + Any {
 
     /// Restores a memory that this contact made.
     fn remember(&mut self, memory: &ContactMemory);
+
+    /// Reads a memory of its own type from stored bytes; `None` if they are damaged, or of another type.
+    fn read_memory(&self, bytes: &[u8]) -> Option<ContactMemory>;
 
     /// Clears the memory; `positions` (m) become the accepted state.
     fn reset(&mut self, positions: &[Vec3]);
@@ -176,7 +208,7 @@ pub trait Contact: Term + Any {
 }
 
 /// An equilibrium on a load path, under the contact state before a correction.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Moment<M> {
     /// Positions of all vertices, m.
     pub positions: Vec<Vec3>,

@@ -1,8 +1,10 @@
+use serde::{Deserialize, Serialize};
+
 use crate::Body;
 use crate::vector::Vec3;
 
 /// Positions and velocities of the vertices.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Positions in m.
     pub positions: Vec<Vec3>,

@@ -252,8 +252,10 @@ fn an_inverted_voxel_has_no_stress() {
             state.positions[middle][i] += 3.0 * SIDE;
         }
         let measures = fields.measure(&body, &state.positions);
-        let inverted = measures.iter().filter(|m| m.volume_ratio <= 0.0);
-        assert!(inverted.clone().count() > 0);
+        let inverted = measures.iter().filter(|m| m.volume_ratio <= 0.0).count();
+        assert!(inverted > 0);
+        assert_eq!(fields.inverted(&body, &state.positions), inverted);
+        assert_eq!(fields.inverted(&body, body.rest()), 0);
         for measure in &measures {
             let is_none = measure.von_mises.is_nan() && measure.stress[1][2].is_nan();
             assert_eq!(is_none, measure.volume_ratio <= 0.0);

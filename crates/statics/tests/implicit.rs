@@ -388,6 +388,26 @@ fn free_fall_is_exact_from_the_first_step() {
     }
 }
 
+/// Nothing bounds the way of a body that nothing holds: it falls by more than ten times its size.
+#[test]
+fn a_free_body_falls_as_far_as_it_may() {
+    let body = Body::new(&block([2, 2, 2], 5e-3), &[rubber()]).unwrap();
+    let weight = Load::gravity([0.0, 0.0, -9.81]);
+    let problem = Problem::new(body, vec![], vec![weight], None).unwrap();
+    let settings = ImplicitSettings {
+        step: 0.02,
+        ..SWING
+    };
+    let mut run = Implicit::new(problem, settings);
+    let look = run.advance_to(0.5, &mut |_| true);
+    assert_eq!((look.status, look.time), (LiveStatus::Moving, 0.5));
+    let (body, positions) = (run.problem().body(), &run.state().positions);
+    let fallen = positions.iter().zip(body.rest()).zip(body.masses());
+    let moment: f64 = fallen.map(|((x, rest), m)| m * (rest[2] - x[2])).sum();
+    let fallen = moment / body.masses().iter().sum::<f64>();
+    assert!((fallen / (9.81 * 0.125) - 1.0).abs() < 1e-9, "{fallen}");
+}
+
 /// Smallest volume ratio among all voxels.
 fn flattest(run: &Implicit) -> f64 {
     let positions = &run.state().positions;

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.control.signals import Output, command_value, moved, quantity_named
+from voxsoft.control.signals import Output, Response, command_value, moved, quantity_named
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.simulation.runs.simulator import Simulator
 from voxsoft.units import si_value
@@ -20,15 +20,11 @@ _LEAST_STEPS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class FrequencyResponse:
-    """Response of a quantity to small waves of a command around a value.
+class FrequencyResponse(Response):
+    """Response of a quantity to small waves of a command around a value, see :class:`Response`.
 
     Attributes
     ----------
-    command, output
-        Names of both.
-    kind
-        Kind of unit of the quantity, a key of :data:`voxsoft.units.KINDS`.
     around, amplitude
         Mean of the command and largest distance from it, SI units.
     frequencies
@@ -40,9 +36,6 @@ class FrequencyResponse:
         of the mean square over that of all.
     """
 
-    command: str
-    output: str
-    kind: str
     around: float
     amplitude: float
     frequencies: Floats

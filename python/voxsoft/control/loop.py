@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.control.signals import Output, command_value, moved, quantity_named
+from voxsoft.control.signals import Output, Response, command_value, moved, quantity_named
 from voxsoft.simulation.runs.commands import CommandName
 from voxsoft.simulation.runs.simulator import Simulator
 from voxsoft.units import si_value
@@ -41,24 +41,19 @@ class Controller(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
-    """A closed loop over time.
+class Track(Response):
+    """A closed loop over time, see :class:`Response`.
 
     Attributes
     ----------
-    command, output
-        Names of the command and the quantity.
-    kind, command_kind
-        Kinds of units of the quantity and the command.
+    command_kind
+        Kind of unit of the command.
     times
         Ends of the steps in s, (n,).
     targets, values, commands
         Target and quantity at these times, and the command of each step, SI units, (n,).
     """
 
-    command: str
-    output: str
-    kind: str
     command_kind: str
     times: Floats
     targets: Floats

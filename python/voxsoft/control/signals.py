@@ -40,6 +40,23 @@ class Quantity:
     read: Callable[[Observation], float]
 
 
+@dataclass(frozen=True, eq=False)
+class Response:
+    """A quantity that answers a command, over time or frequency.
+
+    Attributes
+    ----------
+    command, output
+        Names of both.
+    kind
+        Kind of unit of the quantity, a key of :data:`voxsoft.units.KINDS`.
+    """
+
+    command: str
+    output: str
+    kind: str
+
+
 def quantity_named(output: Output, simulator: Simulator, where: str = "output") -> Quantity:
     """Return a quantity of the observations of a simulator.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.control.signals import Output, command_value, moved, quantity_named
+from voxsoft.control.signals import Output, Response, command_value, moved, quantity_named
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.runs.simulator import Simulator
 from voxsoft.units import si_value
@@ -23,15 +23,11 @@ _DELAY, _CONSTANT = (1.3, -0.29), 0.67
 
 
 @dataclass(frozen=True, eq=False)
-class StepResponse:
-    """Response of a quantity to a step of a command.
+class StepResponse(Response):
+    """Response of a quantity to a step of a command, see :class:`Response`.
 
     Attributes
     ----------
-    command, output
-        Names of both.
-    kind
-        Kind of unit of the quantity, a key of :data:`voxsoft.units.KINDS`.
     before, after
         Values of the command, SI units.
     times
@@ -40,9 +36,6 @@ class StepResponse:
         Values of the quantity at these times, SI units, (n,).
     """
 
-    command: str
-    output: str
-    kind: str
     before: float
     after: float
     times: Floats

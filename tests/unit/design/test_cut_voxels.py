@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import voxsoft as vs
+from voxsoft.design.discretization import cut_cells
 from voxsoft.design.discretization.cut_voxels import LEAST_FILLED, CutVoxels, fractions_of
 from voxsoft.errors import DesignError, MeshError, ShapeError, SimulationError
 from voxsoft.files import read_mesh, write_mesh
@@ -26,8 +27,11 @@ def hollow_ball(inner, outer, size, center=(0, 0, 0)):
     return design(shape, size)
 
 
-def test_small_cubes_that_are_known_are_those_that_are_filled_again():
+@pytest.mark.parametrize("at_once", [4096, 100])
+def test_small_cubes_that_are_known_are_those_that_are_filled_again(monkeypatch, at_once):
+    monkeypatch.setattr(cut_cells, "_CHUNK", at_once)
     ball = hollow_ball(3.2, 6.1, 1.0)
+    assert cut_cells.cut_cells(ball, 1.0).cubes is not None
     cut = CutVoxels.of(ball)  # its cells near the surface are filled once
     again = cut.resampled(ball)
     for name in ("fractions", "moments", "surfaces"):

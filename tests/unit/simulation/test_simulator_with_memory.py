@@ -247,3 +247,17 @@ def test_motion_from_a_restored_observation_repeats_bit_for_bit(name, damping):
 def test_observations_of_another_design_are_refused():
     with pytest.raises(vs.errors.SimulationError, match="same design"):
         vs.Simulator(DESIGNS["softening"]).restore(vs.Simulator(BEAM).state)
+
+
+def test_an_object_falls_as_far_as_it_may():
+    # Beside the cube, by 40 times its size; what is held may move by 10 times.
+    shape = vs.Box(size=("6 mm", "6 mm", "4 mm"), corner=("32 mm", "2 mm", "10.5 mm"))
+    design = FREE.replace(objects=[FREE.objects[0].replace(shape=shape)])
+    simulator = vs.Simulator(design, damping=0.0)
+    start = simulator.state.objects["block"].position
+    for _ in range(20):
+        seen = simulator.step()
+    assert seen.status == "moving"
+    moved = np.subtract(seen.objects["block"].position, start)
+    # The time integration is exact for a constant acceleration; forces are balanced to 1e-4.
+    assert moved == pytest.approx([0.0, 0.0, -9.81 * 0.4**2 / 2.0], rel=1e-4, abs=1e-6)

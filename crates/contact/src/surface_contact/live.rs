@@ -14,6 +14,7 @@
 use std::any::Any;
 use std::collections::BTreeSet;
 
+use serde::{Deserialize, Serialize};
 use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::element::hex8::Tangent;
 use voxsoft_solid::vector::{Vec3, scale};
@@ -44,7 +45,7 @@ pub struct LiveSurfaceContact {
     run: Run,
 }
 
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct Run {
     /// Samples that face something.
     near: Vec<u32>,
@@ -248,6 +249,10 @@ impl Contact for LiveSurfaceContact {
             self.contact.state.clone_from(state);
             self.run.clone_from(run);
         }
+    }
+
+    fn read_memory(&self, bytes: &[u8]) -> Option<ContactMemory> {
+        ContactMemory::read::<(f64, ContactState, Run)>(bytes)
     }
 
     fn reset(&mut self, positions: &[Vec3]) {

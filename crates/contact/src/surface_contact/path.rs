@@ -44,6 +44,10 @@ impl Contact for SurfaceContact {
         }
     }
 
+    fn read_memory(&self, bytes: &[u8]) -> Option<ContactMemory> {
+        ContactMemory::read::<ContactState>(bytes)
+    }
+
     fn visit_bonded(&self, visit: &mut dyn FnMut(u32)) {
         for (_, tie) in self.ties() {
             for side in [&tie.first, &tie.second] {

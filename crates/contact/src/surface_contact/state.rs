@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use serde::{Deserialize, Serialize};
 use voxsoft_solid::Moment;
 use voxsoft_solid::vector::Vec3;
 
 /// Multipliers and friction anchor of one contact sample.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SampleMemory {
     /// Lagrange multiplier of the gap: a force in N that pushes apart.
     pub normal: f64,
@@ -68,7 +69,7 @@ impl SampleMemory {
 
 /// Face that a sample meets, fixed for some steps of Newton's method, so that the minimized energy has no kinks where a
 /// sample slides over an edge.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Facing {
     /// Plane of a triangle.
     Plane(u32),
@@ -90,7 +91,7 @@ impl Facing {
 }
 
 /// Multiplier and damage of one tie.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Hold {
     /// Multiplier: the force on the first surface, N.
     pub force: Vec3,
@@ -99,7 +100,7 @@ pub(super) struct Hold {
 }
 
 /// Multipliers and facing of all samples at an equilibrium, before its correction.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Held {
     pub(super) now: Vec<SampleMemory>,
     pub(super) facing: Vec<Option<Facing>>,
@@ -111,7 +112,7 @@ pub struct Held {
 }
 
 /// State to which contact returns from iterations with predicted multipliers that did not converge.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct BeforePrediction {
     pub(super) now: Vec<SampleMemory>,
     pub(super) facing: Vec<Option<Facing>>,
@@ -120,7 +121,7 @@ pub(super) struct BeforePrediction {
 }
 
 /// Recorded part of a path.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Recording {
     pub(super) accepted: Vec<Moment<Held>>,
     /// Moments since the last accepted state.
@@ -128,7 +129,7 @@ pub(super) struct Recording {
 }
 
 /// State of all samples.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct ContactState {
     /// Points of all surfaces at the last accepted state, m.
     pub accepted_points: Vec<Vec3>,

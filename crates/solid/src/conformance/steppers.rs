@@ -61,11 +61,18 @@ impl Check<'_> {
         stepper.reset();
         stepper.advance(STEPS / 50);
         let (state, memory) = (stepper.state().clone(), stepper.memory());
+        let bytes = memory.bytes();
+        let read = |bytes| stepper.problem().read_memory(bytes);
+        let (stored, half) = (read(&bytes), read(&bytes[..bytes.len() / 2]));
+        let same = stored.as_ref() == Some(&memory) && half.is_none();
+        self.subject
+            .holds(law, "another memory from its bytes, or one from half", same)?;
+        let stored = stored.unwrap_or_else(|| memory.clone());
         let mut both = [stepper, (self.make)()];
         let mut seen = Vec::new();
-        for index in [0, 1, 1] {
+        for (index, memory) in [(0, &memory), (1, &memory), (1, &stored)] {
             let stepper = &mut *both[index];
-            if let Err(error) = stepper.resume(state.clone(), &memory) {
+            if let Err(error) = stepper.resume(state.clone(), memory) {
                 return self.subject.broken(law, error.to_string());
             }
             stepper.advance(STEPS / 10);

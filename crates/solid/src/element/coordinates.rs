@@ -1,5 +1,7 @@
 //! Generalized coordinates of a voxel, and functions of them.
 
+use serde::{Deserialize, Serialize};
+
 use crate::hyperelastic::symmetric::Sym;
 use crate::vector::{Vec3, axpy};
 
@@ -16,7 +18,7 @@ pub(crate) type Modes = [Vec3; 7];
 pub(crate) const STRAIN_COMPONENTS: usize = 15;
 
 /// The stress of a voxel in its rotated frame: the gradient of the energy by the generalized coordinates.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hex8Stress {
     pub(crate) stress: Sym,
     pub(crate) hourglass: [Vec3; 3],

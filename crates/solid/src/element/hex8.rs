@@ -48,6 +48,8 @@
 //! derivatives of `R`, see [`Hex8::stiffness`].
 
 pub use crate::element::coordinates::{Hex8Strain, Hex8Stress};
+use serde::{Deserialize, Serialize};
+
 use crate::element::coordinates::{Modes, STRAIN_COMPONENTS};
 pub use crate::element::faces::{FaceConditions, WarpingModes};
 use crate::element::hex8_energy::Parted;
@@ -107,7 +109,7 @@ pub enum Tangent {
 
 /// Response of a voxel within a time step, besides its elastic deviatoric stress `s`: the pressure law for its change
 /// of volume, and a viscous stress `share s + stress`. Both have a potential.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Within {
     /// The pressure as a function of the change of volume.
     pub pressure: Pressure,

@@ -1,6 +1,8 @@
 //! The energy of a voxel in its rotated frame, with gradient and Hessian; the formula stands in
 //! [`crate::element::hex8`].
 
+use serde::{Deserialize, Serialize};
+
 use crate::element::coordinates::{AXES, Hex8Stress, STRAIN_COMPONENTS, StrainFunction, place};
 use crate::element::rotated::Rotated;
 use crate::hyperelastic::symmetric::{Sym, isochoric, isochoric_stress, to_matrix};
@@ -8,7 +10,7 @@ use crate::hyperelastic::{HyperelasticMaterial, Response, fiber};
 use crate::matrix::determinant;
 
 /// Pressure law of a voxel for its change of volume: `k (J − 1 + shift)`, positive in tension.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Pressure {
     /// `k` in Pa: the bulk modulus, or less.
     pub stiffness: f64,

@@ -15,6 +15,8 @@
 //! share of `s` and a stress that is known at its start ([`Viscosity::start`]), so that the step keeps its potential:
 //! `s` is the gradient of the deviatoric energy, the other is linear in the strain.
 
+use serde::{Deserialize, Serialize};
+
 use crate::Body;
 use crate::element::coordinates::STRAIN_COMPONENTS;
 use crate::element::hex8::{Hex8Stress, Within};
@@ -22,7 +24,7 @@ use crate::element::viscous_error::Pace;
 use crate::vector::Vec3;
 
 /// Weight of the change of stress over a step in a branch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Weight {
     /// The exponential at the middle of the step.
     Middle,
@@ -31,7 +33,7 @@ enum Weight {
 }
 
 /// Viscous history variables of all voxels.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Viscosity {
     retardation: f64,
     weight: Weight,

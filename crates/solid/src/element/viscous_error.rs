@@ -10,6 +10,8 @@
 //! rate since the last step. After a corner of the loads there is no last one, and `s″` counts as large as
 //! `ds/dt/τ`, that of a stress that relaxes with the branch.
 
+use serde::{Deserialize, Serialize};
+
 use super::viscosity::{Viscosity, stresses};
 use crate::Body;
 use crate::element::hex8::Hex8Stress;
@@ -19,7 +21,7 @@ use crate::vector::Vec3;
 const SHORT: f64 = 0.05;
 
 /// Course of the steps so far.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Pace {
     /// Rates `ds/dt` (Pa/s) in the last step, and its length in s; `None` at first and after a corner of the loads.
     last: Option<(Vec<Hex8Stress>, f64)>,

@@ -185,6 +185,23 @@ impl Fields {
         measures
     }
 
+    /// The number of inverted elements: those with a [`Measure::volume_ratio`] of zero or less, or without one.
+    ///
+    /// # Panics
+    ///
+    /// If the positions are those of another body.
+    pub fn inverted(&self, body: &Body, positions: &[Vec3]) -> usize {
+        assert_eq!(positions.len(), body.rest().len(), "another body");
+        let mut count = 0;
+        in_order(
+            self.elements.len(),
+            FORCE_BATCH,
+            |index| self.elements[index].volume_ratio(body, positions) > 0.0,
+            |_, upright| count += usize::from(!upright),
+        );
+        count
+    }
+
     /// The derivative of the largest principal stretch of an element by the positions of all vertices, in 1/m.
     ///
     /// # Panics

@@ -1,11 +1,13 @@
 //! Steps of a fluid from one accepted state to the next: along a path of equilibria, or over time.
 
+use serde::{Deserialize, Serialize};
+
 use super::network::{Network, Step};
 use super::{Fluid, Instant};
 use crate::vector::Vec3;
 
 /// Memory of a fluid between steps and iterations.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FluidMemory {
     pub(super) step: Option<Step>,
     /// Pressures carried by Newton's method.
@@ -22,7 +24,7 @@ pub struct FluidMemory {
 }
 
 /// The last accepted state.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Last {
     pub volumes: Vec<f64>,
     pub pressures: Vec<f64>,

@@ -104,7 +104,7 @@ pub struct Network {
 }
 
 /// A time step of a motion.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// The time at its end, s.
     pub time: f64,

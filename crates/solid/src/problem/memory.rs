@@ -1,5 +1,7 @@
 //! Memory of a problem: its data that depend on the load path.
 
+use serde::{Deserialize, Serialize};
+
 use super::Problem;
 use crate::element::hex8::Within;
 use crate::fluid::FluidMemory;
@@ -10,7 +12,7 @@ use crate::{Contact, ContactMemory, Load, LoadKind, State, Tendon, Viscosity};
 
 /// The path-dependent data of a problem: [`crate::Problem::memory`] reads them and [`crate::Problem::remember`]
 /// restores them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
     /// The time in s of the present free stretches of all materials; infinite after all histories.
     pub time: f64,
@@ -29,7 +31,7 @@ pub struct Memory {
 }
 
 /// The past of a motion by implicit steps, on which the next step depends.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Past {
     /// The state one step ago.
     pub before: Option<State>,
@@ -57,7 +59,30 @@ pub struct Past {
     pub at_rest: bool,
 }
 
+impl Memory {
+    /// Returns it in the format of the `postcard` crate, for [`Problem::read_memory`].
+    ///
+    /// # Panics
+    ///
+    /// Never: memory takes all bytes.
+    pub fn bytes(&self) -> Vec<u8> {
+        postcard::to_allocvec(self).expect("memory takes all bytes, and all lists have lengths")
+    }
+}
+
 impl Problem {
+    /// Reads the bytes of a memory of this problem, [`Memory::bytes`], to the last bit; `None` if they are damaged, or
+    /// of another problem.
+    pub fn read_memory(&self, bytes: &[u8]) -> Option<Memory> {
+        let mut memory: Memory = postcard::from_bytes(bytes).ok()?;
+        memory.contact = match (self.contact(), &memory.contact) {
+            (Some(contact), Some(stored)) => Some(contact.read_memory(stored.get::<Vec<u8>>()?)?),
+            (None, None) => None,
+            _ => return None,
+        };
+        Some(memory)
+    }
+
     /// Tests whether the solution depends on the load path.
     pub fn depends_on_way(&self) -> bool {
         let contact = self.contact().is_some_and(Contact::depends_on_way);

@@ -135,6 +135,10 @@ impl<C: Contact + Clone> Contact for MirroredContact<C> {
         self.contact.remember(memory);
     }
 
+    fn read_memory(&self, bytes: &[u8]) -> Option<ContactMemory> {
+        self.contact.read_memory(bytes)
+    }
+
     fn reset(&mut self, positions: &[Vec3]) {
         self.contact.reset(&self.images.seen(positions));
     }

@@ -347,7 +347,7 @@ impl<S: InnerSearch> Integrator<S> {
             positions,
             time,
         };
-        let place = Breakdown::find(&run.problem, &next.positions, run.travel_limit, time);
+        let place = run.reach.find(&run.problem, &next.positions, time);
         if let Some(place) = place {
             return Err(Stop::Gone(place));
         }

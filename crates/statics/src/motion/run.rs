@@ -1,6 +1,6 @@
 //! State of a motion between two steps, and a step to be found.
 
-use voxsoft_solid::breakdown::{Breakdown, travel_limit};
+use voxsoft_solid::breakdown::{Breakdown, Reach};
 use voxsoft_solid::loads::grabs::{Grabs, shortest_edge};
 use voxsoft_solid::vector::{Vec3, axpy, sub};
 use voxsoft_solid::{Damping, Grab, LiveStatus, Past, Problem, State, Velocities};
@@ -95,7 +95,7 @@ pub struct Run {
     pub remaining: f64,
     pub status: LiveStatus,
     pub breakdown: Option<Breakdown>,
-    pub travel_limit: f64,
+    pub reach: Reach,
     pub shortest_edge: f64,
 }
 
@@ -117,7 +117,7 @@ impl Run {
             remaining: 0.0,
             status: LiveStatus::Moving,
             breakdown: None,
-            travel_limit: travel_limit(&problem),
+            reach: Reach::of(&problem),
             shortest_edge: shortest_edge(&problem),
             state: State::at_rest(problem.body()),
             problem,

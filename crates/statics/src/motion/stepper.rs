@@ -2,7 +2,7 @@
 
 use std::any::Any;
 
-use voxsoft_solid::breakdown::{Breakdown, travel_limit};
+use voxsoft_solid::breakdown::Breakdown;
 use voxsoft_solid::loads::grabs::{checked_state, still_state};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
@@ -77,7 +77,7 @@ impl<S: InnerSearch> Stepper for Integrator<S> {
                 copy.command(*input, course.clone())?;
             }
         }
-        self.run.travel_limit = travel_limit(&self.run.problem);
+        self.run.reach.renew(&self.run.problem);
         self.wake();
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use std::any::Any;
 
-use voxsoft_solid::breakdown::{Breakdown, travel_limit};
+use voxsoft_solid::breakdown::{Breakdown, Reach};
 use voxsoft_solid::loads::grabs::{Grabs, checked_state, loads_end, shortest_edge, still_state};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
@@ -69,7 +69,7 @@ pub struct Live {
     residual: f64,
     status: LiveStatus,
     breakdown: Option<Breakdown>,
-    travel_limit: f64,
+    reach: Reach,
     shortest_edge: f64,
 }
 
@@ -101,7 +101,7 @@ impl Live {
             residual: f64::INFINITY,
             status: LiveStatus::Moving,
             breakdown: None,
-            travel_limit: travel_limit(&problem),
+            reach: Reach::of(&problem),
             shortest_edge: shortest_edge(&problem),
             problem,
             settings,
@@ -132,7 +132,7 @@ impl Live {
             grabs: &pulls,
         };
         let balance = self.arrays.balance(subject, &now);
-        let broken = Breakdown::find(&self.problem, &now.positions, self.travel_limit, now.time);
+        let broken = self.reach.find(&self.problem, &now.positions, now.time);
         let excess = excess_in_motion(&self.problem, &balance);
         if broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS {
             self.arrays.load(&self.state);

@@ -10,7 +10,7 @@ mod stiff_inertia;
 use std::ops::ControlFlow;
 
 use voxsoft_solid::balance::{Balance, is_still};
-use voxsoft_solid::breakdown::{Breakdown, travel_limit};
+use voxsoft_solid::breakdown::{Breakdown, Reach};
 use voxsoft_solid::lattice::strips::Strips;
 use voxsoft_solid::loads::grabs::loads_end;
 use voxsoft_solid::vector::Vec3;
@@ -185,7 +185,7 @@ fn run(
     mut arrays: Box<dyn Arrays + Send>,
     mut substeps: u32,
 ) -> Answer {
-    let limit = travel_limit(&problem);
+    let reach = Reach::of(&problem);
     // A body whose loads still change is not at rest, even if no force acts yet.
     let steady = loads_end(&problem);
     arrays.load(&state);
@@ -198,7 +198,7 @@ fn run(
         problem.begin(state.time);
         let now = arrays.balance(Subject::alone(&problem, settings), &state);
         let residual = now.relative_residual();
-        let broken = Breakdown::find(&problem, &state.positions, limit, state.time);
+        let broken = reach.find(&problem, &state.positions, state.time);
         let excess = excess_in_motion(&problem, &now);
         let blown_up = broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS;
         let stuck = !blown_up

@@ -27,6 +27,9 @@ Cubes = tuple[Floats, Floats]
 _SLAB = 2**26
 _CHUNK = 4096
 
+#: Cells near the surface whose small cubes are kept, of 2 kB each.
+_KEPT = 2**16
+
 #: Steps to the cells at the faces of a cell, below and above along the axes, (3, 2, 3).
 SIDES: Final[Ints] = np.eye(3, dtype=np.intp)[:, None, :] * np.array([-1, 1])[:, None]
 
@@ -128,13 +131,18 @@ def cut_cells(design: Design, size: float) -> CutCells:
         part[state == 2] = index
     cells = np.argwhere(near)
     voids = np.zeros(len(cells), dtype=np.uint64)
+    kept: list[Cubes] = []
     for start in range(0, len(cells), _CHUNK):
         chunk = cells[start : start + _CHUNK]
         found, normals, shares = filled_parts(design, chunk + low, size, phase)
+        if len(cells) <= _KEPT:
+            kept.append((found, normals))
         filled[tuple(chunk.T)] = _whole(found.mean(axis=1))
         voids[start : start + _CHUNK] = (found < 0.5) @ _BITS
         part[tuple(chunk.T)] = np.argmax(shares > shares.max(axis=1, keepdims=True) - 1e-9, axis=1)
-    cubes = (found, normals) if 0 < len(cells) <= _CHUNK else None
+    cubes = None
+    if kept:
+        cubes = (np.concatenate([one for one, _ in kept]), np.concatenate([one for _, one in kept]))
     return CutCells(low, phase, size, filled, part, cells, voids, cubes)
 
 

@@ -20,58 +20,39 @@ from voxsoft.files.scenes.mjcf_clamps import add_clamps
 from voxsoft.files.scenes.mjcf_drives import add_loads, add_probes, add_springs, add_tendons
 from voxsoft.files.scenes.mjcf_model import Model, numbers
 from voxsoft.files.scenes.mjcf_objects import add_objects
-from voxsoft.files.scenes.scene import Scene, SceneSource
+from voxsoft.files.scenes.scene import COMMON, Scene, SceneSource
 
 #: Time step where the design gives none [s].
 TIME_STEP: Final = 0.005
 
 _ACTIVATION: Final = "is not held: MuJoCo's flexes do not grow"
-#: Reason for each feature of a design that MJCF does not hold; none where it is held, or where
-#: the writer of its section says how.
+#: Features that MJCF holds, or whose losses the writer of their section tells.
+HELD: Final = COMMON | {
+    "pressure",
+    "force",
+    "traction",
+    "magnetic field",
+    "immersion",
+    "load over time",
+    "objects that turn",
+    "bonds",
+    "tendons",
+    "springs and the like",
+    "layers",
+    "cut voxels",
+}
+#: Reason for each feature of a design that MJCF does not hold.
 SENTENCES: Final[Mapping[str, str]] = MappingProxyType(
     {
-        "gravity": "",
-        "pressure": "",
-        "force": "",
-        "traction": "",
-        "magnetic field": "",
-        "immersion": "",
         "drag": "is not held: MuJoCo's flexes feel no fluid",
         "force field": "is not held: MuJoCo has no forces by formulas",
-        "load over time": "",
-        "floor": "",
-        "contact": "",
-        "objects": "",
-        "free objects": "",
-        "objects that turn": "",
-        "bonds": "",
         "adhesion": "is not held: MuJoCo's contact does not stick",
-        "several bodies": "",
-        "tendons": "",
-        "springs and the like": "",
         "supplies": "is not held: MuJoCo has no gas or liquid in a chamber",
-        "layers": "",
         "fibers": "is not held: the material of a flex is the same in all directions",
-        "wound fibers": "",
         "activations": _ACTIVATION,
-        "activations over time": "",
-        "activations with a profile": "",
-        "dielectrics": "",
-        "dielectrics over time": "",
         "softening": "is not held: the material of a flex does not soften",
         "viscosity": "is not held: the damping of a flex is that of Rayleigh",
         "local refinement": "is written with small voxels everywhere that the mesh has them",
-        "planes of symmetry": "",
-        "cut voxels": "",
-        "rigid parts": "",
-        "spring lattice": "",
-        "mesh of a file": "",
-        "spring lattice and contact": "",
-        "profiles and contact": "",
-        "symmetry and contact": "",
-        "symmetry and friction": "",
-        "fibers of several bodies": "",
-        "activations of several bodies": "",
     }
 )
 

@@ -26,6 +26,33 @@ from voxsoft.simulation.setup.contact import Pose
 Floats = NDArray[np.float64]
 Ints = NDArray[np.integer[Any]]
 
+#: Features of a design that every format holds, or whose losses another feature tells.
+COMMON: Final = frozenset(
+    {
+        "gravity",
+        "floor",
+        "contact",
+        "objects",
+        "free objects",
+        "several bodies",
+        "wound fibers",
+        "activations over time",
+        "activations with a profile",
+        "dielectrics",
+        "dielectrics over time",
+        "planes of symmetry",
+        "rigid parts",
+        "spring lattice",
+        "mesh of a file",
+        "spring lattice and contact",
+        "profiles and contact",
+        "symmetry and contact",
+        "symmetry and friction",
+        "fibers of several bodies",
+        "activations of several bodies",
+    }
+)
+
 
 @dataclass(frozen=True)
 class SceneState:
@@ -179,14 +206,13 @@ class Scene:
         ----------
         sentences
             Reason for each feature of :data:`voxsoft.simulation.features.FEATURES` that the format
-            has no word for; the empty text where it holds the feature.
+            has no word for.
         """
         found: dict[str, ErrorDetail] = {}
         for feature, sentence in sentences.items():
-            if sentence:
-                for place in FEATURES[feature](self.design):
-                    for where in self._each(place):
-                        found.setdefault(where, self.loss(where, sentence))
+            for place in FEATURES[feature](self.design):
+                for where in self._each(place):
+                    found.setdefault(where, self.loss(where, sentence))
         return list(found.values())
 
     def loss(self, where: str, what: str, hint: str = "") -> ErrorDetail:

@@ -30,10 +30,9 @@ RATE: Final = 24.0
 
 _ELASTIC: Final = "is not held: USD has no schema for it"
 _LOAD: Final = "is not held: USD has no loads but gravity"
-#: Reason for each feature of a design that USD does not hold; none where it is held.
+#: Reason for each feature of a design that USD does not hold; it holds those in `COMMON`.
 SENTENCES: Final[Mapping[str, str]] = MappingProxyType(
     {
-        "gravity": "",
         "pressure": _LOAD,
         "force": _LOAD,
         "traction": _LOAD,
@@ -42,39 +41,19 @@ SENTENCES: Final[Mapping[str, str]] = MappingProxyType(
         "drag": _LOAD,
         "force field": _LOAD,
         "load over time": "is not held: the file has its final value",
-        "floor": "",
-        "contact": "",
-        "objects": "",
-        "free objects": "",
         "objects that turn": "is held as the poses of its states alone",
         "bonds": "is a bond and is not held",
         "adhesion": "is not held: USD has friction alone",
-        "several bodies": "",
         "tendons": "is held as a curve, without its pull",
         "springs and the like": _ELASTIC,
         "supplies": "is not held: USD has no gas or liquid in a chamber",
         "layers": _ELASTIC,
         "fibers": _ELASTIC,
-        "wound fibers": "",
         "activations": _ELASTIC,
-        "activations over time": "",
-        "activations with a profile": "",
-        "dielectrics": "",
-        "dielectrics over time": "",
         "softening": _ELASTIC,
         "viscosity": _ELASTIC,
         "local refinement": "is written with small voxels everywhere that the mesh has them",
-        "planes of symmetry": "",
         "cut voxels": "has whole voxels as tetrahedra; masses and surface are those of cut ones",
-        "rigid parts": "",
-        "spring lattice": "",
-        "mesh of a file": "",
-        "spring lattice and contact": "",
-        "profiles and contact": "",
-        "symmetry and contact": "",
-        "symmetry and friction": "",
-        "fibers of several bodies": "",
-        "activations of several bodies": "",
     }
 )
 

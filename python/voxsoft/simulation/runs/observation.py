@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +17,12 @@ from voxsoft.records import closest
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.results.result import Result, Status
-from voxsoft.simulation.runs.commands import Commands, Course, Value
+from voxsoft.simulation.runs.commands import Commands, Course
+from voxsoft.simulation.runs.drives import Value
 from voxsoft.simulation.runs.local_motion import LocalMotion, Patch
 from voxsoft.simulation.runs.sensors import SensorState
 from voxsoft.simulation.runs.state import measured_result
+from voxsoft.simulation.runs.stored_observation import observation_bytes
 from voxsoft.simulation.setup.contact import ContactState, Pose
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.simulation.setup.tendons import TendonState
@@ -76,6 +78,12 @@ class Moment:
 
     def __post_init__(self) -> None:
         self.positions.flags.writeable = self.velocities.flags.writeable = False
+
+    def drives(
+        self, problem: _core.Problem, inputs: Sequence[Course]
+    ) -> tuple[Floats, list[_core.Tendon]]:
+        """Measure chambers, (c, 6), and tendons alone."""
+        return problem.drives(self.positions, self.time, self.memory, inputs)
 
     def measured(self, problem: _core.Problem, inputs: Sequence[Course]) -> _core.Answer:
         """Measure forces, contacts and chambers under these inputs of a problem."""
@@ -151,6 +159,11 @@ class Subject:
         mesh = self.setup.mesh
         return {name: Patch.around(place, mesh) for name, place in self.setup.places.items()}
 
+    @cached_property
+    def fields(self) -> _core.Fields:
+        """Elements of the body, which say whether they are inside out."""
+        return _core.Fields(self.problem)
+
     def inputs(self, driven: Driven, time: float) -> list[Course]:
         """Inputs of the core as they act at a time in s and from there on."""
         found: list[Course] = []
@@ -214,6 +227,82 @@ class Observation:
     def __repr__(self) -> str:
         return f"<Observation at {self.time:g} s: {self.status}>"
 
+    @classmethod
+    def of(
+        cls,
+        subject: Subject,
+        moment: Moment,
+        driven: Driven,
+        *,
+        steps: int,
+        status: MotionStatus,
+        message: str,
+        elastic_energy: float,
+        kinetic_energy: float,
+        before: Floats | None,
+        sensors: Mapping[str, Floats] = MappingProxyType({}),
+    ) -> Self:
+        """Observe a body at a moment; `before` are its velocities a step ago, if there is one."""
+        mesh, names = subject.setup.mesh, subject.commands.names
+        own = len(mesh.vertices)
+        positions = moment.positions[:own]
+        moved = positions - mesh.vertices
+        return cls(
+            time=steps * subject.step,
+            steps=steps,
+            status=status,
+            message=message,
+            positions=positions,
+            velocities=moment.velocities[:own],
+            probes={
+                name: place.weights @ moved[place.vertices]
+                for name, place in subject.setup.places.items()
+            },
+            commands=MappingProxyType(dict(zip(names, driven.values, strict=True))),
+            residual=moment.residual,
+            elastic_energy=elastic_energy,
+            kinetic_energy=kinetic_energy,
+            _moment=moment,
+            _subject=subject,
+            _driven=driven,
+            _before=before,
+            sensors=sensors,
+        )
+
+    def driven_by(self, driven: Driven, samples: Mapping[str, Floats] | None = None) -> Self:
+        """Return it with other drives, and all that was measured of it."""
+        found = replace(self, _driven=driven, sensors=self.sensors if samples is None else samples)
+        for name in ("_answer", "_drives", "chambers"):
+            if name in self.__dict__:
+                found.__dict__[name] = self.__dict__[name]
+        return found
+
+    def to_bytes(self) -> bytes:
+        """Return all that :meth:`~voxsoft.Simulator.restore` needs, for a file or another process.
+
+        Returns
+        -------
+        bytes
+            Content of an ``.npz`` file.
+
+        Raises
+        ------
+        DesignError
+            A shape of the design is made of a Python function.
+
+        Examples
+        --------
+        >>> import voxsoft as vs
+        >>> from voxsoft.design import families
+        >>> cup = families.cylinder(radius="20 mm", height="30 mm")
+        >>> seen = vs.Simulator(cup).step({"pressure": "1 kPa"})
+        >>> other = vs.Simulator(cup)
+        >>> restored = other.restore(seen.to_bytes())
+        >>> restored.time, bool((restored.positions == seen.positions).all())
+        (0.02, True)
+        """
+        return observation_bytes(self)
+
     @property
     def loads(self) -> Mapping[str, Value]:
         """Values of the commands that are loads."""
@@ -222,10 +311,17 @@ class Observation:
 
     @cached_property
     def _answer(self) -> _core.Answer:
-        """Forces, contacts, tendons and chambers, measured on demand."""
+        """Forces and contacts, measured on demand."""
         subject = self._subject
         inputs = subject.inputs(self._driven, self._moment.time)
         return self._moment.measured(subject.problem, inputs)
+
+    @cached_property
+    def _drives(self) -> tuple[Floats, list[_core.Tendon]]:
+        """Chambers, (c, 6), and tendons, which every step asks for where there are any."""
+        subject = self._subject
+        inputs = subject.inputs(self._driven, self._moment.time)
+        return self._moment.drives(subject.problem, inputs)
 
     @cached_property
     def chambers(self) -> tuple[ChamberState, ...]:
@@ -239,7 +335,7 @@ class Observation:
             for cavity in pressed:
                 pressures[cavity] += value
         if (fluids := setup.fluids) is not None:
-            for supplied in fluids.states(self._answer.chambers):
+            for supplied in fluids.states(self._drives[0]):
                 for cavity in supplied.cavities:
                     pressures[cavity], flows[cavity] = supplied.pressure, supplied.flow
         rows = zip(cavities, pressures, flows, strict=True)
@@ -251,7 +347,7 @@ class Observation:
     @property
     def tendons(self) -> Mapping[str, TendonState]:
         """Tension, length, slack and points of each tendon by its name, N and m."""
-        found = zip(self._subject.setup.tendons, self._answer.tendons, strict=True)
+        found = zip(self._subject.setup.tendons, self._drives[1], strict=True)
         return {tendon.name: tendon.state(core) for tendon, core in found}
 
     @property

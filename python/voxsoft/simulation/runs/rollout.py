@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from voxsoft.errors import DesignError, SimulationError
-from voxsoft.simulation.runs.commands import CommandName, Value
+from voxsoft.simulation.runs.commands import CommandName
+from voxsoft.simulation.runs.drives import Value
 from voxsoft.simulation.runs.observation import Driven, Observation
 from voxsoft.simulation.runs.simulator import Simulator
 

@@ -16,9 +16,9 @@ from voxsoft.design import Design, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.records import Record
 from voxsoft.simulation.compatibility import refuse
-from voxsoft.simulation.results.fields import fields_of
-from voxsoft.simulation.runs.commands import Command, CommandName, Commands, Course, Value
+from voxsoft.simulation.runs.commands import Command, CommandName, Commands, Course
 from voxsoft.simulation.runs.critical_damping import critical_damping
+from voxsoft.simulation.runs.drives import Value
 from voxsoft.simulation.runs.observation import (
     Driven,
     Moment,
@@ -27,6 +27,7 @@ from voxsoft.simulation.runs.observation import (
     Subject,
 )
 from voxsoft.simulation.runs.sensors import Sensor, Sensors, SensorState
+from voxsoft.simulation.runs.stored_observation import observation_from
 from voxsoft.simulation.setup.large_voxels import evenly_small
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
@@ -290,7 +291,7 @@ class Simulator:
         self._seen = self._sampled(self._counted(found, seen))
         return self._seen
 
-    def restore(self, state: Observation) -> Observation:
+    def restore(self, state: Observation | bytes) -> Observation:
         """Go back to an observation: its state, time, commands and all that it remembers.
 
         Friction, gas and liquid, softening, viscous stress, the lengths of steps and the noise of
@@ -300,7 +301,8 @@ class Simulator:
         Parameters
         ----------
         state
-            An observation of this simulator or of another one of the same design.
+            An observation of this simulator or of another one of the same design, or the bytes of
+            one, see :meth:`Observation.to_bytes`.
 
         Returns
         -------
@@ -310,8 +312,11 @@ class Simulator:
         Raises
         ------
         SimulationError
-            An observation of another design, or with other sensors.
+            An observation of another design, or with other sensors; bytes that are damaged, or of
+            another time step or version of VoxSoft.
         """
+        if isinstance(state, bytes):
+            state = observation_from(state, self._subject)
         if state._subject.setup.design != self.design:
             raise SimulationError(
                 "simulator",
@@ -331,6 +336,11 @@ class Simulator:
         self._live.resume(moment.positions, moment.velocities, moment.time, moment.memory)
         self._steps, self._seed, self._seen = state.steps, driven.seed, state
         return state
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the design, the settings and the state; the body is built again."""
+        settings = self._settings.model_dump()
+        return _rebuilt, (self.design, settings, self.sensors, self._seen.to_bytes())
 
     def copy(self) -> Simulator:
         """Return another simulator in the same state, which goes on by itself.
@@ -403,8 +413,6 @@ class Simulator:
         self, report: _core.Advance, driven: Driven, before: Observation | None
     ) -> Observation:
         """Observe the body after an advance."""
-        subject = self._subject
-        mesh = subject.setup.mesh
         moment = Moment(
             positions=self._live.positions(),
             velocities=self._live.velocities(),
@@ -412,31 +420,18 @@ class Simulator:
             memory=self._live.memory(),
             residual=report.residual,
         )
-        own = len(mesh.vertices)
-        positions, velocities = moment.positions[:own], moment.velocities[:own]
-        moved = positions - mesh.vertices
-        status, message = self._judged(report, positions)
-        return Observation(
-            time=self._steps * self.time_step,
+        own = len(self._subject.setup.mesh.vertices)
+        status, message = self._judged(report, moment.positions[:own])
+        return Observation.of(
+            self._subject,
+            moment,
+            driven,
             steps=self._steps,
             status=status,
             message=message,
-            positions=positions,
-            velocities=velocities,
-            probes={
-                name: place.weights @ moved[place.vertices]
-                for name, place in subject.setup.places.items()
-            },
-            commands=MappingProxyType(
-                dict(zip(subject.commands.names, driven.values, strict=True))
-            ),
-            residual=moment.residual,
             elastic_energy=report.elastic,
             kinetic_energy=report.kinetic,
-            _moment=moment,
-            _subject=subject,
-            _driven=driven,
-            _before=None if before is None else before.velocities,
+            before=None if before is None else before.velocities,
         )
 
     def _counted(self, seen: Observation, before: Observation) -> Observation:
@@ -444,7 +439,7 @@ class Simulator:
         subject, given = self._subject, dict[str, float]()
         fluids = subject.setup.fluids
         if fluids is not None:
-            for supplied in fluids.states(seen._answer.chambers):
+            for supplied in fluids.states(seen._drives[0]):
                 given[supplied.name] = supplied.energy
         work = before._driven.work
         for tendon in subject.setup.tendons:
@@ -462,14 +457,14 @@ class Simulator:
             given[name] = work.get(name, 0.0) + pressure * sum(volumes)
         power = (sum(given.values()) - sum(work.values())) / self.time_step
         driven = replace(seen._driven, work=MappingProxyType(given), power=power)
-        return _with(seen, driven)
+        return seen.driven_by(driven)
 
     def _sampled(self, seen: Observation) -> Observation:
         """Sample the sensors."""
         if self._sensors is None:
             return seen
         samples, after = self._sensors.sample(seen._driven.sensors, seen)
-        return _with(seen, replace(seen._driven, sensors=after), samples)
+        return seen.driven_by(replace(seen._driven, sensors=after), samples)
 
     def _judged(
         self, report: _core.Advance, positions: np.ndarray[Any, Any]
@@ -480,21 +475,18 @@ class Simulator:
             point = ", ".join(f"{value * 1e3:.1f}" for value in place)
             what = f"diverged at ({point}) mm, after {when:.6g} s: the loads are too much for it"
             return "diverged", what
-        fields = fields_of(self.design, self._subject.setup.mesh, positions, self._subject.problem)
-        inverted = int((fields.volume_ratio <= 0.0).sum())
-        if inverted:
-            return "inverted", f"{inverted:,} of {len(fields.volume_ratio):,} voxels are inside out"
+        fields = self._subject.fields
+        if inverted := fields.inverted(positions):
+            return "inverted", f"{inverted:,} of {len(fields.blocks):,} voxels are inside out"
         if report.status == _core.LiveStatus.AT_REST:
             return "at-rest", f"at rest, residual {report.residual:.2g} of the load"
         return "moving", "moving"
 
 
-def _with(
-    seen: Observation, driven: Driven, samples: Mapping[str, np.ndarray[Any, Any]] | None = None
-) -> Observation:
-    """Return an observation with other drives, and all that was measured of it."""
-    found = replace(seen, _driven=driven, sensors=seen.sensors if samples is None else samples)
-    for name in ("_answer", "chambers"):
-        if name in seen.__dict__:
-            found.__dict__[name] = seen.__dict__[name]
+def _rebuilt(
+    design: Design, settings: Mapping[str, Any], sensors: Sequence[Sensor], state: bytes
+) -> Simulator:
+    """Make a simulator in a state."""
+    found = Simulator(design, sensors=sensors, **settings)
+    found.restore(state)
     return found

@@ -1,7 +1,9 @@
 //! Memory of a tendon with friction.
 
+use serde::{Deserialize, Serialize};
+
 /// Tensions, lengths and bends of the last accepted state.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TendonMemory {
     /// Tension in each segment, N.
     pub tensions: Vec<f64>,
