@@ -30,7 +30,7 @@ pub struct SampleMemory {
 }
 
 /// Side of the kinks of contact on which a sample is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Regime {
     /// True if surfaces press on each other there.
     pub pressed: bool,
