@@ -305,7 +305,7 @@ impl PyProblem {
         time: f64,
         memory: &PyMemory,
         inputs: Vec<InputArgument>,
-    ) -> PyResult<PyDrives<'py>> {
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Vec<Py<PyTendon>>)> {
         let positions = self.positions(&positions)?;
         let problem = self.at(time, memory, inputs)?.now();
         let factor_of = |load: &Load| load.history.at(time);
@@ -614,9 +614,6 @@ fn in_motion(mut problem: Arc<Problem>, state: &State) -> Arc<Problem> {
     }
     problem
 }
-
-/// Numbers of chambers, (c, 6), and tendons.
-type PyDrives<'py> = (Bound<'py, PyArray2<f64>>, Vec<Py<PyTendon>>);
 
 /// Numbers of each chamber with fluid.
 fn chambers(
