@@ -27,6 +27,9 @@ use crate::surface_contact::{Touching, contact_of};
 use crate::tendon::{PyTendon, tendons};
 use crate::watch::{Watch, collect_sensors};
 
+/// Numbers of chambers, (c, 6), and tendons.
+type PyDrives<'py> = (Bound<'py, PyArray2<f64>>, Vec<Py<PyTendon>>);
+
 /// A mechanical problem: a body with clamps, loads and a floor.
 #[pyclass(frozen, name = "Problem", module = "voxsoft._core")]
 pub struct PyProblem {
@@ -305,7 +308,7 @@ impl PyProblem {
         time: f64,
         memory: &PyMemory,
         inputs: Vec<InputArgument>,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Vec<Py<PyTendon>>)> {
+    ) -> PyResult<PyDrives<'py>> {
         let positions = self.positions(&positions)?;
         let problem = self.at(time, memory, inputs)?.now();
         let factor_of = |load: &Load| load.history.at(time);
