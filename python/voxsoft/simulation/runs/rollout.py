@@ -180,21 +180,23 @@ def rollout(
         if slopes
     ]
     seen: list[Observation] = []
-    for step in range(steps):
-        for each in neighbors:
-            each.command(step)
-        seen.append(simulator.step({course.name: course.values[step] for course in courses}))
-        if seen[-1].status == "diverged":
-            raise SimulationError(
-                "rollout",
-                f"{seen[-1].message}, in step {step + 1} of {steps}",
-                "command less or more slowly, or use smaller voxels",
-            )
-        for each in neighbors:
-            each.look(step)
-        if progress is not None:
-            progress((step + 1) / steps)
-    live.forget_variations()
+    try:
+        for step in range(steps):
+            for each in neighbors:
+                each.command(step)
+            seen.append(simulator.step({course.name: course.values[step] for course in courses}))
+            if seen[-1].status == "diverged":
+                raise SimulationError(
+                    "rollout",
+                    f"{seen[-1].message}, in step {step + 1} of {steps}",
+                    "command less or more slowly, or use smaller voxels",
+                )
+            for each in neighbors:
+                each.look(step)
+            if progress is not None:
+                progress((step + 1) / steps)
+    finally:
+        live.forget_variations()
     rows = {
         course.name: [each for each in neighbors if each.course is course] for course in courses
     }
