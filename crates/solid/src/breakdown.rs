@@ -79,7 +79,7 @@ struct Drifting {
 }
 
 impl Reach {
-    /// Finds the reach of a problem.
+    /// Finds the reach of a motion under commands: a free fall may end in a catch.
     pub fn of(problem: &Problem) -> Self {
         let mut sets = Sets::of(problem.body());
         for rigid in problem.rigid() {
@@ -111,6 +111,14 @@ impl Reach {
         Self {
             limit: travel_limit(problem),
             drifting,
+        }
+    }
+
+    /// Finds the reach of a run to an end, in which a free fall counts as lost once it is far away.
+    pub fn near_rest(problem: &Problem) -> Self {
+        Self {
+            limit: travel_limit(problem),
+            drifting: Vec::new(),
         }
     }
 

@@ -185,7 +185,7 @@ fn run(
     mut arrays: Box<dyn Arrays + Send>,
     mut substeps: u32,
 ) -> Answer {
-    let reach = Reach::of(&problem);
+    let reach = Reach::near_rest(&problem);
     // A body whose loads still change is not at rest, even if no force acts yet.
     let steady = loads_end(&problem);
     arrays.load(&state);

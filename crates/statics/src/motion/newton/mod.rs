@@ -25,7 +25,7 @@ mod variations;
 
 use std::ops::ControlFlow;
 
-use voxsoft_solid::breakdown::Breakdown;
+use voxsoft_solid::breakdown::{Breakdown, Reach};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
     Damping, History, Input, Memory, Observer, Problem, ProblemError, Progress, RecordedContact,
@@ -106,7 +106,10 @@ impl Transient {
     /// Integrates the motion of a problem from a state.
     pub fn follow(&self, problem: &Problem, start: State, observer: &mut Observer<'_>) -> Solution {
         match Motion::from_state(problem.clone(), self, start) {
-            Ok(motion) => motion.go(self, observer),
+            Ok(mut motion) => {
+                motion.run.reach = Reach::near_rest(problem);
+                motion.go(self, observer)
+            }
             Err((error, run)) => refused(run.state, run.problem.memory(), error),
         }
     }
