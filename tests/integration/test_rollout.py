@@ -78,6 +78,55 @@ def test_the_way_of_a_fall_changes_with_gravity_as_galilei_says():
     assert np.abs(found.end["gravity"][0, :, :2]).max() < 1e-9
 
 
+def arm():
+    """A bar that stands on a plate and is pulled aside."""
+    rubber = vs.NeoHookean(young=1e5, poisson=0.3, density=1000)
+    return vs.Design(
+        name="arm",
+        voxel_size=0.01,
+        parts=[vs.Part(shape=vs.Box(size=(0.01, 0.01, 0.04)), material=rubber)],
+        clamps=[vs.Clamp(region=vs.Region(z=(0, 0)))],
+        loads=[vs.Force(value=(0.01, 0, 0), region=vs.Region(z=(0.04, 0.04)))],
+        probes={"tip": {"z": (0.04, 0.04)}},
+    )
+
+
+def test_slopes_by_a_vector_are_those_of_its_components():
+    simulator = vs.Simulator(arm())
+    knots = {"force": [[0.0, 0.0, 0.0], [0.01, 0.005, 0.0]]}
+    found = rollout(simulator, knots, steps=5)
+    assert found.slopes["force"]["tip"].shape == (5, 2, 3, 3)
+    assert found.end["force"].shape[:2] == (2, 3)
+    for axis in range(3):
+        expected = differences(simulator, knots, "force", (1, axis), 1e-5, 5)["tip"]
+        error = np.abs(found.slopes["force"]["tip"][:, 1, axis] - expected).max()
+        assert error < SMOOTH * np.abs(expected).max()
+    aside = found.gradient({"tip": [1.0, 0.0, 0.0]})["force"]
+    assert aside.shape == (2, 3)
+    assert aside[1, 0] > 10.0 * abs(aside[1, 1])
+
+
+@pytest.mark.long
+def test_slopes_know_moved_clamps_and_free_objects():
+    simulator = vs.Simulator(vs.load(EXAMPLES / "pinch.toml"), damping=20)
+    knots = {
+        "gravity": [0.0, 9.81],
+        "clamps[0]": [[-2e-4, 0, 0], [-5e-4, 0, 1e-4]],
+        "clamps[1]": [[2e-4, 0, 0], [5e-4, 0, 0]],
+    }
+    found = rollout(simulator, knots, steps=8)
+    for name, knot, h in (("gravity", (1,), 1e-2), ("clamps[0]", (1, 2), 1e-7)):
+        ends = []
+        for sign in (1.0, -1.0):
+            moved = {each: np.array(values, dtype=float) for each, values in knots.items()}
+            moved[name][knot] += sign * h
+            simulator.reset()
+            ends.append(rollout(simulator, moved, steps=8, slopes=False).observations[-1].positions)
+        expected = (ends[0] - ends[1]) / (2 * h)
+        error = np.abs(found.end[name][knot] - expected).max()
+        assert error < TOUCHING * np.abs(expected).max()
+
+
 def test_slopes_are_those_of_differences_without_contact():
     assert worst_error(vs.Simulator(cup()), {"pressure": [500.0, 2000.0, 0.0]}, 1.0, 8) < SMOOTH
 
@@ -156,7 +205,8 @@ def test_damping_that_follows_the_motion_has_no_derivative():
     [
         ({"pull": [1.0]}, "no command"),
         ({"pressure": []}, "shape"),
-        ({"pressure": [[1.0, 2.0]]}, "shape"),
+        ({"pressure": [[1.0, 2.0]]}, "pressure"),
+        ({"pressure": [[[1.0]]]}, "shape"),
         ({"pressure": [float("nan")]}, "pressure"),
     ],
 )
@@ -184,3 +234,11 @@ def test_slopes_know_the_drag_of_a_fluid():
     )
     simulator = vs.Simulator(sinking, damping=0, time_step=0.05)
     assert worst_error(simulator, {"gravity": [9.81, 5.0]}, 1e-2, 8) < SMOOTH
+
+
+@pytest.mark.long
+def test_bonds_have_no_derivative_along_a_motion():
+    simulator = vs.Simulator(vs.load(EXAMPLES / "squeeze.toml"), damping=10)
+    name, command = next(iter(simulator.commands.items()))
+    with pytest.raises(DesignError, match="bond"):
+        rollout(simulator, {name: [command.design]}, steps=1)

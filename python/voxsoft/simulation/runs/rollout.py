@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from voxsoft.errors import DesignError, SimulationError
+from voxsoft.simulation.features import has_feature
 from voxsoft.simulation.runs.commands import CommandName
 from voxsoft.simulation.runs.drives import Value
 from voxsoft.simulation.runs.observation import Driven, Observation
@@ -33,15 +34,16 @@ class Rollout:
     observations
         The body after each step.
     knots
-        Values of each command at its knots, SI units.
+        Values of each command at its knots, SI units: (k,), or (k, 3) of a vector.
     values
-        Values of each command in each step, SI units.
+        Values of each command in each step, SI units: (steps,) or (steps, 3).
     slopes
         For each command and each probe, the derivative of its displacement after each step by each
-        knot: (steps, knots, 3), m per unit of the command. Zero by a knot that acts later.
+        knot: (steps, k, 3), or (steps, k, 3, 3) by the components of a vector, m per unit of the
+        command. Zero by a knot that acts later.
     end
         For each command, the derivative of all vertices after the last step by each knot:
-        (knots, n, 3), m per unit of the command.
+        (k, n, 3) or (k, 3, n, 3), m per unit of the command.
     """
 
     observations: tuple[Observation, ...]
@@ -66,7 +68,7 @@ class Rollout:
         Returns
         -------
         dict
-            For each command, the derivative by each of its knots, (knots,).
+            For each command, the derivative by each of its knots, (k,) or (k, 3).
 
         Raises
         ------
@@ -90,8 +92,8 @@ class Rollout:
         return {
             name: np.asarray(
                 sum(
-                    (np.einsum("ski,si->k", of[probe], rows) for probe, rows in given.items()),
-                    np.zeros(len(self.knots[name])),
+                    (np.einsum("s...i,si->...", of[probe], rows) for probe, rows in given.items()),
+                    np.zeros(self.knots[name].shape),
                 )
             )
             for name, of in self.slopes.items()
@@ -114,7 +116,7 @@ def rollout(
     simulator
         The body, from its present state on; it is after the last step then, as without derivatives.
     knots
-        Values of commands that are one number at their knots, SI units, (k,) each: spread evenly
+        Values of commands at their knots, SI units, (k,) each, or (k, 3) of a vector: spread evenly
         from the first step to the last. Other commands stay.
     steps
         Steps to take.
@@ -133,8 +135,8 @@ def rollout(
     Raises
     ------
     DesignError
-        An unknown command, one of three components, no knots, or values out of bounds; critical
-        damping of a body that moves freely, which follows its motion.
+        An unknown command, no knots, or values out of bounds or of another shape; critical damping
+        of a body that moves freely, which follows its motion; bonds.
     SimulationError
         The body diverges, or its derivative at some step is not known: the tangent there is
         singular, or contact does not settle to the first order.
@@ -170,13 +172,16 @@ def rollout(
             '"critical" follows the motion of a body that moves freely, and has no derivative',
             "give the simulator a rate: damping=10",
         )
+    if slopes and has_feature(simulator.design, "bonds"):
+        what = "a bond holds by multipliers that are not differentiated along a motion"
+        raise DesignError("contact.pairs", what, "leave bonds out, or take slopes=False")
     courses = _courses(simulator, knots, steps, between)
     live = simulator._live
     live.forget_variations()
     neighbors = [
         _Neighbors(simulator, courses, course, knot)
         for course in courses
-        for knot in range(len(course.knots))
+        for knot in range(course.knots.size)
         if slopes
     ]
     seen: list[Observation] = []
@@ -184,7 +189,7 @@ def rollout(
         for step in range(steps):
             for each in neighbors:
                 each.command(step)
-            seen.append(simulator.step({course.name: course.values[step] for course in courses}))
+            seen.append(simulator.step({each.name: each.at(step) for each in courses}))
             if seen[-1].status == "diverged":
                 raise SimulationError(
                     "rollout",
@@ -207,7 +212,9 @@ def rollout(
         slopes=MappingProxyType(
             {
                 name: {
-                    probe: np.stack([each.probes[probe] for each in own], axis=1)
+                    probe: np.stack([each.probes[probe] for each in own], axis=1).reshape(
+                        steps, *own[0].course.knots.shape, 3
+                    )
                     for probe in seen[-1].probes
                 }
                 for name, own in rows.items()
@@ -215,7 +222,13 @@ def rollout(
             }
         ),
         end=MappingProxyType(
-            {name: np.stack([each.end for each in own]) for name, own in rows.items() if own}
+            {
+                name: np.stack([each.end for each in own]).reshape(
+                    *own[0].course.knots.shape, -1, 3
+                )
+                for name, own in rows.items()
+                if own
+            }
         ),
     )
 
@@ -229,7 +242,7 @@ class _Course:
     index, name
         Its place among the commands, and its name.
     knots
-        Values at the knots, (k,).
+        Values at the knots, (k,) or (k, 3).
     shares
         Shares of all knots in the value of each step, (steps, k).
     offset
@@ -244,9 +257,17 @@ class _Course:
 
     @property
     def values(self) -> Floats:
-        """Value in each step, (steps,)."""
+        """Value in each step, (steps,) or (steps, 3)."""
         found: Floats = self.shares @ self.knots
         return found
+
+    def at(self, step: int, moved: Floats | float = 0.0) -> Value:
+        """Value in a step, moved by some part of it."""
+        value = self.values[step] + moved
+        if self.knots.ndim == 1:
+            return float(value)
+        x, y, z = value.tolist()
+        return x, y, z
 
 
 def _courses(
@@ -258,15 +279,15 @@ def _courses(
     firsts = {}
     for name, given in knots.items():
         values = np.asarray(given, dtype=np.float64)
-        if values.ndim != 1 or len(values) == 0:
+        if values.ndim not in (1, 2) or values.size == 0:
             what = f"have the shape {values.shape}"
-            raise DesignError(f"knots[{name!r}]", what, "give a list of numbers in SI units")
+            raise DesignError(f"knots[{name!r}]", what, "give a list of values in SI units")
         firsts[name] = values
     read = commands.read({name: values[0] for name, values in firsts.items()})
     for name, index in zip(firsts, read, strict=True):
         command, values = commands.all[index], firsts[name]
         for value in values:
-            command.read(float(value), f"knots[{name!r}]")
+            command.read(value, f"knots[{name!r}]")
         count = len(values)
         times = np.arange(steps) / max(steps - 1, 1) * (count - 1)
         if between == "linear":
@@ -274,8 +295,8 @@ def _courses(
         else:
             held = np.floor(np.arange(steps) * count / steps).astype(int)
             shares = np.eye(count)[held]
-        sizes = [abs(each) for each in (command.first, command.design) if isinstance(each, float)]
-        largest = max([*sizes, float(np.abs(values).max())])
+        sizes = [np.abs(each).max() for each in (command.first, command.design, values)]
+        largest = float(max(sizes))
         offset = _OFFSET * (largest or 1.0)
         found.append(_Course(index, command.name, values, shares, offset))
     return found
@@ -297,7 +318,11 @@ class _Neighbors:
     def __init__(
         self, simulator: Simulator, courses: list[_Course], course: _Course, knot: int
     ) -> None:
-        self.course, self._knot, self._courses = course, knot, courses
+        self.course, self._courses = course, courses
+        self._knot = knot // (course.knots.size // len(course.knots))
+        direction = np.zeros(course.knots.size)
+        direction[knot] = 1.0
+        self._way = direction.reshape(course.knots.shape)[self._knot]
         self._simulator = simulator
         self._number: int | None = None
         self._driven: list[Driven] = []
@@ -320,8 +345,8 @@ class _Neighbors:
         end = (seen.steps + 1) * simulator.time_step - seen._driven.late
         span = (seen._moment.time, end)
         for side, sign in enumerate((-1.0, 1.0)):
-            new: dict[int, Value] = {each.index: float(each.values[step]) for each in self._courses}
-            new[course.index] = float(course.values[step] + sign * share * course.offset)
+            new: dict[int, Value] = {each.index: each.at(step) for each in self._courses}
+            new[course.index] = course.at(step, sign * share * course.offset * self._way)
             inputs, self._driven[side] = simulator._changed(self._driven[side], new, span)
             if inputs:
                 simulator._live.command_variation(self._number, side == 1, inputs)
