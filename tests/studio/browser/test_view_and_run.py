@@ -29,13 +29,13 @@ def changed(before, after):
 
 def settled(tab):
     """The picture once it stands still: in motion it may be coarser."""
-    before = picture(tab)
-    while True:
+    before, unchanged = picture(tab), 0
+    while unchanged < 3:  # a busy machine takes its time to draw a coarse picture whole
         tab.page.wait_for_timeout(400)
         now = picture(tab)
-        if changed(before, now) == 0:
-            return now
+        unchanged = unchanged + 1 if changed(before, now) == 0 else 0
         before = now
+    return before
 
 
 def farthest_vertex(tab):
