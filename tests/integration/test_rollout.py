@@ -242,3 +242,25 @@ def test_bonds_have_no_derivative_along_a_motion():
     name, command = next(iter(simulator.commands.items()))
     with pytest.raises(DesignError, match="bond"):
         rollout(simulator, {name: [command.design]}, steps=1)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"floor": {"z": -0.002}},
+        {"loads": [vs.Gravity(), vs.design.ForceField(acceleration=("-8*(vx+2*y)", "0", "-3*vz"))]},
+    ],
+    ids=["floor", "field"],
+)
+def test_slopes_know_a_floor_and_fields_of_formulas(changes):
+    rubber = vs.NeoHookean(young=1e5, poisson=0.3, density=1000)
+    sagging = vs.Design(
+        name="sagging",
+        voxel_size=0.01,
+        parts=[vs.Part(shape=vs.Box(size=(0.06, 0.01, 0.01)), material=rubber)],
+        clamps=[vs.Clamp(region=vs.Region(x=(0, 0)))],
+        probes={"tip": {"x": (0.06, 0.06)}},
+        **{"loads": [vs.Gravity()]} | changes,
+    )
+    simulator = vs.Simulator(sagging, damping=5)
+    assert worst_error(simulator, {"gravity": [3.0, 9.81]}, 1e-3, 10) < SMOOTH

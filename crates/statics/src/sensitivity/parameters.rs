@@ -156,7 +156,9 @@ pub fn sensitivities<C: RecordedContact>(
 }
 
 /// Contact of a problem, of the recorded kind.
-fn contact_of<C: RecordedContact>(problem: &mut Problem) -> Result<&mut C, AdjointError> {
+pub(crate) fn contact_of<C: RecordedContact>(
+    problem: &mut Problem,
+) -> Result<&mut C, AdjointError> {
     let contact = problem.contact_mut().ok_or(AdjointError::Unsettled)?;
     let found = contact.found_by_mut().downcast_mut();
     found.ok_or(AdjointError::Unsettled)
@@ -187,7 +189,8 @@ fn change(before: &[Vec3], now: &[Vec3], carried: f64) -> f64 {
     }
 }
 
-fn net_forces(problem: &Problem, positions: &[Vec3], point: LoadParameter) -> Vec<Vec3> {
+/// Net forces (N) at `positions` without inertia.
+pub(crate) fn net_forces(problem: &Problem, positions: &[Vec3], point: LoadParameter) -> Vec<Vec3> {
     let mut net = vec![[0.0; 3]; positions.len()];
     problem.add_scaled_loads(positions, &point.factor_of(), &mut net);
     elastic::add_forces(problem.body(), positions, &mut net);

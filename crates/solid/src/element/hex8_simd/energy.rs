@@ -1,4 +1,4 @@
-//! The energy's gradient and Hessian by the generalized coordinates, one voxel in each lane; the formulas stand in
+//! The energy, its gradient and its Hessian by the generalized coordinates, one voxel in each lane; the formulas stand in
 //! [`crate::element::coordinates`], [`crate::element::warping_modes`] and [`crate::hyperelastic`].
 //!
 //! Long because gradient and Hessian are one derivation, part by part of the energy.

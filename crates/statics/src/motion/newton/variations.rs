@@ -18,7 +18,6 @@ use voxsoft_solid::element::hex8::Within;
 use voxsoft_solid::vector::{Vec3, add, axpy, scale, sub};
 use voxsoft_solid::{
     History, Input, Load, Moment, Problem, ProblemError, RecordedContact, State, Velocities,
-    elastic,
 };
 
 use crate::linear::system::System;
@@ -28,6 +27,7 @@ use crate::motion::scheme::{Stage, Start};
 use crate::path::equilibrium::Equilibrium;
 use crate::path::load_parameter::LoadParameter;
 use crate::sensitivity::adjoint::AdjointError;
+use crate::sensitivity::parameters::{contact_of, net_forces};
 
 /// Relative tolerance of iterative solutions for derivatives, in the energy norm.
 const TOLERANCE: f64 = 1e-8;
@@ -208,30 +208,15 @@ impl<C: RecordedContact> Variations<C> {
         let moment = settled_moment::<C>(&equilibrium.problem, next)?;
         let contact = equilibrium.problem.contact();
         let touches = contact.is_some_and(|contact| contact.is_touching(&next.positions));
-        let kept = equilibrium
-            .problem
-            .contact()
-            .map(|contact| contact.memory());
-        if let (Some(moment), Some(contact)) = (&moment, equilibrium.problem.contact_mut())
-            && found_mut::<C>(contact)?.recall(moment)
-        {
-            equilibrium.system =
-                System::new(&equilibrium.problem, &equilibrium.held, equilibrium.options)?;
-        }
+        let kept = contact.map(|contact| contact.memory());
         let end = LoadParameter::at(step.time);
-        let system = &mut equilibrium.system;
-        let mut unused = vec![0.0; system.size()];
-        system.assemble(
-            &equilibrium.problem,
-            &next.positions,
-            &end.factor_of(),
-            None,
-            None,
-            &mut unused,
-        );
+        let assembled = assemble::<C>(equilibrium, moment.as_ref(), next, end);
+        // The motion goes on from its own contact, also without a tangent.
         if let (Some(kept), Some(contact)) = (&kept, equilibrium.problem.contact_mut()) {
             contact.remember(kept);
         }
+        assembled?;
+        let system = &mut equilibrium.system;
         let factor = system.factor(0.0)?;
         for parameter in &mut self.parameters {
             let offset = parameter.offset;
@@ -304,11 +289,8 @@ impl<C: RecordedContact> Variations<C> {
 impl Parameter {
     fn contacts<C: RecordedContact>(&mut self) -> Result<Vec<&mut C>, AdjointError> {
         let each = self.neighbors.iter_mut();
-        each.map(|neighbor| {
-            let contact = neighbor.problem.contact_mut();
-            found_mut(contact.ok_or(AdjointError::Unsettled)?)
-        })
-        .collect()
+        each.map(|neighbor| contact_of(&mut neighbor.problem))
+            .collect()
     }
 
     /// Largest change of slopes, relative to the largest so far; infinite without slopes before.
@@ -385,13 +367,9 @@ impl Neighbor {
         step: &Step,
         end: LoadParameter,
     ) -> Vec<Vec3> {
-        let mut net = vec![[0.0; 3]; positions.len()];
-        self.problem
-            .add_scaled_loads(positions, &end.factor_of(), &mut net);
-        let body = self.problem.body();
-        elastic::add_forces(body, positions, &mut net);
+        let mut net = net_forces(&self.problem, positions, end);
         let inertia = step.inertia();
-        for (vertex, mass) in body.masses().iter().enumerate() {
+        for (vertex, mass) in self.problem.body().masses().iter().enumerate() {
             let mut free = start.positions[vertex];
             axpy(&mut free, 1.0 / step.braked, start.velocities[vertex]);
             axpy(
@@ -442,9 +420,28 @@ fn settled_moment<C: RecordedContact>(
     Ok(Some(found.moment(&next.positions)))
 }
 
-fn found_mut<C: RecordedContact>(
-    contact: &mut dyn voxsoft_solid::Contact,
-) -> Result<&mut C, AdjointError> {
-    let found = contact.found_by_mut().downcast_mut();
-    found.ok_or(AdjointError::Unsettled)
+/// Assembles the exact tangent at the end of a step, with its contact.
+fn assemble<C: RecordedContact>(
+    equilibrium: &mut Equilibrium,
+    moment: Option<&Moment<C::Memory>>,
+    next: &State,
+    end: LoadParameter,
+) -> Result<(), AdjointError> {
+    if let Some(moment) = moment
+        && contact_of::<C>(&mut equilibrium.problem)?.recall(moment)
+    {
+        equilibrium.system =
+            System::new(&equilibrium.problem, &equilibrium.held, equilibrium.options)?;
+    }
+    let system = &mut equilibrium.system;
+    let mut unused = vec![0.0; system.size()];
+    system.assemble(
+        &equilibrium.problem,
+        &next.positions,
+        &end.factor_of(),
+        None,
+        None,
+        &mut unused,
+    );
+    Ok(())
 }
