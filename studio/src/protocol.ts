@@ -32,6 +32,8 @@ export const WRITTEN = {
   ".inp": {"title": "Mesh", "purpose": "To solve the same body in Abaqus or CalculiX and check this result.", "asksUnit": false, "asksShape": false},
   ".stl": {"title": "Surface", "purpose": "To print the body or cut its mold; other programs read it as triangles.", "asksUnit": true, "asksShape": true},
   ".obj": {"title": "Surface", "purpose": "To open the surface in Blender and other modelers.", "asksUnit": true, "asksShape": true},
+  ".3mf": {"title": "Surface", "purpose": "To print the parts in their materials: one object, its parts by name, in mm.", "asksUnit": false, "asksShape": true},
+  ".glb": {"title": "Surface", "purpose": "To show the body on web pages and in viewers, its parts by name.", "asksUnit": false, "asksShape": true},
   ".npy": {"title": "Voxels", "purpose": "To work on the voxels in Python: an array of part numbers.", "asksUnit": false, "asksShape": false},
   ".xml": {"title": "Scene", "purpose": "To simulate the robot in MuJoCo: flexes, contact, tendons, loads as actuators.", "asksUnit": false, "asksShape": false},
   ".usda": {"title": "Scene", "purpose": "To show the robot and its motion in Blender, Houdini or Omniverse.", "asksUnit": false, "asksShape": false},

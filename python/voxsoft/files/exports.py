@@ -20,6 +20,7 @@ from voxsoft.files.mesh_file import MeshFile
 from voxsoft.files.meshes import read_mesh_file, write_mesh
 from voxsoft.files.run_folder import csv_text
 from voxsoft.files.scenes.scene import Scene
+from voxsoft.files.surfaces import surfaces_of, write_surfaces
 from voxsoft.formats.registry import WRITTEN, function
 from voxsoft.simulation import Result, Setup, named_regions
 from voxsoft.units import parse
@@ -122,8 +123,7 @@ def export(
     _check(origin, goal, list(assignments), deformed, unit)
     design = load(_design_file(origin), assignments=assignments)
     if WRITTEN[suffix].has_shape:
-        meter = parse(f"1 {unit_of(goal, unit)}", "length")
-        _write_body(goal, _body(origin, design), deformed, meter)
+        _write_body(goal, _body(origin, design), deformed, unit)
         return ()
     return write_source(goal, _File(origin, design))
 
@@ -214,11 +214,10 @@ def unit_of(target: FilePath, unit: str | None = None) -> str:
 
     Examples
     --------
-    >>> unit_of("arm.stl"), unit_of("arm.stl", "inch"), unit_of("arm.vtu")
-    ('mm', 'inch', 'm')
+    >>> unit_of("arm.stl"), unit_of("arm.stl", "inch"), unit_of("arm.3mf"), unit_of("arm.vtu")
+    ('mm', 'inch', 'mm', 'm')
     """
-    form = WRITTEN[Path(target).suffix.lower()]
-    return unit or ("mm" if form.unit is None else "m")
+    return unit or WRITTEN[Path(target).suffix.lower()].fixed_unit or "mm"
 
 
 def _check(
@@ -243,7 +242,7 @@ def _check(
         raise FileError(str(goal), f"{suffix} cannot hold a deformed shape in place", hint)
     if unit is not None:
         parse(f"1 {unit}", "length", where="unit")
-        if form.unit is not None and (not form.has_shape or unit != "m"):
+        if form.unit is not None and (not form.has_shape or unit != form.length):
             free = [s for s, other in WRITTEN.items() if other.unit is None]
             hint = f"leave --unit out; it is for {' and '.join(free)}"
             raise FileError(str(goal), f"{suffix} {form.unit}", hint)
@@ -266,12 +265,14 @@ def _body(origin: Path, design: Design) -> MeshFile:
     return MeshFile(mesh, regions)
 
 
-def _write_body(goal: Path, body: MeshFile, deformed: bool, meter: float) -> None:
+def _write_body(goal: Path, body: MeshFile, deformed: bool, unit: str | None) -> None:
     mesh, form = body.mesh, WRITTEN[goal.suffix.lower()]
     if deformed:
         moved = np.asarray(body.point_data["displacement"], dtype=np.float64)
         mesh = replace(mesh, vertices=mesh.vertices + moved)
-    mesh = replace(mesh, vertices=mesh.vertices / meter)
+    if form.kind == "surface":
+        write_surfaces(goal, surfaces_of(mesh, {}), unit)
+        return
     keeps_values = "values" in form.holds
     points, cells = (body.point_data, body.cell_data) if keeps_values else ({}, {})
     regions = body.regions if "regions" in form.holds else {}

@@ -18,6 +18,7 @@ from voxsoft.files import vtu
 from voxsoft.files.atomic import replace_whole
 from voxsoft.files.from_contents import mesh_of_contents
 from voxsoft.files.mesh_file import MeshFile, vertex_set
+from voxsoft.files.surfaces import surfaces_of, write_surfaces
 from voxsoft.formats.read import read_contents
 from voxsoft.formats.registry import READ, WRITTEN, function, suffixes_that_hold
 from voxsoft.mesh import Mesh
@@ -38,9 +39,11 @@ def write_mesh(
     Parameters
     ----------
     path
-        Name of the file; its suffix chooses the format (:mod:`voxsoft.formats.registry`).
+        Name of the file; its suffix chooses the format (:mod:`voxsoft.formats.registry`). Of the
+        surface formats STL and OBJ are written in m: :func:`voxsoft.files.write_surfaces` takes
+        another unit.
     mesh
-        Mesh to write.
+        Mesh to write. A surface file has the faces of each part, which are stairs of voxels.
     point_data, cell_data : mappings of str to array_like, shape (n, ...) or (m, ...), optional
         Values at vertices and in tets, such as displacements and stretches; ``.vtu`` only.
     regions : mapping of str to array_like of int, optional
@@ -79,6 +82,9 @@ def write_mesh(
     if "regions" not in form.holds and content.regions:
         what = f"{suffix} cannot hold regions"
         raise FileError(str(target), what, f"write {suffixes_that_hold('regions')}")
+    if form.kind == "surface":
+        write_surfaces(target, surfaces_of(mesh, {}), form.fixed_unit or "m")
+        return
     writer = function(form.writer)
     replace_whole(target, lambda temporary: writer(temporary, content))
 
@@ -125,7 +131,8 @@ def read_mesh_file(path: str | os.PathLike[str], *, unit: str | None = None) -> 
     """
     source = Path(path)
     suffix = source.suffix.lower()
-    if suffix in READ and READ[suffix].kind == "surface":
+    form = READ.get(suffix) or WRITTEN.get(suffix)
+    if form is not None and form.kind == "surface":
         hint = "enter it as a shape and voxelize it"
         raise FileError(str(source), f"{suffix} holds a surface, not tetrahedra", hint)
     if is_cad_file(source.name):

@@ -48,9 +48,10 @@ class Format:
         Contents that the reader takes, for the documentation.
     writer
         Function that writes a file, as ``"module:function"``; None if the format is not written.
-        Of ``cells`` and ``surface`` it takes the path and a
-        :class:`~voxsoft.files.mesh_file.MeshFile`, of others the path and a
-        :class:`~voxsoft.files.exports.Source`; of ``scene`` it returns a list of
+        Of ``cells`` it takes the path and a :class:`~voxsoft.files.mesh_file.MeshFile`; of
+        ``surface`` the path and vertices and triangles of each surface by its name, in the unit of
+        the file; of others the path and a :class:`~voxsoft.files.exports.Source`. Of ``scene`` it
+        returns a list of
         :class:`~voxsoft.errors.ErrorDetail`, entries of the design that the file does not hold.
     holds
         Contents beside the geometry that a written file keeps.
@@ -58,6 +59,8 @@ class Format:
         Use of a written file, as a sentence.
     unit
         Reason why an export takes no unit, after the suffix; None where it takes one.
+    length
+        Unit of the lengths of a written file that takes none.
     """
 
     suffixes: tuple[str, ...]
@@ -69,11 +72,17 @@ class Format:
     holds: frozenset[Holding] = frozenset()
     purpose: str = ""
     unit: str | None = "is always in m"
+    length: str = "m"
 
     @property
     def suffix(self) -> str:
         """Usual suffix."""
         return self.suffixes[0]
+
+    @property
+    def fixed_unit(self) -> str | None:
+        """Unit of the lengths of a written file; None where it is given."""
+        return None if self.unit is None else self.length
 
     @property
     def has_shape(self) -> bool:
@@ -144,7 +153,8 @@ FORMATS: Final = (
         "STL, for printers and CAD",
         reader="voxsoft.formats.stl:read",
         taken="triangles as text or binary; the solids of a text by name",
-        writer="voxsoft.files.surfaces:write_stl",
+        writer="voxsoft.files.surface_formats.stl:write",
+        holds=frozenset({"parts"}),
         purpose="To print the body or cut its mold; other programs read it as triangles.",
         unit=None,
     ),
@@ -154,9 +164,20 @@ FORMATS: Final = (
         "Wavefront OBJ, for modelers",
         reader="voxsoft.formats.obj:read",
         taken="faces of any number of corners; objects, groups and materials by name",
-        writer="voxsoft.files.surfaces:write_obj",
+        writer="voxsoft.files.surface_formats.obj:write",
+        holds=frozenset({"parts"}),
         purpose="To open the surface in Blender and other modelers.",
         unit=None,
+    ),
+    Format(
+        (".3mf",),
+        "surface",
+        "3MF, for slicers and printers of several materials",
+        writer="voxsoft.files.surface_formats.threemf:write",
+        holds=frozenset({"parts"}),
+        purpose="To print the parts in their materials: one object, its parts by name, in mm.",
+        unit="is in mm, and says so",
+        length="mm",
     ),
     Format(
         (".ply",),
@@ -178,6 +199,9 @@ FORMATS: Final = (
         "glTF binary",
         reader="voxsoft.formats.by_trimesh:read",
         taken="triangles of all meshes, each at its place; in m by definition",
+        writer="voxsoft.files.surface_formats.glb:write",
+        holds=frozenset({"parts"}),
+        purpose="To show the body on web pages and in viewers, its parts by name.",
     ),
     Format(
         (".npy",),

@@ -15,7 +15,8 @@ from voxsoft.formats.contents import CellBlock, Contents
 
 _SOLID: Final = re.compile(rb"^[ \t]*solid\b[ \t]*([^\r\n]*)", re.MULTILINE | re.IGNORECASE)
 _VERTEX: Final = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
-_FACET: Final = np.dtype([("numbers", "<f4", 12), ("attribute", "<u2")])
+#: A triangle of a binary file: normal and corners, and two bytes that are not used.
+FACET: Final = np.dtype([("numbers", "<f4", 12), ("attribute", "<u2")])
 _HEAD: Final = 84
 
 
@@ -30,13 +31,13 @@ def read(path: Path) -> Contents:
     where, data = str(path), path.read_bytes()
     count = int.from_bytes(data[80:_HEAD], "little")
     # Binary files may begin with "solid" too; their length distinguishes them.
-    if len(data) == _HEAD + _FACET.itemsize * count:
+    if len(data) == _HEAD + FACET.itemsize * count:
         return _contents(_binary(data, count), {}, ())
     if data.lstrip()[:5].lower() == b"solid" and b"\0" not in data[:_HEAD]:
         return _text(where, data)
-    room = (len(data) - _HEAD) // _FACET.itemsize
+    room = (len(data) - _HEAD) // FACET.itemsize
     if 0 < count < room and len(data) >= _HEAD:
-        more = len(data) - _HEAD - _FACET.itemsize * count
+        more = len(data) - _HEAD - FACET.itemsize * count
         note = f"{more:,} bytes behind the last triangle are passed over"
         return _contents(_binary(data, count), {}, (note,))
     what = (
@@ -49,7 +50,7 @@ def read(path: Path) -> Contents:
 
 
 def _binary(data: bytes, count: int) -> NDArray[np.float64]:
-    facets = np.frombuffer(data, _FACET, count, _HEAD)
+    facets = np.frombuffer(data, FACET, count, _HEAD)
     points: NDArray[np.float64] = facets["numbers"][:, 3:].astype(np.float64).reshape(-1, 3)
     return points
 

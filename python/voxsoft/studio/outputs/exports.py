@@ -19,6 +19,7 @@ from voxsoft.errors import ErrorDetail, FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.exports import write_source
 from voxsoft.files.scenes.scene import Scene, SceneState
+from voxsoft.files.surfaces import surfaces_of
 from voxsoft.formats.registry import WRITTEN, Format
 from voxsoft.simulation import Result, named_regions
 from voxsoft.simulation.results.result import Status
@@ -29,7 +30,6 @@ from voxsoft.studio.bodies.objects import poses_in, surroundings_of
 from voxsoft.studio.outputs.html import export_page, page_of_body
 from voxsoft.studio.protocol import events
 from voxsoft.studio.protocol.events import GrabState
-from voxsoft.units import parse
 
 #: Formats in which the shown body can be written.
 FORMATS: Final = (*(suffix[1:] for suffix in WRITTEN), "run", "png", "html")
@@ -204,9 +204,12 @@ def _write_mesh(shown: Shown, target: Path, form: Format, options: dict[str, Any
             data["reaction"] = shown.result.reactions
     regions = named_regions(shown.design, mesh) if "regions" in form.holds else {}
     vertices = shown.positions if options.get("deformed", False) else mesh.vertices
-    if form.unit is None:
-        vertices = vertices / parse(f"1 {options.get('unit', 'mm')}", "length", where="unit")
-    files.write_mesh(target, replace(mesh, vertices=vertices), point_data=data, regions=regions)
+    mesh = replace(mesh, vertices=vertices)
+    if form.kind == "surface":
+        unit = None if form.unit is not None else options.get("unit")
+        files.write_surfaces(target, surfaces_of(mesh, {}), unit)
+        return
+    files.write_mesh(target, mesh, point_data=data, regions=regions)
 
 
 def _table(shown: Shown) -> str:
