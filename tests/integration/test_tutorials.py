@@ -50,6 +50,7 @@ LONG = {
     "layers-and-fibers.md",
     "load-history.md",
     "magnets.md",
+    "make.md",
     "material-card.md",
     "paths.md",
     "pneunet.md",

@@ -12,6 +12,7 @@ from voxsoft.cli.calibrate import calibrate
 from voxsoft.cli.check import check
 from voxsoft.cli.compare import compare
 from voxsoft.cli.export import export
+from voxsoft.cli.make import make
 from voxsoft.cli.material import material
 from voxsoft.cli.mesh import mesh
 from voxsoft.cli.new import new
@@ -34,7 +35,7 @@ app = typer.Typer(
 )
 _COMMANDS = (
     *(new, check, mesh, run, refine, workspace, respond, calibrate, sweep, optimize),
-    *(compare, verify, again, export, studio),
+    *(compare, verify, again, export, make, studio),
 )
 for command in _COMMANDS:
     app.command()(command)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-
-from voxsoft import _core
 
 Floats = NDArray[np.float64]
 Triangles = NDArray[np.int64]
@@ -28,8 +26,15 @@ _NEEDLE: Final = 1e-8
 _TO_SURFACE: Final = 3
 
 
+class Evaluated(Protocol):
+    """Function of points that is negative inside: a built shape, or one like it."""
+
+    def evaluate(self, points: Floats) -> Floats:
+        """Return its values [m] at points (n, 3) [m]."""
+
+
 def sharpened(
-    shape: _core.Shape, vertices: Floats, triangles: Triangles, step: float
+    shape: Evaluated, vertices: Floats, triangles: Triangles, step: float
 ) -> tuple[Floats, Triangles]:
     """Restore edges and corners of a surface that marching cubes traced.
 
@@ -91,7 +96,7 @@ class _Split(NamedTuple):
 
 
 def _split(
-    shape: _core.Shape,
+    shape: Evaluated,
     vertices: Floats,
     normals: Floats,
     triangles: Triangles,
@@ -128,7 +133,7 @@ def _areas(vertices: Floats, triangles: Triangles) -> Floats:
     return areas
 
 
-def to_surface(shape: _core.Shape, points: Floats, step: float) -> Floats:
+def to_surface(shape: Evaluated, points: Floats, step: float) -> Floats:
     """Move points near a surface onto it, by Newton's steps of at most one `step` [m]."""
     for _ in range(_TO_SURFACE):
         values = shape.evaluate(np.ascontiguousarray(points))
@@ -141,7 +146,7 @@ def to_surface(shape: _core.Shape, points: Floats, step: float) -> Floats:
     return points
 
 
-def _slopes(shape: _core.Shape, points: Floats, step: float) -> Floats:
+def _slopes(shape: Evaluated, points: Floats, step: float) -> Floats:
     reach = _DIFFERENCE * step
     ways = reach * np.eye(3)
     sides = np.stack([points[:, None] + ways, points[:, None] - ways], axis=1)
@@ -150,7 +155,7 @@ def _slopes(shape: _core.Shape, points: Floats, step: float) -> Floats:
     return slopes
 
 
-def _normals(shape: _core.Shape, points: Floats, step: float) -> Floats:
+def _normals(shape: Evaluated, points: Floats, step: float) -> Floats:
     slopes = _slopes(shape, points, step)
     lengths = np.linalg.norm(slopes, axis=1, keepdims=True)
     normals: Floats = slopes / np.where(lengths > 0.0, lengths, 1.0)
@@ -158,7 +163,7 @@ def _normals(shape: _core.Shape, points: Floats, step: float) -> Floats:
 
 
 def _meeting(
-    points: Floats, normals: Floats, shape: _core.Shape, step: float
+    points: Floats, normals: Floats, shape: Evaluated, step: float
 ) -> tuple[Floats, NDArray[np.bool_]]:
     """Intersect planes through points (e, k, 3), nearest to their middle; True on a ridge."""
     if not len(points):

@@ -1,0 +1,125 @@
+"""``voxsoft make``: molds for casting a robot, and a sheet that says how."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from voxsoft._folders import folder_name
+from voxsoft.cli.exits import INVALID, USAGE, errors_in_words
+from voxsoft.cli.options import DesignFile, Json, Sets
+from voxsoft.cli.output import plain, print_json, quantity, say, show_table
+
+if TYPE_CHECKING:
+    from voxsoft.fabrication import Fabrication
+
+
+def make(
+    design: DesignFile,
+    sets: Sets = None,
+    way: Annotated[
+        str | None,
+        typer.Option(
+            "--way",
+            help="cast, core, halves, lost-core or printed; default: the first that is possible.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder; default: runs/NAME-make.")
+    ] = None,
+    printer: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--printer",
+            metavar="NAME=VALUE",
+            help="A limit of the printer: wall='0.8 mm', clearance, tube, vent, pour, resolution. "
+            "Repeatable.",
+        ),
+    ] = None,
+    stl: Annotated[bool, typer.Option("--stl", help="Parts as STL in mm, not as 3MF.")] = False,
+    shift: Annotated[
+        bool,
+        typer.Option(
+            "--shift", help="Also run the design with cores 0.2 mm aside, and say what changes."
+        ),
+    ] = False,
+    json: Json = False,
+) -> None:
+    """Make molds, cores and plates for casting a robot, and prove them before they are written."""
+    from voxsoft import files
+    from voxsoft.fabrication import WAYS, Printer
+    from voxsoft.fabrication import make as make_molds
+    from voxsoft.fabrication.core_shift import core_shift
+    from voxsoft.files.fabrication import fabrication_summary, write_fabrication
+
+    if way is not None and way not in WAYS:
+        say(f"--way: {plain(way)} is not known; expected {', '.join(WAYS)}")
+        raise typer.Exit(USAGE)
+    with errors_in_words(json=json):
+        limits = dict(_limit(each) for each in printer or [])
+        loaded = files.load(design, assignments=sets or [])
+        wanted = next((each for each in WAYS if each == way), None)
+        made = make_molds(loaded, way=wanted, printer=Printer(**limits))
+        summary = fabrication_summary(made, ".stl" if stl else ".3mf")
+        if shift and not made.problems:
+            summary["core_shift"] = [_shift(each) for each in core_shift(loaded)]
+        if not made.problems:
+            folder = out or Path("runs") / f"{folder_name(loaded.name)}-make"
+            write_fabrication(made, folder, stl=stl)
+            summary["folder"] = str(folder)
+        if json:
+            print_json(summary)
+        else:
+            _show(made, summary)
+    if made.problems:
+        raise typer.Exit(INVALID)
+
+
+def _limit(text: str) -> tuple[str, Any]:
+    from voxsoft.errors import DesignError
+
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise DesignError("printer", f"{text!r} came; expected NAME=VALUE", "wall='0.8 mm'")
+    return name.strip(), value.strip()
+
+
+def _shift(each: Any) -> dict[str, Any]:  # noqa: ANN401 - a CoreShift, imported when used
+    return {
+        "probe": each.probe,
+        "shift": each.shift,
+        "displacement": list(each.displacement),
+        "changes": [list(row) for row in each.changes],
+        "largest": each.largest,
+    }
+
+
+def _show(made: Fabrication, summary: dict[str, Any]) -> None:
+    color = "red" if made.problems else "green"
+    say(f"[{color}]{made.way}[/{color}]: {plain(made.why)}")
+    rows = [
+        [
+            each["name"],
+            quantity(each["volume"], "volume"),
+            quantity(each["poured"], "volume"),
+            quantity(each["deviation"], "length"),
+            quantity(each["trapped_air"], "volume"),
+            f"{1e3 * each['mass']:.1f} g",
+        ]
+        for each in summary["castings"]
+    ]
+    heads = ["casting", "volume", "in the mold", "deviation", "trapped air", "mass"]
+    show_table("Castings", heads, rows)
+    pour = summary["pour"]
+    say(f"mix {1e3 * pour['a']:.1f} g of A and {1e3 * pour['b']:.1f} g of B")
+    for note in made.notes:
+        say(plain(note))
+    for problem in made.problems:
+        say(f"[red]{plain(str(problem))}[/red]")
+    for each in summary.get("core_shift", []):
+        shown = f"{quantity(each['shift'], 'length')} changes {plain(each['probe'])}"
+        say(f"a core shift of {shown} by at most {each['largest']:.1%}")
+    if "folder" in summary:
+        say(f"wrote {plain(summary['folder'])}: sheet.html says how")

@@ -1,0 +1,333 @@
+"""From a design to molds: plan, molds, plates, mass of silicone, and the proofs of all of these."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from voxsoft.design import Design
+from voxsoft.errors import ErrorDetail
+from voxsoft.fabrication import proof
+from voxsoft.fabrication.body import Body, Inlet
+from voxsoft.fabrication.fields import Floats
+from voxsoft.fabrication.mold import Mold, mold_of
+from voxsoft.fabrication.planning import WAYS, Casting, Plan, Way, plan
+from voxsoft.fabrication.plates import plates_of
+from voxsoft.fabrication.printer import Printer
+from voxsoft.fabrication.sampled import Surface, surface_of
+from voxsoft.materials.casting import CastingData, casting_data
+from voxsoft.units import format_quantity
+
+#: Largest deviation [m], and largest difference of volumes as a part, of a sound mold.
+DEVIATION: Final = 0.2e-3
+VOLUME: Final = 0.005
+#: Silicone that stays in cups, pour holes and on tools, as a part of the casting.
+WASTE: Final = 0.15
+
+
+@dataclass(frozen=True, eq=False)
+class Cast:
+    """Casting with its mold and the silicone that it takes.
+
+    Attributes
+    ----------
+    casting
+        Solid to be cast.
+    mold
+        Its mold.
+    data
+        Data for casting of its silicone; None where it is not known.
+    mass
+        Mass of the casting [kg].
+    a, b
+        Masses of both components with waste [kg]; of a silicone that is not known, `a` is all.
+    deviation
+        Largest distance of the mold from the casting's side [m].
+    """
+
+    casting: Casting
+    mold: Mold
+    data: CastingData | None
+    mass: float
+    a: float
+    b: float
+    deviation: float
+
+    @property
+    def waste(self) -> float:
+        """Silicone beyond the casting [kg]."""
+        return self.a + self.b - self.mass
+
+
+@dataclass(frozen=True, eq=False)
+class Printed:
+    """Part that is printed and becomes part of the robot, or is lost.
+
+    Attributes
+    ----------
+    name
+        Name of its file.
+    kind
+        ``"rigid"``, ``"plate"``, ``"core"`` or ``"body"``.
+    surface
+        Its triangles.
+    """
+
+    name: str
+    kind: str
+    surface: Surface
+
+
+@dataclass(frozen=True, eq=False)
+class Fabrication:
+    """All that is needed to make a robot, and the proofs.
+
+    Attributes
+    ----------
+    design
+        The design.
+    printer
+        The printer.
+    plans
+        Way of each component.
+    casts
+        Castings with their molds, in the order of pouring.
+    printed
+        Parts that are printed and stay.
+    inlets
+        Holes for air tubes.
+    described, poured
+        Volume of all castings by the design, without inlets, and by their molds [m³].
+    problems
+        Proofs that failed; empty for molds that can be made and used.
+    notes
+        Steps that are left to the hand: holes to be punched, layers, threads, tendons.
+    """
+
+    design: Design
+    printer: Printer
+    plans: tuple[Plan, ...]
+    casts: tuple[Cast, ...]
+    printed: tuple[Printed, ...]
+    inlets: tuple[Inlet, ...]
+    described: float
+    poured: float
+    problems: tuple[ErrorDetail, ...]
+    notes: tuple[str, ...] = field(repr=False)
+
+    @property
+    def way(self) -> Way:
+        """The most involved way of its components."""
+        ways = [each.way for each in self.plans]
+        return max(ways, key=WAYS.index) if ways else "printed"
+
+    @property
+    def why(self) -> str:
+        """Reasons of all ways."""
+        return "; ".join(f"{each.component.name}: {each.why}" for each in self.plans)
+
+    @property
+    def deviation(self) -> float:
+        """Largest distance of a mold from its casting [m]."""
+        return max((each.deviation for each in self.casts), default=0.0)
+
+    @property
+    def trapped_air(self) -> float:
+        """Volume of air that stays in the molds [m³]."""
+        return sum(each.mold.trapped for each in self.casts)
+
+    def surfaces(self) -> dict[str, tuple[Floats, np.ndarray]]:
+        """Return vertices [m] and triangles of everything to be printed, by the name of its file.
+
+        Parts of molds lie as they are printed: their flat outer side down.
+        """
+        found = {}
+        for cast in self.casts:
+            for part in cast.mold.parts:
+                vertices = part.surface.vertices
+                if part.direction > 0:
+                    vertices = vertices * np.array([1.0, -1.0, -1.0])
+                found[part.name] = (vertices, part.surface.triangles)
+        for each in self.printed:
+            found[each.name] = (each.surface.vertices, each.surface.triangles)
+        return found
+
+
+def make(design: Design, *, way: Way | None = None, printer: Printer | None = None) -> Fabrication:
+    """Make the molds of a soft robot, and prove that they can be used.
+
+    Parameters
+    ----------
+    design
+        The design, of one body.
+    way
+        Way to take: ``"cast"`` in one mold, ``"core"`` drawn out through an opening, ``"halves"``
+        cast apart and bonded, ``"lost-core"`` of wax or soluble print, ``"printed"`` directly;
+        default: the first of these that the shape allows.
+    printer
+        The printer; default: a nozzle of 0.4 mm and 220 mm of room.
+
+    Raises
+    ------
+    DesignError
+        Several bodies, a mesh of tetrahedra, or a shape without an end.
+
+    Examples
+    --------
+    >>> import voxsoft as vs
+    >>> from voxsoft.units import mm
+    >>> bar = vs.Part(shape=vs.Box(size=(20 * mm, 8 * mm, 6 * mm)), material="ecoflex-00-30")
+    >>> made = make(vs.Design(name="bar", voxel_size=2 * mm, parts=[bar]))
+    >>> made.way, [part.name for part in made.casts[0].mold.parts], made.problems
+    ('cast', ['part-1-lower'], ())
+    """
+    printer = printer or Printer()
+    body = Body.of(design, printer.resolution)
+    plans: list[Plan] = []
+    inlets: dict[str, Inlet] = {}
+    printed: list[Printed] = []
+    for component in body.components:
+        if component.rigid:
+            surface = surface_of(component.solid, body.grid, component.values)
+            printed.append(Printed(_file_name(component.name), "rigid", surface))
+            continue
+        found, holes = plan(body, component, printer, way)
+        plans.append(found)
+        inlets.update({each.chamber: each for each in holes})
+    problems: list[ErrorDetail] = []
+    casts: list[Cast] = []
+    for each in plans:
+        if each.way == "printed":
+            surface = surface_of(each.component.solid, body.grid, each.component.values)
+            printed.append(Printed(_file_name(each.component.name), "body", surface))
+        if each.way == "lost-core":
+            printed += [
+                Printed(f"core-{_file_name(void.name)}", "core", void.surface(body.grid))
+                for void in body.voids
+            ]
+        problems += _unplanned(each, way)
+        for casting in each.castings:
+            name = _file_name(casting.name)
+            mold = mold_of(casting.solid, casting.low, casting.high, casting.frame, printer, name)
+            cast = _cast(casting, mold)
+            casts.append(cast)
+            problems += _proved(cast, printer)
+    holes = list(inlets.values())
+    printed += [
+        Printed(plate.name, "plate", plate.surface) for plate in plates_of(body, holes, printer)
+    ]
+    for void in body.voids:
+        if void.name not in inlets and any(p.way in ("halves", "lost-core") for p in plans):
+            what = "no straight hole leads to it through one wall"
+            hint = "leave room for a tube where its wall is flat, or name another clamp"
+            problems.append(ErrorDetail(f"chambers.{void.name}", what, hint))
+    for one in printed:
+        reason = proof.unsound(one.surface)
+        if reason is not None:
+            problems.append(ErrorDetail(one.name, reason, "a finer resolution of the printer"))
+    described = sum(each.mold.surface.volume for each in casts)
+    return Fabrication(
+        design=design,
+        printer=printer,
+        plans=tuple(plans),
+        casts=tuple(casts),
+        printed=tuple(printed),
+        inlets=tuple(holes),
+        described=described,
+        poured=sum(each.mold.poured for each in casts),
+        problems=tuple(problems),
+        notes=tuple(_notes(design, plans, holes)),
+    )
+
+
+def _file_name(name: str) -> str:
+    kept = "".join(c if c.isalnum() else "-" for c in name.lower())
+    return "-".join(part for part in kept.split("-") if part) or "part"
+
+
+def _cast(casting: Casting, mold: Mold) -> Cast:
+    component = casting.component
+    data = casting_data(component.material)
+    mass = mold.surface.volume * component.density
+    total = mass * (1.0 + WASTE)
+    first, second = data.parts if data is not None else (1.0, 0.0)
+    share = first / (first + second)
+    return Cast(
+        casting, mold, data, mass, total * share, total * (1.0 - share), proof.deviation(mold)
+    )
+
+
+def _unplanned(made: Plan, wanted: Way | None) -> list[ErrorDetail]:
+    if made.way != "printed" or wanted == "printed":
+        return []
+    place = "" if made.place is None else f" at {_place(made.place)}"
+    what = f"cannot be cast{' as ' + wanted if wanted else ''}: {made.why}{place}"
+    hint = 'open its inside on one side, or take way = "printed"'
+    return [ErrorDetail(made.component.name, what, hint)] if wanted else []
+
+
+def _proved(cast: Cast, printer: Printer) -> list[ErrorDetail]:
+    """Return the proofs of a mold that fail."""
+    mold, found = cast.mold, []
+    for part in mold.parts:
+        reason = proof.unsound(part.surface)
+        if reason is not None:
+            found.append(ErrorDetail(part.name, reason, "a finer resolution of the printer"))
+        low, high = part.surface.bounds
+        size = high - low
+        if (np.sort(size) > np.sort(np.array(printer.volume))).any():
+            shown = " x ".join(format_quantity(float(each), "length") for each in size)
+            room = " x ".join(format_quantity(each, "length") for each in printer.volume)
+            what = f"is {shown}, larger than the printer's {room}"
+            found.append(ErrorDetail(part.name, what, "a larger printer, or a shorter body"))
+    volume, place = proof.blocked(mold)
+    if place is not None:
+        what = f"{volume * 1e9:.3g} mm³ of it meet something on the way out, at {_place(place)}"
+        found.append(ErrorDetail(cast.casting.name, what, "another way, or a rounder shape there"))
+    thin = proof.thin_wall(mold, printer.wall)
+    if thin is not None:
+        wall = format_quantity(printer.wall, "length")
+        what = f"is thinner than a wall of {wall} at {_place(thin[1])}"
+        found.append(ErrorDetail(thin[0], what, "a wider gap of the design, or a finer nozzle"))
+    if mold.trapped > 0.0:
+        what = f"{mold.trapped * 1e9:.3g} mm³ of air stay in it"
+        found.append(ErrorDetail(cast.casting.name, what, "another way, or a cut elsewhere"))
+    if cast.deviation > DEVIATION:
+        shown = format_quantity(round(cast.deviation, 6), "length")
+        most = format_quantity(DEVIATION, "length")
+        what = f"its mold is {shown} off its shape; at most {most} count as equal"
+        found.append(ErrorDetail(cast.casting.name, what, "a finer resolution of the printer"))
+    off = mold.poured / mold.surface.volume - 1.0
+    if abs(off) > VOLUME:
+        what = f"its mold holds {off:+.2%} of its volume more"
+        found.append(ErrorDetail(cast.casting.name, what, "a finer resolution of the printer"))
+    return found
+
+
+def _place(at: Floats) -> str:
+    return f"({', '.join(f'{1e3 * each:.3g}' for each in at)}) mm of the mold"
+
+
+def _notes(design: Design, plans: list[Plan], inlets: list[Inlet]) -> list[str]:
+    """Return the steps that no mold does."""
+    notes = []
+    for inlet in inlets:
+        made = any(plan.cut is not None and plan.cut.axis == inlet.axis for plan in plans)
+        at = ", ".join(f"{1e3 * each + 0.0:.3g}" for each in inlet.at)
+        wide = f"{2e3 * inlet.radius:.2g} mm"
+        if not made:
+            notes.append(f"Punch the inlet of {inlet.chamber}: {wide} wide, at ({at}) mm.")
+    for number, layer in enumerate(design.layers, 1):
+        name = layer.name or f"layer {number}"
+        thick = format_quantity(layer.thickness, "length")
+        notes.append(
+            f"Lay {name}, {thick} thick, into the mold before pouring, flat on its side there."
+        )
+    if any(part.fibers for part in design.parts):
+        notes.append("Wind the thread on the first layer of the wall before the second is poured.")
+    for number, tendon in enumerate(design.tendons, 1):
+        name = tendon.name or f"tendon {number}"
+        notes.append(f"Span a tube for {name} through the mold before pouring.")
+    return notes

@@ -1,0 +1,248 @@
+"""Choice of the way in which a body is made, from its shape alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, Literal, get_args
+
+import numpy as np
+
+from voxsoft import _core
+from voxsoft.fabrication.body import Body, Component, Filled, Inlet, holds, inlets_of
+from voxsoft.fabrication.cutting import Cut, best_cut
+from voxsoft.fabrication.draw import WITHIN, Draw, draw_along
+from voxsoft.fabrication.fields import (
+    Common,
+    Field,
+    Floats,
+    Frame,
+    HalfSpace,
+    Outside,
+    Parts,
+    Turned,
+)
+from voxsoft.fabrication.printer import Printer
+from voxsoft.fabrication.sampled import Grid, Sampled, extents
+
+#: Ways, the simplest first.
+Way = Literal["cast", "core", "halves", "lost-core", "printed"]
+WAYS: Final[tuple[Way, ...]] = get_args(Way)
+#: Mean upright step along the outline, in samples, up to which a parting plane follows it.
+_LEVEL: Final = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Casting:
+    """Solid to be cast in one mold.
+
+    Attributes
+    ----------
+    name
+        Name of its files.
+    component
+        Component that it is, or is a half of.
+    solid
+        The casting in the frame of its mold, with the inlets that its mold makes.
+    frame
+        Axes of its mold.
+    low, high
+        Its exact corners in that frame [m].
+    """
+
+    name: str
+    component: Component
+    solid: Sampled
+    frame: Frame
+    low: Floats
+    high: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Way in which one component is made.
+
+    Attributes
+    ----------
+    component
+        The component.
+    way
+        The way.
+    why
+        Reason, in words.
+    castings
+        Solids to be cast; none where it is printed.
+    cut
+        Plane between two halves; None without one.
+    undercut
+        Volume that kept simpler ways from being taken [m³], and its middle; zero and None where
+        the simplest was possible.
+    place
+        See `undercut`.
+    """
+
+    component: Component
+    way: Way
+    why: str
+    castings: tuple[Casting, ...]
+    cut: Cut | None = None
+    undercut: float = 0.0
+    place: Floats | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Direction:
+    frame: Frame
+    draw: Draw
+    depth: float
+
+    @property
+    def fits(self) -> bool:
+        return self.draw.undercut <= 0.0
+
+    def rank(self, step: float) -> tuple[bool, bool, float]:
+        """Simplest first: outline in the plane, no lid, shallow."""
+        return self.draw.steps > _LEVEL * step, not self.draw.is_open, self.depth
+
+
+def plan(
+    body: Body, component: Component, printer: Printer, wanted: Way | None = None
+) -> tuple[Plan, list[Inlet]]:
+    """Choose the simplest way, or the wanted one.
+
+    Returns
+    -------
+    tuple
+        The plan, and the inlets of the chambers in this component.
+    """
+    grid = body.grid
+    directions = [_direction(component.values, grid, axis, s) for axis in range(3) for s in (1, -1)]
+    caught = min(directions, key=lambda each: each.draw.undercut)
+    if wanted in (None, "cast", "core"):
+        fit = [each for each in directions if each.fits]
+        if fit:
+            best = min(fit, key=lambda each: each.rank(grid.step))
+            return _whole(body, component, best), []
+    if wanted in (None, "halves"):
+        ends = np.array([void.extents for void in body.voids]).reshape(-1, 2, 3)
+        cut = best_cut(component.values, grid, ends, _held(body), (body.low + body.high) / 2.0)
+        if cut is not None:
+            inlets = inlets_of(body, printer, cut.axis)
+            return _halves(body, component, cut, inlets, caught.draw), inlets
+    inlets = inlets_of(body, printer, None)
+    if wanted in (None, "lost-core") and body.voids:
+        cells = np.any([void.cells for void in body.voids], axis=0)
+        filled = np.where(cells, -np.abs(component.values), component.values)
+        closed = [_direction(filled, grid, axis, s) for axis in range(3) for s in (1, -1)]
+        fit = [each for each in closed if each.fits]
+        if fit:
+            best = min(fit, key=lambda each: each.rank(grid.step))
+            return _lost(body, component, best, inlets, caught.draw), inlets
+    why = (
+        "it has undercuts for every pair of mold parts, every cut by a plane and a core that is "
+        "lost"
+    )
+    place = None if caught.draw.place is None else caught.frame.world(caught.draw.place)
+    return Plan(component, "printed", why, (), None, caught.draw.undercut, place), inlets
+
+
+def _direction(values: Floats, grid: Grid, axis: int, sign: int) -> _Direction:
+    frame = Frame.along(axis, sign)
+    turned, local = turned_grid(values, grid, frame)
+    rows = np.flatnonzero((turned < 0.0).any(axis=(0, 1)))
+    bottom = local.along(2)[rows[0]] - grid.step / 2
+    top = local.along(2)[rows[-1]] + grid.step / 2
+    draw = draw_along(turned, local, float(top), float(bottom))
+    return _Direction(frame, draw, float(top - bottom))
+
+
+def turned_grid(values: Floats, grid: Grid, frame: Frame) -> tuple[Floats, Grid]:
+    """Return samples and their grid in another frame."""
+    order = [int(np.flatnonzero(row)[0]) for row in frame.rows]
+    signs = [int(np.sign(row[axis])) for row, axis in zip(frame.rows, order, strict=True)]
+    turned = values.transpose(order)[tuple(slice(None, None, sign) for sign in signs)]
+    first = []
+    for axis, sign in zip(order, signs, strict=True):
+        ends = grid.along(axis)
+        first.append(float(ends[0] if sign > 0 else -ends[-1]))
+    nx, ny, nz = turned.shape
+    return np.ascontiguousarray(turned), Grid(
+        (first[0], first[1], first[2]), grid.step, (nx, ny, nz)
+    )
+
+
+def _held(body: Body) -> Floats:
+    """Return the middle of the clamped samples [m]; NaN without clamps."""
+    cells = np.argwhere(np.abs(body.values) < body.grid.step)
+    points = body.grid.points(cells)
+    if len(points) > 20_000:
+        points = points[:: len(points) // 20_000]
+    clamps = [clamp.region for clamp in body.design.clamps]
+    held = [p for p in points if any(holds(body.design, r, p, body.grid.step) for r in clamps)]
+    middle: Floats = np.mean(held, axis=0) if held else np.full(3, np.nan)
+    return middle
+
+
+def _casting(
+    name: str,
+    component: Component,
+    solid: Field,
+    body: Body,
+    frame: Frame,
+    values: Floats,
+    holes: Sequence[_core.Shape] = (),
+) -> Casting:
+    low, high = (np.array(each) for each in extents(values, body.grid))
+    corners = frame.local(np.stack([low, high]))
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    if holes:
+        solid = Common([solid, *(Outside(Parts([hole])) for hole in holes)])
+        values = np.maximum(values, -body.grid.values(Parts(holes)))
+    turned, grid = turned_grid(values, body.grid, frame)
+    return Casting(name, component, Sampled(Turned(solid, frame), grid, turned), frame, low, high)
+
+
+def _whole(body: Body, component: Component, best: _Direction) -> Plan:
+    casting = _casting(
+        component.name, component, component.solid, body, best.frame, component.values
+    )
+    draw = best.draw
+    if draw.has_recess or (draw.sides == WITHIN).any():
+        way: Way = "core"
+        why = "its openings let a core be drawn out"
+    else:
+        way = "cast"
+        why = "one flat side lets it be poured openly" if draw.is_open else "two parts release it"
+    return Plan(component, way, why, (casting,))
+
+
+def _halves(body: Body, component: Component, cut: Cut, inlets: list[Inlet], whole: Draw) -> Plan:
+    holes = [each.hole() for each in inlets if each.axis == cut.axis]
+    at = body.grid.along(cut.axis)
+    shape = [1, 1, 1]
+    shape[cut.axis] = len(at)
+    castings = []
+    for side, label in ((-1, "low"), (1, "high")):
+        half = HalfSpace(cut.axis, cut.at, side)
+        solid = Common([component.solid, half])
+        values = np.maximum(component.values, (side * (cut.at - at)).reshape(shape))
+        frame = Frame.along(cut.axis, -side)
+        name = f"{component.name}-{label}"
+        castings.append(_casting(name, component, solid, body, frame, values, holes))
+    axis = "xyz"[cut.axis]
+    why = (
+        f"its chamber is closed, and the plane {axis} = {1e3 * cut.at:.4g} mm opens it for a core "
+        f"with the smallest seam, {1e6 * cut.seam:.4g} mm²"
+    )
+    return Plan(component, "halves", why, tuple(castings), cut, whole.undercut, None)
+
+
+def _lost(
+    body: Body, component: Component, best: _Direction, inlets: list[Inlet], whole: Draw
+) -> Plan:
+    cells = np.any([void.cells for void in body.voids], axis=0)
+    values = np.where(cells, -np.abs(component.values), component.values)
+    solid = Filled(component.solid, cells, body.grid)
+    casting = _casting(component.name, component, solid, body, best.frame, values)
+    why = "no plane opens its chambers without undercuts: a core of wax or soluble print is lost"
+    return Plan(component, "lost-core", why, (casting,), None, whole.undercut, None)

@@ -1,0 +1,111 @@
+"""Rigid plates for the clamped faces of a body: printed, bonded on, with bores for air tubes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from voxsoft.design.discretization.cut_cells import built_parts
+from voxsoft.fabrication.body import Body, Filled, Inlet
+from voxsoft.fabrication.fields import Common, Field, Floats, Frame, Frustum, Outside, Parts, Turned
+from voxsoft.fabrication.printer import Printer
+from voxsoft.fabrication.sampled import Grid, Surface, surface_of
+
+Face = tuple[int, int, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Plate:
+    """Rigid plate on a clamped face.
+
+    Attributes
+    ----------
+    name
+        Name of its file.
+    surface
+        Its triangles, lying on its outer side.
+    face
+        Axis, direction outward and position [m] of the face in the design.
+    """
+
+    name: str
+    surface: Surface = field(repr=False)
+    face: Face
+
+
+@dataclass(frozen=True, eq=False)
+class _Outline:
+    """Section of a body right behind a face, extended along the normal, and widened."""
+
+    body: Field
+    behind: float
+    rim: float
+
+    def evaluate(self, points: Floats) -> Floats:
+        """Return values [m] at points (n, 3) [m]."""
+        flat = points.copy()
+        flat[:, 2] = self.behind
+        values: Floats = self.body.evaluate(flat) - self.rim
+        return values
+
+
+@dataclass(frozen=True)
+class _Slab:
+    low: float
+    high: float
+
+    def evaluate(self, points: Floats) -> Floats:
+        values: Floats = np.maximum(self.low - points[:, 2], points[:, 2] - self.high)
+        return values
+
+
+def clamped_faces(body: Body) -> list[Face]:
+    """Return flat clamped faces at an end of the body: axis, direction outward, position [m]."""
+    low, high = body.low, body.high
+    found: list[Face] = []
+    for clamp in body.design.clamps:
+        for axis, name in enumerate("xyz"):
+            bounds = getattr(clamp.region, name)
+            if bounds is None:
+                continue
+            for sign, end in ((-1, low[axis]), (1, high[axis])):
+                face = (axis, sign, float(end))
+                if bounds[0] - 1e-6 <= end <= bounds[1] + 1e-6 and face not in found:
+                    found.append(face)
+    return found
+
+
+def plates_of(body: Body, inlets: list[Inlet], printer: Printer) -> list[Plate]:
+    """Return a plate for each flat clamped face, as wide as the body and a rim for screws."""
+    cells = np.any([void.cells for void in body.voids], axis=0) if body.voids else None
+    solid: Field = Parts(built_parts(body.design))
+    if cells is not None:
+        solid = Filled(solid, cells, body.grid)
+    found = []
+    for number, (axis, sign, at) in enumerate(clamped_faces(body), 1):
+        frame = Frame.along(axis, sign)
+        level = sign * at
+        local = Turned(solid, frame)
+        outline = _Outline(local, level - 1.5 * body.grid.step, 0.5 * printer.flange)
+        plate: Field = Common([_Slab(level, level + printer.floor), outline])
+        bores = [
+            Frustum(
+                (float(center[0]), float(center[1])),
+                level - 1e-3,
+                level + printer.floor + 1e-3,
+                printer.tube / 2.0 + printer.clearance,
+                printer.tube / 2.0 + printer.clearance,
+            )
+            for each in inlets
+            if (each.axis, each.sign) == (axis, sign) and abs(each.at[axis] - at) < body.grid.step
+            for center in frame.local(np.array([each.at]))
+        ]
+        if bores:
+            plate = Common([plate, *(Outside(bore) for bore in bores)])
+        corners = frame.local(np.stack([body.low, body.high]))
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        low[2], high[2] = level, level + printer.floor
+        grid = Grid.around(low, high, printer.resolution, printer.flange)
+        found.append(Plate(f"plate-{number}", surface_of(plate, grid), (axis, sign, at)))
+    return found

@@ -1,0 +1,70 @@
+"""Limits of a printer, and sizes of details of molds that follow from them."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from pydantic import Field
+
+from voxsoft.records import Record
+from voxsoft.units import PositiveLength
+
+#: Heights of floors and lids, and widths of flanges, in walls: stiff beside soft castings.
+_FLOOR: Final = 5.0
+_FLANGE: Final = 10.0
+
+
+class Printer(Record):
+    """A printer and the details that its molds have.
+
+    Parameters
+    ----------
+    wall
+        Thinnest wall that it prints; default: 0.8 mm, two lines of a nozzle of 0.4 mm.
+    clearance
+        Gap between a pin and its socket, on each side; default: 0.15 mm.
+    volume
+        Largest part along x, y, z; default: 220 x 220 x 220 mm.
+    tube
+        Outer diameter of the air tubes; default: 3 mm. Inlets are a tenth narrower, so that the
+        tube seals.
+    vent
+        Diameter of the vents; default: 1.5 mm.
+    pour
+        Largest diameter of the pour hole at the casting; default: 5 mm.
+
+    Examples
+    --------
+    >>> Printer(wall="0.4 mm").floor
+    0.002
+    """
+
+    wall: PositiveLength = 0.8e-3
+    clearance: PositiveLength = 0.15e-3
+    volume: tuple[PositiveLength, PositiveLength, PositiveLength] = (0.22, 0.22, 0.22)
+    tube: PositiveLength = 3e-3
+    vent: PositiveLength = 1.5e-3
+    pour: PositiveLength = 5e-3
+    resolution: PositiveLength = Field(
+        0.5e-3, description="Distance of the samples from which molds are made."
+    )
+
+    @property
+    def floor(self) -> float:
+        """Thickness of floors and lids [m]."""
+        return _FLOOR * self.wall
+
+    @property
+    def flange(self) -> float:
+        """Width of the flange around a casting [m]."""
+        return _FLANGE * self.wall
+
+    @property
+    def inlet(self) -> float:
+        """Radius of an inlet [m]."""
+        return 0.45 * self.tube
+
+    @property
+    def pin(self) -> float:
+        """Radius of a locating pin [m]."""
+        return 0.25 * self.flange

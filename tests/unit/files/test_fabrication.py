@@ -1,0 +1,86 @@
+"""Folders of molds: files that other programs read, the sheet, and the command."""
+
+import json
+
+import numpy as np
+import pytest
+import trimesh
+from typer.testing import CliRunner
+
+import voxsoft as vs
+from voxsoft.cli.app import app
+from voxsoft.errors import DesignError
+from voxsoft.fabrication import Printer, make
+from voxsoft.files.fabrication import write_fabrication
+from voxsoft.units import mm
+
+CUP = """
+schema = "voxsoft/1"
+name = "cup"
+voxel_size = "2 mm"
+[shapes]
+outside = { kind = "cylinder", radius = "6 mm", height = "10 mm" }
+inside = { kind = "cylinder", radius = "4 mm", height = "8 mm", base = [0, 0, "2 mm"] }
+cup = { kind = "difference", of = ["outside", "inside"] }
+[[parts]]
+shape = "cup"
+material = "ecoflex-00-30"
+"""
+
+
+@pytest.fixture(scope="module")
+def design_file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("cup") / "cup.toml"
+    path.write_text(CUP)
+    return path
+
+
+def test_the_command_writes_parts_that_are_closed_in_other_programs(design_file, tmp_path):
+    folder = tmp_path / "out"
+    result = CliRunner().invoke(
+        app, ["make", str(design_file), "--json", "--stl", "--out", str(folder)]
+    )
+    assert result.exit_code == 0, result.output
+    summary = json.loads(result.stdout)
+    # Upside down, on a pillar: its floor is level with the brim.
+    assert summary["way"] == "cast"
+    assert summary["problems"] == []
+    assert [part["name"] for part in summary["parts"]] == ["cup-lower"]
+    for part in summary["parts"]:
+        mesh = trimesh.load_mesh(folder / part["file"])
+        assert mesh.is_watertight
+        # STL holds seven digits, in mm.
+        assert mesh.volume == pytest.approx(part["volume"] * 1e9, rel=1e-5)
+    volume = np.pi * (6**2 * 10 - 4**2 * 8) * mm**3
+    pour = summary["pour"]
+    assert pour["a"] == pour["b"] == pytest.approx(1.15 * 1070 * volume / 2, rel=0.005)
+    assert pour["waste"] == pytest.approx(0.15 * 1070 * volume, rel=0.005)
+    assert json.loads((folder / "make.json").read_text())["parts"] == summary["parts"]
+
+
+def test_the_sheet_says_all_steps_and_masses(design_file, tmp_path):
+    made = make(vs.load(design_file))
+    folder = write_fabrication(made, tmp_path / "made")
+    text = (folder / "sheet.html").read_text()
+    assert "Ecoflex 00-30" in text
+    assert f"<td>{1e3 * made.casts[0].a:.1f}" in text
+    assert text.count("<img") == 1
+    assert "to the brim and level it" in text
+    assert sorted(p.name for p in folder.glob("*.3mf")) == ["cup-lower.3mf"]
+
+
+def test_molds_with_problems_are_not_written(design_file, tmp_path):
+    small = Printer(volume=(10 * mm, 10 * mm, 10 * mm))
+    made = make(vs.load(design_file), printer=small)
+    with pytest.raises(DesignError, match="larger than the printer"):
+        write_fabrication(made, tmp_path / "none")
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_bad_limit_and_an_unknown_way_are_named(design_file):
+    wrong = CliRunner().invoke(app, ["make", str(design_file), "--printer", "walls=1 mm"])
+    assert wrong.exit_code == 3
+    assert "walls" in wrong.output
+    unknown = CliRunner().invoke(app, ["make", str(design_file), "--way", "forged"])
+    assert unknown.exit_code == 2
+    assert "expected cast, core, halves" in unknown.output
