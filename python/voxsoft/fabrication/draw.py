@@ -33,8 +33,9 @@ class Draw:
     Attributes
     ----------
     sides : ndarray of int8, shape (nx, ny, nz)
-        Side of each sample: above, below, beside, or within a hole that goes through; samples in
-        the casting have that of a neighbor.
+        Side of each sample: above, although it is below the parting plane; below, although it is
+        above it; beside, where the plane decides; or within a hole that goes through. Samples in
+        the casting have that of a neighbor, which is not "beside" if they have one.
     parting
         Height of the parting plane [m].
     top, bottom
@@ -106,9 +107,12 @@ def draw_along(values: Floats, grid: Grid, top: float, bottom: float) -> Draw:
     sides[holes] = WITHIN
     height, steps = _parting(inside, outer, grid, top, bottom)
     heights = grid.along(2)
+    # Where the plane says as much, it decides: it is exact, and samples are not.
+    sides[(sides == ABOVE) & (heights > height)] = BESIDE
+    sides[(sides == BELOW) & (heights < height)] = BESIDE
     recess = (sides == ABOVE) & (heights < height - grid.step)
     return Draw(
-        sides=_filled(sides, outside),
+        sides=_filled(sides, inside),
         parting=height,
         top=top,
         bottom=bottom,
@@ -179,18 +183,18 @@ def _largest(caught: Bools, grid: Grid) -> Floats | None:
     return middle
 
 
-def _filled(sides: NDArray[np.int8], known: Bools) -> NDArray[np.int8]:
-    """Spread the sides of samples outside by three steps into the casting."""
-    sides, known = sides.copy(), known.copy()
-    for _ in range(3):
-        before, was = sides.copy(), known.copy()
+def _filled(sides: NDArray[np.int8], inside: Bools) -> NDArray[np.int8]:
+    """Spread the sides that no plane decides by two samples into the casting."""
+    sides = sides.copy()
+    for _ in range(2):
+        before = sides.copy()
         for axis in range(3):
             for way in (1, -1):
                 here: list[slice] = [slice(None)] * 3
                 there: list[slice] = [slice(None)] * 3
                 here[axis] = slice(1, None) if way > 0 else slice(None, -1)
                 there[axis] = slice(None, -1) if way > 0 else slice(1, None)
-                new = ~known[tuple(here)] & was[tuple(there)]
-                sides[tuple(here)][new] = before[tuple(there)][new]
-                known[tuple(here)] |= was[tuple(there)]
+                own, near = sides[tuple(here)], before[tuple(there)]
+                new = inside[tuple(here)] & (own == BESIDE) & (near != BESIDE)
+                own[new] = near[new]
     return sides

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from voxsoft.fabrication.cutting import _planes, best_cut
-from voxsoft.fabrication.draw import ABOVE, BELOW, draw_along
+from voxsoft.fabrication.draw import ABOVE, BESIDE, draw_along
 from voxsoft.fabrication.sampled import Grid
 from voxsoft.shapes import Box, Cylinder, Shape, Sphere
 from voxsoft.units import mm
@@ -57,7 +57,7 @@ def test_a_cup_has_a_recess_for_the_upper_part():
     assert found.has_recess
     assert not found.is_open
     inside = found.sides[grid.nearest(np.array([[0.0, 0.0, 6 * mm], [0.0, 0.0, -1 * mm]]))]
-    assert inside.tolist() == [ABOVE, BELOW]
+    assert inside.tolist() == [ABOVE, BESIDE]
 
 
 def test_a_closed_chamber_is_cut_at_the_end_away_from_the_clamp():
