@@ -157,7 +157,14 @@ def test_all_drives_at_their_targets_rest_where_the_design_does(name):
     assert expected.status == "ok"
     moved = np.abs(expected.displacements).max()
     # Residuals below 1e-4 of the load, of which a slender body makes ten times as much motion.
-    assert np.abs(seen.positions - expected.positions).max() < 5e-3 * moved + 1e-9
+    allowed = 5e-3 * moved + 1e-9
+    if any(tendon.friction for tendon in design.tendons):
+        # A line that settles slides back at its bends, which then hold it from the other side:
+        # rest is between that of statics and its mirror image at the place without friction.
+        free = [tendon.replace(friction=0.0) for tendon in design.tendons]
+        middle = vs.simulate(design.replace(tendons=free), method="statics")
+        allowed += 2.0 * np.abs(middle.positions - expected.positions).max()
+    assert np.abs(seen.positions - expected.positions).max() < allowed
     assert seen.result.status == "ok"
 
 
