@@ -586,6 +586,10 @@ class Answer:
         """Vertex, its place at rest in m, and when."""
 
     @property
+    def undefined(self) -> tuple[int, int, list[float], float] | None:
+        """Load and component without a value where a run broke down, the place in m, and when."""
+
+    @property
     def reactions(self) -> NDArray[np.float64]: ...
     @property
     def reaction(self) -> list[float]: ...
@@ -1027,6 +1031,10 @@ class Advance:
     @property
     def breakdown(self) -> tuple[int, list[float], float] | None:
         """Vertex, its place at rest in m, and when."""
+
+    @property
+    def undefined(self) -> tuple[int, int, list[float], float] | None:
+        """Load and component without a value where a run broke down, the place in m, and when."""
 
     @property
     def seconds(self) -> float:

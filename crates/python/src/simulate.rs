@@ -15,7 +15,7 @@ use voxsoft_solid::{
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Status, Trial, relax, simulate};
 
-use crate::answer::PyAnswer;
+use crate::answer::{PyAnswer, undefined_of};
 use crate::arrays::{from_rows, rows};
 use crate::errors::to_python;
 use crate::gate;
@@ -580,6 +580,7 @@ impl PyProblem {
             back_offs: answer.back_offs,
             substep: answer.substep,
             breakdown: answer.breakdown.map(|b| (b.vertex, b.rest, b.when)),
+            undefined: undefined_of(answer.breakdown),
             reactions: from_rows(py, &balance.reactions[..own]).unbind(),
             reaction: balance.total_reaction(),
             reaction_moment: balance.total_moment(positions),

@@ -1,6 +1,7 @@
 """Commands of a simulator: every drive by name, sensors, and what is remembered."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -9,7 +10,17 @@ import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.design import Dielectric, MassSupply, Object, ShapeMemory, Strain, VolumeSupply
+from voxsoft.design import (
+    Dielectric,
+    Drag,
+    ForceField,
+    Immersion,
+    MassSupply,
+    Object,
+    ShapeMemory,
+    Strain,
+    VolumeSupply,
+)
 from voxsoft.design.supply import FlowSupply, PressureSupply
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.simulation import Sensor
@@ -249,6 +260,46 @@ def test_a_bad_command_is_named_and_the_state_is_kept(name, commands, words):
     after = simulator.step()
     simulator.restore(before)
     assert bits(simulator.step()) == bits(after)
+
+
+@pytest.mark.parametrize("load", [Drag(), Immersion(level="50 mm")])
+def test_a_fluid_may_go_but_not_drive(load):
+    simulator = vs.Simulator(BEAM.replace(loads=[load]))
+    before = simulator.state
+    with pytest.raises(DesignError, match=rf"commands\['{load.kind}'\]: -1 kg/m\^3 is below 0"):
+        simulator.step({load.kind: -1.0})
+    assert simulator.state is before
+    assert simulator.step({load.kind: 0.0}).result.displacements == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("acceleration", "axis", "when"),
+    [
+        (("0", "0", "-9.81 + 0*sqrt(z + 0.05)"), 2, np.sqrt(2 * 0.05 / 9.81)),
+        (("0", "0", "-9.81 + 0*sqrt(0.5 + vz)"), 2, 0.5 / 9.81),
+        (("0", "0*sqrt(0.105 - t)", "-9.81"), 1, 0.105),
+    ],
+    ids=["place", "velocity", "time"],
+)
+def test_a_field_without_a_value_is_named_with_its_place_and_time(acceleration, axis, when):
+    """A beam that falls freely, with its lowest vertices at the height 0."""
+    field = ForceField(acceleration=acceleration)
+    nothing = vs.Force(region=vs.Region(x=(0, 0)), value=(0, 0, 0))
+    design = BEAM.replace(clamps=[], loads=[nothing, field])
+    simulator = vs.Simulator(design, damping=0.0)
+    while simulator.state.status != "diverged" and simulator.state.time < 1.0:
+        seen = simulator.step()
+    words = rf"loads\[1\].acceleration\[{axis}\] has no finite value at \(.*\) mm, .* at (.*) s"
+    found = re.fullmatch(words, seen.message)
+    assert found
+    # Steps of 20 ms are halved ten times.
+    assert float(found[1]) == pytest.approx(when, abs=0.1e-3)
+    with pytest.raises(SimulationError, match=words):
+        simulator.step()
+    over_time = {"method": "dynamics", "end_time": 1.0, "time_step": 0.02, "damping": 0}
+    moved = vs.simulate(design.replace(solver=over_time, contact={}))
+    assert moved.status == "diverged"
+    assert re.match(words, moved.message)
 
 
 SCRIPT = """

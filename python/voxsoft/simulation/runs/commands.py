@@ -227,7 +227,7 @@ class Commands:
     """
 
     def __init__(self, setup: Setup) -> None:
-        design = setup.design
+        self._design = design = setup.design
         self.setup = Setup(of_size_one(design), setup.mesh)
         self.all = tuple(_named(list(drives_of(setup, self.setup))))
 
@@ -239,6 +239,17 @@ class Commands:
             return one.problem
         own = core_materials(one.design, one.materials, one.mesh, one.origin, over_time=True)
         return one.problem.with_materials(own)
+
+    @cached_property
+    def load_owners(self) -> list[int]:
+        """Index of the design's load behind each load of the core."""
+        actions = iter(self.setup.loads)
+        return [
+            index
+            for index, reading in enumerate(readings(self._design))
+            for _ in reading.components
+            for _ in next(actions).actions
+        ]
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -178,7 +178,8 @@ def _load_drives(setup: Setup, one: Setup) -> Iterator[Drive]:
             {
                 "kind": reading.quantity,
                 "shape": (3,) if count > 1 else (),
-                "low": -_INFINITE,
+                # Fluids around the body: below zero drag would drive it.
+                "low": 0.0 if reading.quantity == "density" else -_INFINITE,
                 "high": _INFINITE,
                 "first": first if history is None else history[1][0],
                 "design": _times(reading.final_factor, load.value),

@@ -16,6 +16,7 @@ from voxsoft.design import Design, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.records import Record
 from voxsoft.simulation.compatibility import refuse
+from voxsoft.simulation.loads import undefined_in_words
 from voxsoft.simulation.runs.commands import Command, CommandName, Commands, Course
 from voxsoft.simulation.runs.critical_damping import critical_damping
 from voxsoft.simulation.runs.drives import Value
@@ -267,7 +268,7 @@ class Simulator:
         if self._seen.status == "diverged":
             raise SimulationError(
                 "simulator",
-                f"has diverged at {self._seen.time:g} s and cannot go on",
+                f"cannot go on from {self._seen.time:g} s: {self._seen.message}",
                 "call reset(), then command less or more slowly, or use smaller voxels",
             )
         new = self._subject.commands.read({} if commands is None else commands)
@@ -471,6 +472,9 @@ class Simulator:
     ) -> tuple[MotionStatus, str]:
         """Decide the status and its message: sound bodies move or rest, others are reported."""
         if report.status == _core.LiveStatus.DIVERGED and report.breakdown:
+            if report.undefined is not None:
+                owners = self._subject.commands.load_owners
+                return "diverged", undefined_in_words(report.undefined, owners)
             _, place, when = report.breakdown
             point = ", ".join(f"{value * 1e3:.1f}" for value in place)
             what = f"diverged at ({point}) mm, after {when:.6g} s: the loads are too much for it"
