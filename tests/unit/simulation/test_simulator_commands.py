@@ -262,6 +262,64 @@ def test_a_bad_command_is_named_and_the_state_is_kept(name, commands, words):
     assert bits(simulator.step()) == bits(after)
 
 
+def syringe(**changes):
+    supply = VolumeSupply(chamber="c", value="0.3 mL", fluid="water", **changes)
+    return BLOCK.replace(supplies=[supply])
+
+
+def test_a_syringe_pump_fills_at_its_flow_and_is_sealed_without():
+    """Beside the volume of the water: V + s = M/ρ(p), with what is left in the syringe."""
+    design = syringe()
+    simulator = vs.Simulator(design)
+    assert simulator.commands["c.flow"].unit == "m^3/s"
+    bulk = design.supplies[0].medium.bulk_modulus
+    first, whole = simulator.state.chambers[0].volume, 0.3e-6
+    flow, volumes = 1e-6, []
+    for step in range(8):
+        seen = simulator.step({"c.flow": "1 mL/s"} if step == 0 else None)
+        [chamber] = seen.chambers
+        pushed = flow * seen.time
+        assert seen.commands == {"c": pytest.approx(pushed, rel=1e-14), "c.flow": flow}
+        inside = (first + whole) * np.exp(-chamber.pressure / bulk)
+        # A step is found to 1e-7 of its load, which is 1e-6 of the bulk modulus.
+        assert chamber.volume + whole - pushed == pytest.approx(inside, rel=1e-13)
+        volumes.append(chamber.volume)
+    assert np.diff(volumes) == pytest.approx(flow * 0.02, rel=1e-4)
+    seen = simulator.step({"c.flow": 0})
+    kept = seen.commands["c"]
+    while seen.status == "moving":
+        seen = simulator.step()
+        assert seen.commands == {"c": kept, "c.flow": 0.0}
+    assert seen.chambers[0].volume - first == pytest.approx(0.16e-6, rel=1e-4)
+
+
+def test_a_syringe_pump_stops_at_its_end_and_by_a_volume():
+    simulator = vs.Simulator(syringe())
+    seen = simulator.step({"supplies[0].flow": "9 mL/s"})
+    assert seen.commands == {"c": pytest.approx(0.18e-6), "c.flow": 9e-6}
+    middle = [bits(each) for each in run(simulator, None, 3)]
+    assert simulator.state.commands == {"c": 0.3e-6, "c.flow": 0.0}
+    simulator.restore(seen)
+    assert [bits(each) for each in run(simulator, None, 3)] == middle
+    simulator.restore(seen)
+    with pytest.raises(DesignError, match=r"commands\['c.flow'\]: is not 0, and 'c' says where"):
+        simulator.step({"c": 0.0, "c.flow": 1e-6})
+    assert simulator.state is seen
+    assert simulator.step({"c": 0.1e-6}).commands == {"c": 0.1e-6, "c.flow": 0.0}
+    assert simulator.step().commands["c"] == 0.1e-6
+    assert simulator.step(simulator.targets).commands["c"] == 0.3e-6
+
+
+def test_a_flow_takes_over_from_a_history_and_has_no_derivative():
+    history = vs.History(time=("0 s", "0.1 s"), factor=(0.0, 1.0))
+    simulator = vs.Simulator(syringe(history=history))
+    assert simulator.step().commands["c"] == pytest.approx(0.06e-6)
+    seen = simulator.step({"c.flow": "-1 mL/s"})
+    assert seen.commands["c"] == pytest.approx(0.04e-6)
+    with pytest.raises(DesignError, match="is the rate of 'c'"):
+        vs.rollout(simulator, {"c.flow": [0.0, 1e-6]}, steps=2)
+
+
 @pytest.mark.parametrize("load", [Drag(), Immersion(level="50 mm")])
 def test_a_fluid_may_go_but_not_drive(load):
     simulator = vs.Simulator(BEAM.replace(loads=[load]))

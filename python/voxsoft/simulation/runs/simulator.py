@@ -247,10 +247,11 @@ class Simulator:
         ----------
         commands
             New values by name, see :attr:`commands`: numbers in SI units, texts with units, or pint
-            quantities; three components for a vector. Forces, pressures, fields, temperatures and
-            valves have them from the beginning of this step on; lengths, angles, volumes and masses
-            go to them evenly over the step. All others keep their last values, or follow their
-            histories until they are commanded. Default: no new value.
+            quantities; three components for a vector. Forces, pressures, fields, temperatures,
+            flows and valves have them from the beginning of this step on; lengths, angles, volumes
+            and masses go to them evenly over the step. All others keep their last values, follow
+            their histories until they are commanded, or go on as their flow says. Default: no new
+            value.
 
         Returns
         -------
@@ -273,6 +274,7 @@ class Simulator:
             )
         new = self._subject.commands.read({} if commands is None else commands)
         seen, driven = self._seen, self._seen._driven
+        new = self._subject.commands.moved(new, driven.values, self.time_step)
         start = seen._moment.time
         end = (self._steps + 1) * self.time_step - driven.late
         courses, driven = self._changed(driven, new, (start, end))
