@@ -487,6 +487,69 @@ def test_work_of_a_tendon_and_a_pressure_is_stored_in_the_body():
         )
 
 
+#: Designs that are driven without losses, each with the sizes of its commands.
+ACCOUNTS = {
+    "clamp": (
+        BEAM.replace(
+            clamps=[
+                BEAM.clamps[0].replace(
+                    motion=vs.Motion(rotation={"axis": (0, 1, 0), "angle": "10 deg"})
+                )
+            ]
+        ),
+        {"wall.displacement": (0.0, 0.0, 3e-3), "wall.angle": 0.2},
+    ),
+    "field": (
+        BEAM.replace(
+            loads=[ForceField(acceleration=("-100*(x - 0.02)", "0", "6*cos(20*t) - 2*vz"))]
+        ),
+        {"force_field": 1.0},
+    ),
+    "force": (
+        BEAM.replace(
+            loads=[vs.Force(region=vs.Region(x=("40 mm", "40 mm")), value=(0, 0, "2 mN"))]
+        ),
+        {"force": (0.0, 0.0, 2e-3)},
+    ),
+    "pressure": (BLOCK.replace(loads=[vs.Pressure(value="2 kPa")]), {"pressure": 2e3}),
+    "tension": (DRIVES["tension"][0], {"flexor": 0.05}),
+    "dielectric": (DRIVES["dielectric"][0], {"soft": 8e6}),
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ACCOUNTS)
+def test_work_is_the_energy_of_a_body_without_losses(name):
+    design, size = ACCOUNTS[name]
+
+    def off(steps):
+        """Energy that the body has and nobody gave, over the energy that went to and fro."""
+        simulator = vs.Simulator(design, damping=0.0, time_step=0.2 / steps)
+        turned = 0.0
+        for step in range(1, steps + 1):
+            share = np.sin(np.pi * step / steps) ** 2
+            seen = simulator.step({key: share * np.array(each) for key, each in size.items()})
+            turned += abs(seen.power) * simulator.time_step
+        assert seen.energy == pytest.approx(sum(seen.work.values()))
+        return (seen.elastic_energy + seen.kinetic_energy - seen.energy) / turned
+
+    coarse, fine = off(50), off(100)
+    assert abs(coarse) < 0.02
+    # Steps and their account are of second order, and each is found to 1e-7 of its forces.
+    assert abs(fine) < max(abs(coarse) / 3.0, 1e-6)
+
+
+def test_work_of_an_object_is_that_of_its_contact():
+    simulator = vs.Simulator(DRIVES["object"][0])
+    for step in range(1, 21):
+        seen = simulator.step({"plate": (0, 0, -0.2e-3 * step)})
+    while seen.status == "moving":
+        seen = simulator.step()
+    assert seen.work.keys() == {"plate"}
+    # Damping takes a part of it.
+    assert seen.elastic_energy < seen.energy < 1.5 * seen.elastic_energy
+
+
 def test_shorter_steps_bring_a_vibration_nearer_to_the_true_one():
     load = vs.Force(region=vs.Region(x=("40 mm", "40 mm")), value=(0, 0, "2 mN"))
     design = BEAM.replace(loads=[load])

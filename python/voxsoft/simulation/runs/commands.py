@@ -267,6 +267,32 @@ class Commands:
         return tuple(each.name for each in self.all if each.place.startswith("loads["))
 
     @cached_property
+    def forces(self) -> list[tuple[int, str, list[int]]]:
+        """Commands that are loads of the core, but tendons, weight and the liquid around.
+
+        Each has its index, its name and the numbers of its loads of the core.
+        """
+        found = []
+        for index, each in enumerate(self.all):
+            drives = each.place.startswith(("loads[", "activations["))
+            if not drives or each.kind in ("acceleration", "density"):
+                continue
+            inputs = each._inputs(each.first, 0.0)
+            if cores := [core for kind, core, *_ in inputs if kind == "load"]:
+                found.append((index, each.name, cores))
+        return found
+
+    @cached_property
+    def clamps(self) -> dict[int, str]:
+        """Name of each clamp and object that is moved, by the number of its clamp in the core."""
+        found = {}
+        for each in self.all:
+            if each.place.endswith("].displacement"):
+                (_, core, *_), *_ = each._inputs(each.first, 0.0)
+                found[core] = each.name.removesuffix(".displacement")
+        return found
+
+    @cached_property
     def rates(self) -> Mapping[int, int]:
         """Index of each command that is a rate, with that of the command that it moves."""
         names = self.names

@@ -29,6 +29,7 @@ from voxsoft.simulation.runs.observation import (
 )
 from voxsoft.simulation.runs.sensors import Sensor, Sensors, SensorState
 from voxsoft.simulation.runs.stored_observation import observation_from
+from voxsoft.simulation.runs.work import work_after
 from voxsoft.simulation.setup.large_voxels import evenly_small
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
@@ -272,9 +273,9 @@ class Simulator:
                 f"cannot go on from {self._seen.time:g} s: {self._seen.message}",
                 "call reset(), then command less or more slowly, or use smaller voxels",
             )
-        new = self._subject.commands.read({} if commands is None else commands)
         seen, driven = self._seen, self._seen._driven
-        new = self._subject.commands.moved(new, driven.values, self.time_step)
+        given = self._subject.commands.read({} if commands is None else commands)
+        new = self._subject.commands.moved(given, driven.values, self.time_step)
         start = seen._moment.time
         end = (self._steps + 1) * self.time_step - driven.late
         courses, driven = self._changed(driven, new, (start, end))
@@ -439,26 +440,8 @@ class Simulator:
 
     def _counted(self, seen: Observation, before: Observation) -> Observation:
         """Add the energy that the drives gave in the last step."""
-        subject, given = self._subject, dict[str, float]()
-        fluids = subject.setup.fluids
-        if fluids is not None:
-            for supplied in fluids.states(seen._drives[0]):
-                given[supplied.name] = supplied.energy
-        work = before._driven.work
-        for tendon in subject.setup.tendons:
-            now, then = seen.tendons[tendon.name], before.tendons[tendon.name]
-            drawn = (now.shortening - now.slack) - (then.shortening - then.slack)
-            pull = 0.5 * (now.tension + then.tension)
-            given[tendon.name] = work.get(tendon.name, 0.0) + pull * drawn
-        for index, cavities in subject.pressed:
-            name = subject.commands.names[index]
-            ends = (before._driven.values[index], seen._driven.values[index])
-            pressure = 0.5 * sum(each for each in ends if isinstance(each, float))
-            volumes = [
-                seen.chambers[each].volume - before.chambers[each].volume for each in cavities
-            ]
-            given[name] = work.get(name, 0.0) + pressure * sum(volumes)
-        power = (sum(given.values()) - sum(work.values())) / self.time_step
+        given = work_after(before, seen)
+        power = (sum(given.values()) - sum(before._driven.work.values())) / self.time_step
         driven = replace(seen._driven, work=MappingProxyType(given), power=power)
         return seen.driven_by(driven)
 
