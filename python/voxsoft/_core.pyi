@@ -14,6 +14,8 @@ _Cells = tuple[int, int, int]
 _Point = tuple[float, float, float]
 _Region = tuple[NDArray[np.uint32], int]
 _Wall = tuple[int, _Cells]
+#: Kind, index, number of the quantity, times in s and values.
+_Inputs = Sequence[tuple[str, int, int, Sequence[float], Sequence[float]]]
 
 @final
 class Grid:
@@ -586,6 +588,10 @@ class Answer:
         """Vertex, its place at rest in m, and when."""
 
     @property
+    def undefined(self) -> tuple[int, int, list[float], float] | None:
+        """Load and component without a value where a run broke down, the place in m, and when."""
+
+    @property
     def reactions(self) -> NDArray[np.float64]: ...
     @property
     def reaction(self) -> list[float]: ...
@@ -782,7 +788,7 @@ class Problem:
         time: float,
         memory: Memory,
         residual: float,
-        inputs: Sequence[tuple[str, int, int, Sequence[float], Sequence[float]]] = ...,
+        inputs: _Inputs = ...,
     ) -> Answer:
         """Measure a moving state of all vertices, objects included; nothing is solved."""
 
@@ -791,9 +797,20 @@ class Problem:
         positions: NDArray[np.float64],
         time: float,
         memory: Memory,
-        inputs: Sequence[tuple[str, int, int, Sequence[float], Sequence[float]]] = ...,
+        inputs: _Inputs = ...,
     ) -> tuple[NDArray[np.float64], list[Tendon]]:
         """Measure chambers, (c, 6), and tendons of such a state."""
+
+    def step_work(
+        self,
+        before: tuple[NDArray[np.float64], NDArray[np.float64], float, Memory, _Inputs],
+        after: tuple[NDArray[np.float64], NDArray[np.float64], float, Memory, _Inputs],
+        loads: list[int],
+    ) -> tuple[list[float], list[float]]:
+        """Work of some loads and of all clamps over a step between two states, J.
+
+        Each state is positions and velocities of all vertices, time, memory and inputs.
+        """
 
     def read_memory(self, bytes: bytes) -> Memory:
         """Read the bytes of a memory of this problem."""
@@ -1029,6 +1046,10 @@ class Advance:
         """Vertex, its place at rest in m, and when."""
 
     @property
+    def undefined(self) -> tuple[int, int, list[float], float] | None:
+        """Load and component without a value where a run broke down, the place in m, and when."""
+
+    @property
     def seconds(self) -> float:
         """Of the clock, for this call."""
 
@@ -1073,9 +1094,7 @@ class Live:
     def advance_to(self, time: float) -> Advance: ...
     def advance_for(self, seconds: float, max_substeps: int = ...) -> Advance: ...
     def set_load(self, load: int, factor: float | None) -> None: ...
-    def command(
-        self, inputs: Sequence[tuple[str, int, int, Sequence[float], Sequence[float]]]
-    ) -> None:
+    def command(self, inputs: _Inputs) -> None:
         """Replace the courses of inputs: kind, index, number of the quantity, times, values."""
 
     def vary(self, offset: float) -> int:
@@ -1091,7 +1110,7 @@ class Live:
         self,
         parameter: int,
         above: bool,
-        inputs: Sequence[tuple[str, int, int, Sequence[float], Sequence[float]]],
+        inputs: _Inputs,
     ) -> None:
         """Replace courses of inputs of the neighbor of a parameter above its value, or below."""
 

@@ -3,7 +3,7 @@ use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{LiveStatus, Look, Status};
+use voxsoft_solid::{Breakdown, LiveStatus, Look, Status};
 
 use crate::contact_answer::{PyContact, PyObjectPose, PyTouchHistory};
 use crate::contact_field::PyContactField;
@@ -64,6 +64,7 @@ pub struct PyAnswer {
     pub back_offs: u32,
     pub substep: f64,
     pub breakdown: Option<(usize, Vec3, f64)>,
+    pub undefined: Option<(usize, usize, Vec3, f64)>,
     pub reactions: Py<PyArray2<f64>>,
     pub reaction: Vec3,
     pub reaction_moment: Vec3,
@@ -151,6 +152,12 @@ impl TryFrom<LiveStatus> for PyLiveStatus {
     }
 }
 
+/// The load, the component, the place in m and the time in s of a load that had no value at a breakdown.
+pub(crate) fn undefined_of(breakdown: Option<Breakdown>) -> Option<(usize, usize, Vec3, f64)> {
+    let found = breakdown?.undefined?;
+    Some((found.load, found.axis, found.place, found.time))
+}
+
 /// Progress of a live run.
 #[pyclass(frozen, get_all, name = "Advance", module = "voxsoft._core")]
 pub struct PyAdvance {
@@ -166,6 +173,7 @@ pub struct PyAdvance {
     pub elastic: f64,
     pub kinetic: f64,
     pub breakdown: Option<(usize, Vec3, f64)>,
+    pub undefined: Option<(usize, usize, Vec3, f64)>,
     /// Wall-clock time of this call, s.
     pub seconds: f64,
 }
@@ -184,6 +192,7 @@ impl PyAdvance {
             elastic: look.elastic,
             kinetic: look.kinetic,
             breakdown: look.breakdown.map(|b| (b.vertex, b.rest, b.when)),
+            undefined: undefined_of(look.breakdown),
             seconds,
         })
     }

@@ -11,11 +11,11 @@ use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
     Body, Fluid, Hex8, Load, Material, Membrane, Mesh, PerBlock, Problem, ProblemError, State,
-    Velocities, elastic,
+    StepEnd, Velocities, elastic, work_of_clamps, work_of_load,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Status, Trial, relax, simulate};
 
-use crate::answer::PyAnswer;
+use crate::answer::{PyAnswer, undefined_of};
 use crate::arrays::{from_rows, rows};
 use crate::errors::to_python;
 use crate::gate;
@@ -29,6 +29,15 @@ use crate::watch::{Watch, collect_sensors};
 
 /// Numbers of chambers, (c, 6), and tendons.
 type PyDrives<'py> = (Bound<'py, PyArray2<f64>>, Vec<Py<PyTendon>>);
+
+/// State of a motion: positions, velocities, time in s, memory and inputs.
+type StateArgument<'py> = (
+    PyReadonlyArray2<'py, f64>,
+    PyReadonlyArray2<'py, f64>,
+    f64,
+    PyRef<'py, PyMemory>,
+    Vec<InputArgument>,
+);
 
 /// A mechanical problem: a body with clamps, loads and a floor.
 #[pyclass(frozen, name = "Problem", module = "voxsoft._core")]
@@ -316,6 +325,24 @@ impl PyProblem {
         Ok((chambers, tendons(py, &problem, &positions, &factor_of)?))
     }
 
+    /// Work (J) of some loads, by their numbers, and of all clamps, over the step of a motion between two states of all
+    /// vertices: positions, velocities, time, memory, and inputs that replace those of the problem.
+    fn step_work(
+        &self,
+        before: StateArgument<'_>,
+        after: StateArgument<'_>,
+        loads: Vec<usize>,
+    ) -> PyResult<(Vec<f64>, Vec<f64>)> {
+        let ends = [self.step_end(before)?, self.step_end(after)?];
+        let count = self.now().loads().len();
+        if let Some(index) = loads.iter().find(|index| **index >= count) {
+            let message = format!("loads: {index} is no load, there are {count}");
+            return Err(PyValueError::new_err(message));
+        }
+        let of_loads = loads.iter().map(|load| work_of_load(&ends, *load));
+        Ok((of_loads.collect(), work_of_clamps(&ends)))
+    }
+
     /// Reads the bytes of a memory of this problem.
     fn read_memory(&self, bytes: &[u8]) -> PyResult<PyMemory> {
         let memory = self.now().read_memory(bytes).map(PyMemory);
@@ -518,6 +545,27 @@ impl PyProblem {
         Ok(positions)
     }
 
+    /// Returns one end of a step.
+    fn step_end(
+        &self,
+        (positions, velocities, time, memory, inputs): StateArgument<'_>,
+    ) -> PyResult<StepEnd> {
+        let positions = self.positions(&positions)?;
+        let velocities = rows("velocities", &velocities)?;
+        if velocities.len() != positions.len() {
+            let (got, expected) = (velocities.len(), positions.len());
+            let message = format!("velocities: {got} rows, expected {expected}");
+            return Err(PyValueError::new_err(message));
+        }
+        let problem = Problem::clone(&self.at(time, &memory, inputs)?.now());
+        let state = State {
+            positions,
+            velocities,
+            time,
+        };
+        Ok(StepEnd::new(problem, state, memory.0.past.clone()))
+    }
+
     /// Returns the problem at a time in s, with its memory there and inputs that replace its own.
     fn at(&self, time: f64, memory: &PyMemory, inputs: Vec<InputArgument>) -> PyResult<Self> {
         let mut outcome = Ok(());
@@ -580,6 +628,7 @@ impl PyProblem {
             back_offs: answer.back_offs,
             substep: answer.substep,
             breakdown: answer.breakdown.map(|b| (b.vertex, b.rest, b.when)),
+            undefined: undefined_of(answer.breakdown),
             reactions: from_rows(py, &balance.reactions[..own]).unbind(),
             reaction: balance.total_reaction(),
             reaction_moment: balance.total_moment(positions),

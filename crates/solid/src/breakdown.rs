@@ -7,6 +7,19 @@ use crate::vector::{Vec3, axpy, norm, sub};
 /// Largest distance of a vertex from its rest position, in body sizes beyond the clamps' own motion.
 const FARTHEST_SIZES: f64 = 10.0;
 
+/// A load that has no finite value where a body comes to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Undefined {
+    /// Index of the load.
+    pub load: usize,
+    /// The component without a value: 0 to 2 for x, y, z.
+    pub axis: usize,
+    /// Position of the vertex there in m.
+    pub place: Vec3,
+    /// The time there in s.
+    pub time: f64,
+}
+
 /// Place and time at which a run broke down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Breakdown {
@@ -16,6 +29,8 @@ pub struct Breakdown {
     pub rest: Vec3,
     /// The time in s (dynamics) or the number of steps (relaxation).
     pub when: f64,
+    /// The load that has no value there, if that is the reason.
+    pub undefined: Option<Undefined>,
 }
 
 impl Breakdown {
@@ -31,6 +46,7 @@ impl Breakdown {
             vertex,
             rest: rest[vertex],
             when,
+            undefined: None,
         })
     }
 
@@ -45,6 +61,7 @@ impl Breakdown {
             vertex,
             rest: rest[vertex],
             when,
+            undefined: None,
         }
     }
 }

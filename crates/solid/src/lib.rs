@@ -92,7 +92,7 @@ pub use loads::{
     Place, PointForces, Pressure, Tendon, TendonMemory, TendonState, Velocities, enclosed_volume,
 };
 pub use material::Material;
-pub use problem::{Input, Memory, Past, Problem};
+pub use problem::{Input, Memory, Past, Problem, StepEnd, work_of_clamps, work_of_load};
 pub use rigid::Rigid;
 pub use solver::{Observer, Progress, Solution, Solver, Status};
 pub use state::State;

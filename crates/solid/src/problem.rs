@@ -2,6 +2,7 @@ mod creep;
 mod input;
 mod memory;
 mod motion;
+mod work;
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -16,6 +17,7 @@ use crate::{
 
 pub use input::Input;
 pub use memory::{Memory, Past};
+pub use work::{StepEnd, work_of_clamps, work_of_load};
 
 /// A body with clamps, loads, and optionally a floor, fluid or contact.
 #[derive(Debug, Clone)]

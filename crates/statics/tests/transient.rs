@@ -290,6 +290,36 @@ fn free_fall_is_exact_from_the_first_step() {
 }
 
 #[test]
+fn damped_fall_converges_at_second_order() {
+    let mesh = block([2, 2, 2], 5e-3);
+    let body = Body::new(&mesh, &[rubber()]).unwrap();
+    let weight = Load::gravity([0.0, 0.0, -GRAVITY]);
+    let problem = Problem::new(body, vec![], vec![weight], None).unwrap();
+    let masses = problem.body().masses();
+    let (rate, end) = (8.0, 0.2);
+    let speed = GRAVITY / rate * (1.0 - f64::exp(-rate * end));
+    let errors = [10e-3, 5e-3].map(|step| {
+        let settings = Transient {
+            damping: Damping::Rate(rate),
+            ..undamped(step, end)
+        };
+        let start = State::at_rest(problem.body());
+        let state = run(&settings, &problem, start, |_, _, _| {}).state;
+        (mean(&state.velocities, masses)[2] + speed).abs()
+    });
+    // The formula adds the error h² v‴/3 per time, with v‴ = g c² e^(−ct), of which e^(−c(end − t)) is left at the end;
+    // steps of a tenth of the time constant add terms of the next order, a tenth of it.
+    let [coarse, fine] = errors;
+    let leading = 10e-3f64.powi(2) / 3.0 * GRAVITY * rate.powi(2) * f64::exp(-rate * end) * end;
+    assert!(
+        (coarse / leading - 1.0).abs() < 0.2,
+        "{coarse:e} beside {leading:e}"
+    );
+    let ratio = coarse / fine;
+    assert!((3.0..6.0).contains(&ratio), "{ratio} of {errors:?}");
+}
+
+#[test]
 fn vibration_converges_at_second_order() {
     let mesh: Mesh = block([4, 1, 1], 5e-3);
     let body = Body::new(&mesh, &[rubber()]).unwrap();

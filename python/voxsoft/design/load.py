@@ -27,8 +27,8 @@ from voxsoft.units import (
     Dimensionless,
     Length,
     NonNegative,
+    NonNegativeDensity,
     NonNegativeSpeed,
-    PositiveDensity,
     Quantity,
     Speed,
     Vector,
@@ -185,7 +185,7 @@ class Immersion(Record):
     Parameters
     ----------
     value
-        Density of the liquid; default: water.
+        Density of the liquid; default: water. 0 is none.
     level
         Height of its surface along z; default 0.
     gravity
@@ -206,7 +206,7 @@ class Immersion(Record):
     """
 
     kind: Literal["immersion"] = "immersion"
-    value: PositiveDensity = 1000.0
+    value: NonNegativeDensity = 1000.0
     level: Length = 0.0
     gravity: Acceleration = 9.81
     history: History | None = None
@@ -222,7 +222,7 @@ class Drag(Record):
     Parameters
     ----------
     value
-        Density ρ of the fluid; default: water.
+        Density ρ of the fluid; default: water. 0 is none.
     normal
         Coefficient cₙ of the pressure, by Newton's law of the squared sine: a plate across the
         flow and a box have the drag coefficient cₙ, a ball half of it. Default 1.
@@ -248,7 +248,7 @@ class Drag(Record):
     """
 
     kind: Literal["drag"] = "drag"
-    value: PositiveDensity = 1000.0
+    value: NonNegativeDensity = 1000.0
     normal: NonNegative = 1.0
     tangential: NonNegative = 0.0
     linear: NonNegativeSpeed = 0.0

@@ -92,7 +92,7 @@ Drives = Iterable[Drive | str] | Mapping[str, tuple[Amount, Amount]]
 
 
 def channels_of(simulator: Simulator, drives: Drives | None) -> tuple[Channel, ...]:
-    """Return the channels of drives; default: all commands but gravity.
+    """Return the channels of drives; default: all commands but gravity and rates.
 
     Raises
     ------
@@ -102,7 +102,8 @@ def channels_of(simulator: Simulator, drives: Drives | None) -> tuple[Channel, .
     commands = simulator.commands
     listed: list[Drive | str]
     if drives is None:
-        listed = [name for name, each in commands.items() if each.kind != "acceleration"]
+        own = ((name, each) for name, each in commands.items() if not each.moves)
+        listed = [name for name, each in own if each.kind != "acceleration"]
     elif isinstance(drives, Mapping):
         listed = [Drive(command=name, low=low, high=high) for name, (low, high) in drives.items()]
     else:

@@ -186,7 +186,7 @@ def test_too_much_is_reported_and_only_a_reset_leads_on():
     assert "inverted" in statuses
     assert "diverged at (" in seen.message
     assert np.isfinite(seen.positions).all()
-    with pytest.raises(SimulationError, match=r"has diverged at .*reset\(\)"):
+    with pytest.raises(SimulationError, match=r"cannot go on from .*: diverged at .*reset\(\)"):
         simulator.step()
     assert simulator.reset().status == "moving"
     assert simulator.step({"pressure": "1 kPa"}).probes["top"][2] > 0

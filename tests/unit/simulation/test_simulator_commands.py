@@ -1,6 +1,7 @@
 """Commands of a simulator: every drive by name, sensors, and what is remembered."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -9,7 +10,17 @@ import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.design import Dielectric, MassSupply, Object, ShapeMemory, Strain, VolumeSupply
+from voxsoft.design import (
+    Dielectric,
+    Drag,
+    ForceField,
+    Immersion,
+    MassSupply,
+    Object,
+    ShapeMemory,
+    Strain,
+    VolumeSupply,
+)
 from voxsoft.design.supply import FlowSupply, PressureSupply
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.simulation import Sensor
@@ -157,7 +168,14 @@ def test_all_drives_at_their_targets_rest_where_the_design_does(name):
     assert expected.status == "ok"
     moved = np.abs(expected.displacements).max()
     # Residuals below 1e-4 of the load, of which a slender body makes ten times as much motion.
-    assert np.abs(seen.positions - expected.positions).max() < 5e-3 * moved + 1e-9
+    allowed = 5e-3 * moved + 1e-9
+    if any(tendon.friction for tendon in design.tendons):
+        # A line that settles slides back at its bends, which then hold it from the other side:
+        # rest is between that of statics and its mirror image at the place without friction.
+        free = [tendon.replace(friction=0.0) for tendon in design.tendons]
+        middle = vs.simulate(design.replace(tendons=free), method="statics")
+        allowed += 2.0 * np.abs(middle.positions - expected.positions).max()
+    assert np.abs(seen.positions - expected.positions).max() < allowed
     assert seen.result.status == "ok"
 
 
@@ -242,6 +260,104 @@ def test_a_bad_command_is_named_and_the_state_is_kept(name, commands, words):
     after = simulator.step()
     simulator.restore(before)
     assert bits(simulator.step()) == bits(after)
+
+
+def syringe(**changes):
+    supply = VolumeSupply(chamber="c", value="0.3 mL", fluid="water", **changes)
+    return BLOCK.replace(supplies=[supply])
+
+
+def test_a_syringe_pump_fills_at_its_flow_and_is_sealed_without():
+    """Beside the volume of the water: V + s = M/ρ(p), with what is left in the syringe."""
+    design = syringe()
+    simulator = vs.Simulator(design)
+    assert simulator.commands["c.flow"].unit == "m^3/s"
+    bulk = design.supplies[0].medium.bulk_modulus
+    first, whole = simulator.state.chambers[0].volume, 0.3e-6
+    flow, volumes = 1e-6, []
+    for step in range(8):
+        seen = simulator.step({"c.flow": "1 mL/s"} if step == 0 else None)
+        [chamber] = seen.chambers
+        pushed = flow * seen.time
+        assert seen.commands == {"c": pytest.approx(pushed, rel=1e-14), "c.flow": flow}
+        inside = (first + whole) * np.exp(-chamber.pressure / bulk)
+        # A step is found to 1e-7 of its load, which is 1e-6 of the bulk modulus.
+        assert chamber.volume + whole - pushed == pytest.approx(inside, rel=1e-13)
+        volumes.append(chamber.volume)
+    assert np.diff(volumes) == pytest.approx(flow * 0.02, rel=1e-4)
+    seen = simulator.step({"c.flow": 0})
+    kept = seen.commands["c"]
+    while seen.status == "moving":
+        seen = simulator.step()
+        assert seen.commands == {"c": kept, "c.flow": 0.0}
+    assert seen.chambers[0].volume - first == pytest.approx(0.16e-6, rel=1e-4)
+
+
+def test_a_syringe_pump_stops_at_its_end_and_by_a_volume():
+    simulator = vs.Simulator(syringe())
+    seen = simulator.step({"supplies[0].flow": "9 mL/s"})
+    assert seen.commands == {"c": pytest.approx(0.18e-6), "c.flow": 9e-6}
+    middle = [bits(each) for each in run(simulator, None, 3)]
+    assert simulator.state.commands == {"c": 0.3e-6, "c.flow": 0.0}
+    simulator.restore(seen)
+    assert [bits(each) for each in run(simulator, None, 3)] == middle
+    simulator.restore(seen)
+    with pytest.raises(DesignError, match=r"commands\['c.flow'\]: is not 0, and 'c' says where"):
+        simulator.step({"c": 0.0, "c.flow": 1e-6})
+    assert simulator.state is seen
+    assert simulator.step({"c": 0.1e-6}).commands == {"c": 0.1e-6, "c.flow": 0.0}
+    assert simulator.step().commands["c"] == 0.1e-6
+    assert simulator.step(simulator.targets).commands["c"] == 0.3e-6
+
+
+def test_a_flow_takes_over_from_a_history_and_has_no_derivative():
+    history = vs.History(time=("0 s", "0.1 s"), factor=(0.0, 1.0))
+    simulator = vs.Simulator(syringe(history=history))
+    assert simulator.step().commands["c"] == pytest.approx(0.06e-6)
+    seen = simulator.step({"c.flow": "-1 mL/s"})
+    assert seen.commands["c"] == pytest.approx(0.04e-6)
+    with pytest.raises(DesignError, match="is the rate of 'c'"):
+        vs.rollout(simulator, {"c.flow": [0.0, 1e-6]}, steps=2)
+
+
+@pytest.mark.parametrize("load", [Drag(), Immersion(level="50 mm")])
+def test_a_fluid_may_go_but_not_drive(load):
+    simulator = vs.Simulator(BEAM.replace(loads=[load]))
+    before = simulator.state
+    with pytest.raises(DesignError, match=rf"commands\['{load.kind}'\]: -1 kg/m\^3 is below 0"):
+        simulator.step({load.kind: -1.0})
+    assert simulator.state is before
+    assert simulator.step({load.kind: 0.0}).result.displacements == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("acceleration", "axis", "when"),
+    [
+        (("0", "0", "-9.81 + 0*sqrt(z + 0.05)"), 2, np.sqrt(2 * 0.05 / 9.81)),
+        (("0", "0", "-9.81 + 0*sqrt(0.5 + vz)"), 2, 0.5 / 9.81),
+        (("0", "0*sqrt(0.105 - t)", "-9.81"), 1, 0.105),
+    ],
+    ids=["place", "velocity", "time"],
+)
+def test_a_field_without_a_value_is_named_with_its_place_and_time(acceleration, axis, when):
+    """A beam that falls freely, with its lowest vertices at the height 0."""
+    field = ForceField(acceleration=acceleration)
+    nothing = vs.Force(region=vs.Region(x=(0, 0)), value=(0, 0, 0))
+    design = BEAM.replace(clamps=[], loads=[nothing, field])
+    simulator = vs.Simulator(design, damping=0.0)
+    while simulator.state.status != "diverged" and simulator.state.time < 1.0:
+        seen = simulator.step()
+    words = rf"loads\[1\].acceleration\[{axis}\] has no finite value at \(.*\) mm, .* at (.*) s"
+    found = re.fullmatch(words, seen.message)
+    assert found
+    # Steps of 20 ms are halved ten times.
+    assert float(found[1]) == pytest.approx(when, abs=0.1e-3)
+    with pytest.raises(SimulationError, match=words):
+        simulator.step()
+    over_time = {"method": "dynamics", "end_time": 1.0, "time_step": 0.02, "damping": 0}
+    moved = vs.simulate(design.replace(solver=over_time, contact={}))
+    assert moved.status == "diverged"
+    assert re.match(words, moved.message)
 
 
 SCRIPT = """
@@ -369,6 +485,69 @@ def test_work_of_a_tendon_and_a_pressure_is_stored_in_the_body():
             < (work if name == "tension" else seen.result.supplies[0].work)
             < 1.3 * seen.elastic_energy
         )
+
+
+#: Designs that are driven without losses, each with the sizes of its commands.
+ACCOUNTS = {
+    "clamp": (
+        BEAM.replace(
+            clamps=[
+                BEAM.clamps[0].replace(
+                    motion=vs.Motion(rotation={"axis": (0, 1, 0), "angle": "10 deg"})
+                )
+            ]
+        ),
+        {"wall.displacement": (0.0, 0.0, 3e-3), "wall.angle": 0.2},
+    ),
+    "field": (
+        BEAM.replace(
+            loads=[ForceField(acceleration=("-100*(x - 0.02)", "0", "6*cos(20*t) - 2*vz"))]
+        ),
+        {"force_field": 1.0},
+    ),
+    "force": (
+        BEAM.replace(
+            loads=[vs.Force(region=vs.Region(x=("40 mm", "40 mm")), value=(0, 0, "2 mN"))]
+        ),
+        {"force": (0.0, 0.0, 2e-3)},
+    ),
+    "pressure": (BLOCK.replace(loads=[vs.Pressure(value="2 kPa")]), {"pressure": 2e3}),
+    "tension": (DRIVES["tension"][0], {"flexor": 0.05}),
+    "dielectric": (DRIVES["dielectric"][0], {"soft": 8e6}),
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ACCOUNTS)
+def test_work_is_the_energy_of_a_body_without_losses(name):
+    design, size = ACCOUNTS[name]
+
+    def off(steps):
+        """Energy that the body has and nobody gave, over the energy that went to and fro."""
+        simulator = vs.Simulator(design, damping=0.0, time_step=0.2 / steps)
+        turned = 0.0
+        for step in range(1, steps + 1):
+            share = np.sin(np.pi * step / steps) ** 2
+            seen = simulator.step({key: share * np.array(each) for key, each in size.items()})
+            turned += abs(seen.power) * simulator.time_step
+        assert seen.energy == pytest.approx(sum(seen.work.values()))
+        return (seen.elastic_energy + seen.kinetic_energy - seen.energy) / turned
+
+    coarse, fine = off(50), off(100)
+    assert abs(coarse) < 0.02
+    # Steps and their account are of second order, and each is found to 1e-7 of its forces.
+    assert abs(fine) < max(abs(coarse) / 3.0, 1e-6)
+
+
+def test_work_of_an_object_is_that_of_its_contact():
+    simulator = vs.Simulator(DRIVES["object"][0])
+    for step in range(1, 21):
+        seen = simulator.step({"plate": (0, 0, -0.2e-3 * step)})
+    while seen.status == "moving":
+        seen = simulator.step()
+    assert seen.work.keys() == {"plate"}
+    # Damping takes a part of it.
+    assert seen.elastic_energy < seen.energy < 1.5 * seen.elastic_energy
 
 
 def test_shorter_steps_bring_a_vibration_nearer_to_the_true_one():

@@ -77,6 +77,16 @@ pub trait ExternalForce: Debug + Send + Sync {
         false
     }
 
+    /// Finds a component without a finite value at positions (m), velocities (m/s) and a time (s): the vertex and the axis.
+    fn undefined(
+        &self,
+        _positions: &[Vec3],
+        _velocities: &[Vec3],
+        _time: f64,
+    ) -> Option<(usize, usize)> {
+        None
+    }
+
     /// Tests whether the forces have a potential, so that their derivative is symmetric.
     fn is_conservative(&self) -> bool {
         true

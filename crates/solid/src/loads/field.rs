@@ -113,6 +113,22 @@ impl ExternalForce for ForceField {
         self.has(|variable| variable == TIME)
     }
 
+    fn undefined(
+        &self,
+        positions: &[Vec3],
+        velocities: &[Vec3],
+        time: f64,
+    ) -> Option<(usize, usize)> {
+        self.vertices.iter().find_map(|&number| {
+            let vertex = number as usize;
+            let ([x, y, z], [vx, vy, vz]) = (positions[vertex], velocities[vertex]);
+            let at = [x, y, z, vx, vy, vz, time];
+            let mut formulas = self.formulas.iter();
+            let axis = formulas.position(|each| !each.value(&at).is_finite())?;
+            Some((vertex, axis))
+        })
+    }
+
     fn is_weight(&self) -> bool {
         true
     }

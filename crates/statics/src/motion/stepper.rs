@@ -2,9 +2,9 @@
 
 use std::any::Any;
 
-use voxsoft_solid::breakdown::Breakdown;
+use voxsoft_solid::breakdown::{Breakdown, Undefined};
 use voxsoft_solid::loads::grabs::{checked_state, still_state};
-use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::vector::{Vec3, add, scale, sub};
 use voxsoft_solid::{
     Ask, Grab, History, Input, LiveStatus, Look, Memory, Method, Problem, ProblemError, State,
     Stepper,
@@ -16,6 +16,9 @@ use super::scheme::Stage;
 
 /// Shortest and longest step allowed, in s.
 pub(super) const STEPS: [f64; 2] = [1e-6, 0.1];
+/// Times after the last state at which a run that broke down looks for a load without a value, in lengths of a step that
+/// would come next. The one that failed last was twice as long, and its search goes a little farther.
+const AHEAD: [f64; 5] = [0.0, 1.0, 2.0, 4.0, 8.0];
 
 impl<S: InnerSearch> Stepper for Integrator<S> {
     fn as_any(&mut self) -> &mut dyn Any {
@@ -193,9 +196,45 @@ impl<S: InnerSearch> Integrator<S> {
 impl Run {
     /// Place of the failure that ends a run.
     pub fn place_of(&self, stop: &Stop) -> Breakdown {
-        match stop {
+        let place = match stop {
             Stop::Gone(place) => *place,
             _ => Breakdown::farthest(&self.problem, &self.state.positions, self.state.time),
+        };
+        Breakdown {
+            undefined: self.undefined_ahead(),
+            ..place
         }
+    }
+
+    /// Finds a load without a value on the way that the steps which failed last would have gone.
+    fn undefined_ahead(&self) -> Option<Undefined> {
+        let before = self.before.as_ref();
+        let gains: Vec<Vec3> = match before {
+            Some(before) if before.time < self.state.time => {
+                let last = self.state.time - before.time;
+                let pairs = self.state.velocities.iter().zip(&before.velocities);
+                pairs
+                    .map(|(v, old)| scale(1.0 / last, sub(*v, *old)))
+                    .collect()
+            }
+            _ => vec![[0.0; 3]; self.state.velocities.len()],
+        };
+        AHEAD.iter().find_map(|&steps| {
+            let ahead = steps * self.step;
+            let time = self.state.time + ahead;
+            let positions = self.extrapolated(ahead, before);
+            let pairs = self.state.velocities.iter().zip(&gains);
+            let velocities: Vec<Vec3> = pairs.map(|(v, a)| add(*v, scale(ahead, *a))).collect();
+            let mut loads = self.problem.loads().iter().enumerate();
+            loads.find_map(|(load, each)| {
+                let (vertex, axis) = each.kind.undefined(&positions, &velocities, time)?;
+                Some(Undefined {
+                    load,
+                    axis,
+                    place: positions[vertex],
+                    time,
+                })
+            })
+        })
     }
 }

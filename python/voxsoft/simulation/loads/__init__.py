@@ -4,6 +4,7 @@ from voxsoft.simulation.loads.actions import Action, LoadReceiver
 from voxsoft.simulation.loads.kind import LoadedBody, LoadKind, LoadReading
 from voxsoft.simulation.loads.kinds import KINDS
 from voxsoft.simulation.loads.resolve import ResolvedLoad, read, readings, resolve
+from voxsoft.simulation.loads.undefined import undefined_in_words
 
 __all__ = [
     "KINDS",
@@ -16,4 +17,5 @@ __all__ = [
     "read",
     "readings",
     "resolve",
+    "undefined_in_words",
 ]

@@ -38,6 +38,7 @@ _SI: Final = MappingProxyType(
         "length": "m",
         "angle": "rad",
         "volume": "m^3",
+        "volume flow": "m^3/s",
         "mass": "kg",
         "temperature": "K",
         "electric field": "V/m",
@@ -70,6 +71,9 @@ class Command:
     evenly
         True if it goes evenly to a new value over a step, as places and amounts do; False if it has
         the new value from the beginning of the step on, as forces and pressures do.
+    moves
+        Name of the command whose value it moves at its own as a rate, until it is 0 or the other
+        one is commanded; empty for all but the flow of a syringe.
     """
 
     name: str
@@ -81,6 +85,7 @@ class Command:
     first: Value
     design: Value
     evenly: bool
+    moves: str = field(default="", kw_only=True)
     #: From a value, and the remembered state of its material, to inputs of the core.
     _inputs: Callable[[Value, float], Sequence[Input]] = field(repr=False, compare=False)
     #: The design with a value of it, as it then acts.
@@ -227,7 +232,7 @@ class Commands:
     """
 
     def __init__(self, setup: Setup) -> None:
-        design = setup.design
+        self._design = design = setup.design
         self.setup = Setup(of_size_one(design), setup.mesh)
         self.all = tuple(_named(list(drives_of(setup, self.setup))))
 
@@ -240,6 +245,17 @@ class Commands:
         own = core_materials(one.design, one.materials, one.mesh, one.origin, over_time=True)
         return one.problem.with_materials(own)
 
+    @cached_property
+    def load_owners(self) -> list[int]:
+        """Index of the design's load behind each load of the core."""
+        actions = iter(self.setup.loads)
+        return [
+            index
+            for index, reading in enumerate(readings(self._design))
+            for _ in reading.components
+            for _ in next(actions).actions
+        ]
+
     @property
     def names(self) -> tuple[str, ...]:
         """Name of each command."""
@@ -249,6 +265,39 @@ class Commands:
     def of_loads(self) -> tuple[str, ...]:
         """Names of the commands that are loads, which come first."""
         return tuple(each.name for each in self.all if each.place.startswith("loads["))
+
+    @cached_property
+    def forces(self) -> list[tuple[int, str, list[int]]]:
+        """Commands that are loads of the core, but tendons, weight and the liquid around.
+
+        Each has its index, its name and the numbers of its loads of the core.
+        """
+        found = []
+        for index, each in enumerate(self.all):
+            drives = each.place.startswith(("loads[", "activations["))
+            if not drives or each.kind in ("acceleration", "density"):
+                continue
+            inputs = each._inputs(each.first, 0.0)
+            if cores := [core for kind, core, *_ in inputs if kind == "load"]:
+                found.append((index, each.name, cores))
+        return found
+
+    @cached_property
+    def clamps(self) -> dict[int, str]:
+        """Name of each clamp and object that is moved, by the number of its clamp in the core."""
+        found = {}
+        for each in self.all:
+            if each.place.endswith("].displacement"):
+                (_, core, *_), *_ = each._inputs(each.first, 0.0)
+                found[core] = each.name.removesuffix(".displacement")
+        return found
+
+    @cached_property
+    def rates(self) -> Mapping[int, int]:
+        """Index of each command that is a rate, with that of the command that it moves."""
+        names = self.names
+        pairs = ((index, each.moves) for index, each in enumerate(self.all))
+        return {index: names.index(moved) for index, moved in pairs if moved}
 
     def read(self, given: Mapping[CommandName, Any]) -> dict[int, Value]:
         """Read commands: SI values by the index of the command.
@@ -263,7 +312,7 @@ class Commands:
         ------
         DesignError
             An unknown command, or one named twice; a value of another unit or shape, not finite, or
-            out of bounds.
+            out of bounds; a rate with the value that it moves.
         """
         if not isinstance(given, Mapping):
             hint = f'write {{"{self.names[0]}": ...}}' if self.all else ""
@@ -275,6 +324,39 @@ class Commands:
             if index in found:
                 raise DesignError(where, "is commanded twice", "give one name of it")
             found[index] = self.all[index].read(value, where)
+        for rate, moved in self.rates.items():
+            if moved in found and found.get(rate):
+                where, other = (self.all[each].name for each in (rate, moved))
+                what = f"is not 0, and {other!r} says where the plunger goes"
+                raise DesignError(f"commands[{where!r}]", what, "give one of them")
+        return found
+
+    def moved(
+        self, new: Mapping[int, Value], values: Sequence[Value], seconds: float
+    ) -> Mapping[int, Value]:
+        """Add the values to which rates lead within a step, up to their bounds.
+
+        Parameters
+        ----------
+        new
+            Values that are commanded now, by the index of the command.
+        values
+            All values before.
+        seconds
+            Length of the step.
+        """
+        found = dict(new)
+        for rate, moved in self.rates.items():
+            before, speed = values[moved], new.get(rate, values[rate])
+            assert isinstance(before, float)
+            assert isinstance(speed, float)
+            if moved in new:
+                found[rate] = 0.0
+            elif rate in new or speed != 0.0:
+                end = before + speed * seconds
+                found[moved] = min(max(end, self.all[moved].low), self.all[moved].high)
+                if found[moved] != end:
+                    found[rate] = 0.0
         return found
 
     def pressures(self, setup: Setup) -> list[tuple[int, list[int]]]:
@@ -314,10 +396,14 @@ def _named(drives: list[Drive]) -> Iterator[Command]:
     for drive in drives:
         entries = {each.entry for each in drives if each.base == drive.base}
         base = drive.base if len(entries) == 1 else drive.entry
-        alone = sum(each.entry == drive.entry for each in drives) == 1
+        own = [each for each in drives if each.entry == drive.entry and not each.rate_of]
+        alone = len(own) == 1 and not drive.rate_of
         name = base if alone else f"{base}.{drive.quantity}"
         place = f"{drive.entry}.{drive.quantity}"
         aliases = [place, f"{base}.{drive.quantity}"]
         if alone:
             aliases += [drive.entry]
-        yield Command(name=name, place=place, _aliases=tuple(aliases), **drive.rest)
+        moves = ""
+        if drive.rate_of:
+            moves = base if len(own) == 1 else f"{base}.{drive.rate_of}"
+        yield Command(name=name, place=place, moves=moves, _aliases=tuple(aliases), **drive.rest)

@@ -55,12 +55,16 @@ class Drive:
         Place of the thing in the design: ``"tendons[0]"``.
     rest
         All else that a command has, by the names of its attributes.
+    rate_of
+        Quantity of the thing whose rate it is; empty if it is none. The other one alone keeps the
+        name of the thing.
     """
 
     base: str
     quantity: str
     entry: str
     rest: Mapping[str, Any]
+    rate_of: str = ""
 
 
 def drives_of(setup: Setup, one: Setup) -> Iterator[Drive]:
@@ -178,7 +182,8 @@ def _load_drives(setup: Setup, one: Setup) -> Iterator[Drive]:
             {
                 "kind": reading.quantity,
                 "shape": (3,) if count > 1 else (),
-                "low": -_INFINITE,
+                # Fluids around the body: below zero drag would drive it.
+                "low": 0.0 if reading.quantity == "density" else -_INFINITE,
                 "high": _INFINITE,
                 "first": first if history is None else history[1][0],
                 "design": _times(reading.final_factor, load.value),
@@ -211,7 +216,8 @@ def _supply_drives(setup: Setup) -> Iterator[Drive]:
     for index, supply in enumerate(setup.design.supplies):
         quantities = _supply_quantities(setup, index, supply)
         for quantity, rest in quantities.items():
-            yield Drive(fluids.names[index], quantity, f"supplies[{index}]", rest)
+            rate_of = "volume" if "volume" in quantities and quantity == "flow" else ""
+            yield Drive(fluids.names[index], quantity, f"supplies[{index}]", rest, rate_of)
     for index, connection in enumerate(setup.design.connections):
         if connection.valve is None:
             continue
@@ -316,6 +322,17 @@ def _supply_quantities(setup: Setup, index: int, supply: AnySupply) -> dict[str,
                 evenly=True,
                 to_core=to_outside,
             )
+            found["flow"] = {
+                "kind": "volume flow",
+                "shape": (),
+                "low": -_INFINITE,
+                "high": _INFINITE,
+                "first": 0.0,
+                "design": 0.0,
+                "evenly": False,
+                "_inputs": lambda value, _: [],
+                "_put": lambda design, _: design,
+            }
         case MassSupply():
             first, last = chamber["mass"]
             found["mass"] = quantity(

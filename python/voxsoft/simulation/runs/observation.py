@@ -109,7 +109,7 @@ class Driven:
     late
         Seconds by which the core's clock is late: nothing is computed at rest.
     work
-        Energy given to the body since the reset by tendons, chambers and pressures, J.
+        Energy given to the body since the reset by each drive, J.
     power
         Mean power of the last step, W.
     sensors
@@ -394,7 +394,9 @@ class Observation:
 
         Tendons, by name, have the work of the motor; supplies, by name, the energy of the fluid
         that they gave, see :class:`~voxsoft.simulation.setup.fluids.ChamberState`; pressures, by
-        the name of their command, the work on the walls.
+        the name of their command, the work on the walls; other loads, fields and dielectrics
+        likewise that of their forces; clamps and objects that are moved, by name, that of the
+        support. Weight and drag, the liquid around, and parts that grow are not counted.
         """
         return self._driven.work
 

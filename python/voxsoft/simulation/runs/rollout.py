@@ -286,6 +286,9 @@ def _courses(
     read = commands.read({name: values[0] for name, values in firsts.items()})
     for name, index in zip(firsts, read, strict=True):
         command, values = commands.all[index], firsts[name]
+        if command.moves:
+            what = f"is the rate of {command.moves!r}, by which no derivative is known"
+            raise DesignError(f"knots[{name!r}]", what, f"give knots of {command.moves!r}")
         for value in values:
             command.read(value, f"knots[{name!r}]")
         count = len(values)

@@ -15,6 +15,7 @@ from voxsoft.design.refinement import TIMES_AS_SMALL
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.checks.falling import falls, flies
 from voxsoft.simulation.compatibility import refuse
+from voxsoft.simulation.loads import undefined_in_words
 from voxsoft.simulation.results.contact_field import ContactField
 from voxsoft.simulation.results.result import Recording, Result, Status
 from voxsoft.simulation.runs.nested import nested
@@ -296,6 +297,10 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
                 "is held well enough to find a rest"
             )
         case _:
+            if answer.undefined is not None:
+                numbered = enumerate(setup.loads)
+                owners = [index for index, load in numbered for _ in load.actions]
+                return f"{undefined_in_words(answer.undefined, owners)}; kept is the last state"
             assert answer.breakdown is not None  # the core gives it where a body diverged
             _, place, when = answer.breakdown
             if setup.touching is not None:

@@ -16,6 +16,7 @@ from voxsoft.design import Design, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.records import Record
 from voxsoft.simulation.compatibility import refuse
+from voxsoft.simulation.loads import undefined_in_words
 from voxsoft.simulation.runs.commands import Command, CommandName, Commands, Course
 from voxsoft.simulation.runs.critical_damping import critical_damping
 from voxsoft.simulation.runs.drives import Value
@@ -28,6 +29,7 @@ from voxsoft.simulation.runs.observation import (
 )
 from voxsoft.simulation.runs.sensors import Sensor, Sensors, SensorState
 from voxsoft.simulation.runs.stored_observation import observation_from
+from voxsoft.simulation.runs.work import work_after
 from voxsoft.simulation.setup.large_voxels import evenly_small
 from voxsoft.simulation.setup.setup import Setup
 from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
@@ -246,10 +248,11 @@ class Simulator:
         ----------
         commands
             New values by name, see :attr:`commands`: numbers in SI units, texts with units, or pint
-            quantities; three components for a vector. Forces, pressures, fields, temperatures and
-            valves have them from the beginning of this step on; lengths, angles, volumes and masses
-            go to them evenly over the step. All others keep their last values, or follow their
-            histories until they are commanded. Default: no new value.
+            quantities; three components for a vector. Forces, pressures, fields, temperatures,
+            flows and valves have them from the beginning of this step on; lengths, angles, volumes
+            and masses go to them evenly over the step. All others keep their last values, follow
+            their histories until they are commanded, or go on as their flow says. Default: no new
+            value.
 
         Returns
         -------
@@ -267,11 +270,12 @@ class Simulator:
         if self._seen.status == "diverged":
             raise SimulationError(
                 "simulator",
-                f"has diverged at {self._seen.time:g} s and cannot go on",
+                f"cannot go on from {self._seen.time:g} s: {self._seen.message}",
                 "call reset(), then command less or more slowly, or use smaller voxels",
             )
-        new = self._subject.commands.read({} if commands is None else commands)
         seen, driven = self._seen, self._seen._driven
+        given = self._subject.commands.read({} if commands is None else commands)
+        new = self._subject.commands.moved(given, driven.values, self.time_step)
         start = seen._moment.time
         end = (self._steps + 1) * self.time_step - driven.late
         courses, driven = self._changed(driven, new, (start, end))
@@ -436,26 +440,8 @@ class Simulator:
 
     def _counted(self, seen: Observation, before: Observation) -> Observation:
         """Add the energy that the drives gave in the last step."""
-        subject, given = self._subject, dict[str, float]()
-        fluids = subject.setup.fluids
-        if fluids is not None:
-            for supplied in fluids.states(seen._drives[0]):
-                given[supplied.name] = supplied.energy
-        work = before._driven.work
-        for tendon in subject.setup.tendons:
-            now, then = seen.tendons[tendon.name], before.tendons[tendon.name]
-            drawn = (now.shortening - now.slack) - (then.shortening - then.slack)
-            pull = 0.5 * (now.tension + then.tension)
-            given[tendon.name] = work.get(tendon.name, 0.0) + pull * drawn
-        for index, cavities in subject.pressed:
-            name = subject.commands.names[index]
-            ends = (before._driven.values[index], seen._driven.values[index])
-            pressure = 0.5 * sum(each for each in ends if isinstance(each, float))
-            volumes = [
-                seen.chambers[each].volume - before.chambers[each].volume for each in cavities
-            ]
-            given[name] = work.get(name, 0.0) + pressure * sum(volumes)
-        power = (sum(given.values()) - sum(work.values())) / self.time_step
+        given = work_after(before, seen)
+        power = (sum(given.values()) - sum(before._driven.work.values())) / self.time_step
         driven = replace(seen._driven, work=MappingProxyType(given), power=power)
         return seen.driven_by(driven)
 
@@ -471,6 +457,9 @@ class Simulator:
     ) -> tuple[MotionStatus, str]:
         """Decide the status and its message: sound bodies move or rest, others are reported."""
         if report.status == _core.LiveStatus.DIVERGED and report.breakdown:
+            if report.undefined is not None:
+                owners = self._subject.commands.load_owners
+                return "diverged", undefined_in_words(report.undefined, owners)
             _, place, when = report.breakdown
             point = ", ".join(f"{value * 1e3:.1f}" for value in place)
             what = f"diverged at ({point}) mm, after {when:.6g} s: the loads are too much for it"

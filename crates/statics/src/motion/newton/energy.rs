@@ -106,7 +106,8 @@ impl Newton {
                 work += f64::max(mean * way[axis], last * way[axis]);
             }
             let brake = run.damping_rate * run.problem.body().masses()[vertex];
-            work -= brake * dot(next.velocities[vertex], way);
+            let velocities = add(next.velocities[vertex], from.velocities[vertex]);
+            work -= brake * dot(velocities, way) / 2.0;
         }
         // Branches of Maxwell elements return some of the energy that they take.
         for (vertex, (now, old)) in found.viscous.iter().zip(&then.viscous).enumerate() {
