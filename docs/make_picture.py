@@ -1,7 +1,7 @@
 """Draw the picture of the how-to on molds: ``python docs/make_picture.py``.
 
-The cylinder of the paper's study is made, and its sheet becomes docs/images/make_sheet.png. Chromium
-takes the picture, as the tests of the studio use it.
+The cylinder of the paper's study is made, and its sheet becomes docs/images/make_sheet.png.
+Chromium takes the picture.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from voxsoft.fabrication import make
 from voxsoft.files.fabrication import write_fabrication
 
 SLICER = shutil.which("prusa-slicer")
-#: Words of its messages about a mesh that it had to mend, or that cannot be printed.
+#: Words of its messages about a mesh that it had to repair, or that cannot be printed.
 FAULTS = re.compile(r"warning|error|repair|open edge|non-manifold|auto-repaired|outside", re.I)
 
 

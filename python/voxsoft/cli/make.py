@@ -49,9 +49,9 @@ def make(
 ) -> None:
     """Make molds, cores and plates for casting a robot, and prove them before they are written."""
     from voxsoft import files
+    from voxsoft.comparison.core_shift import core_shift
     from voxsoft.fabrication import WAYS, Printer
     from voxsoft.fabrication import make as make_molds
-    from voxsoft.fabrication.core_shift import core_shift
     from voxsoft.files.fabrication import fabrication_summary, write_fabrication
 
     if way is not None and way not in WAYS:

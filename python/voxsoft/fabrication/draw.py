@@ -107,7 +107,7 @@ def draw_along(values: Floats, grid: Grid, top: float, bottom: float) -> Draw:
     sides[holes] = WITHIN
     height, steps = _parting(inside, outer, grid, top, bottom)
     heights = grid.along(2)
-    # Where the plane says as much, it decides: it is exact, and samples are not.
+    # Sides that the plane gives too are left to it: it is exact, and samples are not.
     sides[(sides == ABOVE) & (heights > height)] = BESIDE
     sides[(sides == BELOW) & (heights < height)] = BESIDE
     recess = (sides == ABOVE) & (heights < height - grid.step)

@@ -9,8 +9,9 @@ from typing import Final, Literal, get_args
 import numpy as np
 
 from voxsoft import _core
+from voxsoft.design import Design
 from voxsoft.fabrication.body import Body, Component, Filled, Inlet, holds, inlets_of
-from voxsoft.fabrication.cutting import Cut, best_cut
+from voxsoft.fabrication.cutting import Cut, best_cut, least_caught
 from voxsoft.fabrication.draw import WITHIN, Draw, draw_along
 from voxsoft.fabrication.fields import (
     Common,
@@ -144,6 +145,28 @@ def plan(
     )
     place = None if caught.draw.place is None else caught.frame.world(caught.draw.place)
     return Plan(component, "printed", why, (), None, caught.draw.undercut, place), inlets
+
+
+def undercut_of(design: Design) -> float:
+    """Return the volume [m³] that keeps a design from being cast, in one mold or in two halves.
+
+    Zero says that printed molds of two parts release all of its components; of the chambers of
+    any other, cores must be lost. Samples are a third of a voxel apart.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> undercut_of(families.cylinder()), undercut_of(families.finger()) > 0.0
+    (0.0, True)
+    """
+    body = Body.of(design, design.voxel_size / 3.0)
+    total = 0.0
+    for component in body.components:
+        if not component.rigid:
+            values, grid = component.values, body.grid
+            whole = [_direction(values, grid, axis, 1).draw.undercut for axis in range(3)]
+            total += min(*whole, least_caught(values, grid))
+    return total
 
 
 def _direction(values: Floats, grid: Grid, axis: int, sign: int) -> _Direction:

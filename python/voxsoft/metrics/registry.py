@@ -27,6 +27,7 @@ from voxsoft.metrics.supplies import (
 )
 from voxsoft.metrics.tangent import COMPLIANCE, NATURAL_FREQUENCY, STIFFNESS
 from voxsoft.metrics.tendon import TENDON_LENGTH, TENDON_TENSION
+from voxsoft.metrics.undercut import UNDERCUT
 from voxsoft.metrics.whole_body import ELASTIC_ENERGY, MASS, VOLUME
 from voxsoft.records import closest
 
@@ -66,6 +67,7 @@ _ALL: Final[dict[str, Metric]] = {
         SUPPLY_EFFICIENCY,
         TENDON_TENSION,
         TENDON_LENGTH,
+        UNDERCUT,
     )
 }
 

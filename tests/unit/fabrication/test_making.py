@@ -146,7 +146,7 @@ def test_a_turned_body_has_molds_of_equal_volume(turn, made):
 
 
 def test_several_bodies_and_binary_cores_are_refused():
-    from voxsoft.fabrication.core_shift import core_shift
+    from voxsoft.comparison.core_shift import core_shift
 
     with pytest.raises(DesignError, match="binary"):
         core_shift(families.paper_cylinder())
@@ -156,7 +156,7 @@ def test_several_bodies_and_binary_cores_are_refused():
 
 @pytest.mark.long
 def test_a_core_aside_bends_a_cylinder_toward_its_thicker_wall():
-    from voxsoft.fabrication.core_shift import core_shift
+    from voxsoft.comparison.core_shift import core_shift
 
     design = chambered(loads=[vs.Pressure(value=2000.0)])
     (top,) = core_shift(design, 0.3 * mm)
@@ -166,3 +166,19 @@ def test_a_core_aside_bends_a_cylinder_toward_its_thicker_wall():
     assert along_y[1] == pytest.approx(along_x[0], rel=0.02)
     # Voxels of 2 mm cut a sampled wall of 3 mm differently on both sides, by a few percent.
     assert abs(along_z[0]) < 0.2 * abs(along_x[0])
+
+
+def test_a_study_can_ask_for_designs_that_molds_release():
+    waist = vs.Cylinder(radius=8 * mm, height=4 * mm) | vs.Cylinder(radius=4 * mm, height=12 * mm)
+    spool = waist | vs.Cylinder(radius=8 * mm, height=4 * mm, base=(0, 0, 8 * mm))
+    block = vs.Box(size=(16 * mm, 16 * mm, 12 * mm))
+    sponge = block & vs.Gyroid(period=12 * mm, thickness=3 * mm)
+    found = {}
+    for name, shape in {"spool": spool, "sponge": sponge}.items():
+        part = vs.Part(shape=shape, material="ecoflex-00-30", name=name)
+        release = vs.Constraint(metric="undercut", max=0.0)
+        found[name] = vs.simulate(chambered(parts=[part], constraints={"release": release}))
+    # Two halves along the axis release a spool.
+    assert found["spool"].metrics["release"] == 0.0
+    assert found["sponge"].metrics["release"] > 0.0
+    assert "undercut" not in found["spool"].metrics
