@@ -426,12 +426,14 @@ class TestCalibrate:
 
 
 class TestExport:
-    @pytest.mark.parametrize("format", ["toml", "inp"])
-    def test_a_file_is_written_and_fetched(self, design, format):
+    @pytest.mark.parametrize(
+        ("format", "ending"), [("toml", ".toml"), ("inp", ".inp"), ("molds", "-molds.zip")]
+    )
+    def test_a_file_is_written_and_fetched(self, design, format, ending):
         design.find("export").click()
         with design.page.expect_download() as waiting:
             design.find(f"export-{format}").get_by_role("button").click()
-        assert waiting.value.suggested_filename.endswith(f".{format}")
+        assert waiting.value.suggested_filename.endswith(ending)
         assert waiting.value.path().stat().st_size > 100
 
     def test_a_surface_asks_for_its_unit_first(self, design):

@@ -55,6 +55,16 @@ def test_a_mesh_is_read_back(at_rest, tmp_path, format):
         assert moved[:, 2].max() == pytest.approx(0.013, abs=1e-3)
 
 
+@pytest.mark.long
+def test_molds_come_as_an_archive_with_their_sheet(at_rest, tmp_path):
+    held = zipfile.ZipFile(io.BytesIO(export(at_rest, "molds").content))
+    names = {name.rpartition("/")[2] for name in held.namelist()} - {""}
+    parts = {"body-high-lower.3mf", "body-low-lower.3mf", "body-low-upper.3mf", "plate-1.3mf"}
+    assert names == parts | {"design.toml", "make.json", "sheet.html"}
+    sheet = next(name for name in held.namelist() if name.endswith("sheet.html"))
+    assert b"Ecoflex 00-30" in held.read(sheet)
+
+
 def test_a_scene_opens_in_mujoco_and_its_losses_are_in_the_log(studio, tmp_path):
     async def scenario():
         async with studio.page() as page:

@@ -32,7 +32,7 @@ from voxsoft.studio.protocol import events
 from voxsoft.studio.protocol.events import GrabState
 
 #: Formats in which the shown body can be written.
-FORMATS: Final = (*(suffix[1:] for suffix in WRITTEN), "run", "png", "html")
+FORMATS: Final = (*(suffix[1:] for suffix in WRITTEN), "molds", "run", "png", "html")
 #: Dots per inch of a picture of normal size.
 _DPI: Final = 200
 
@@ -145,6 +145,8 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
     ------
     FileError
         An unknown format, or one that needs a result where there is none.
+    DesignError
+        Molds are asked for that cannot be used.
     """
     target = folder / f"{shown.name}.{format}"
     lost: tuple[ErrorDetail, ...] = ()
@@ -158,6 +160,8 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
     elif format == "run":
         target = target.with_suffix(".zip")
         _write_run(shown, target)
+    elif format == "molds":
+        target = _write_molds(shown.design, folder / f"{shown.name}-molds")
     elif format == "png":
         _draw(shown, target, options.get("scale", 1))
     elif format == "html":
@@ -186,6 +190,9 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
     target = folder / f"{source.name}.{format}"
     if format == "run":
         return Written(_archive(source, target.with_suffix(".zip")))
+    if format == "molds":
+        design = files.load(source / "design.toml")
+        return Written(_write_molds(design, folder / f"{source.name}-molds"))
     if format == "html":
         export_page(source, target)
         return Written(target)
@@ -228,6 +235,21 @@ def _write_run(shown: Shown, target: Path) -> None:
     folder = target.with_suffix("")
     files.write_run(shown.measured(), folder)
     _archive(folder, target)
+
+
+def _write_molds(design: Design, folder: Path) -> Path:
+    """Write parts to print and the sheet of steps as an archive.
+
+    Raises
+    ------
+    DesignError
+        A proof of a mold fails, or the body cannot be sampled.
+    """
+    from voxsoft.fabrication import make
+    from voxsoft.files.fabrication import write_fabrication
+
+    write_fabrication(make(design), folder)
+    return _archive(folder, folder.with_suffix(".zip"))
 
 
 def _archive(folder: Path, target: Path) -> Path:

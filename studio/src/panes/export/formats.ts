@@ -24,6 +24,12 @@ export const FORMATS: readonly Format[] = [
     ...format,
   })),
   {
+    id: "molds",
+    title: "Molds",
+    ending: ".zip",
+    purpose: "To cast the robot: parts to print, and a sheet that says how to mix, pour and bond.",
+  },
+  {
     id: "run",
     title: "Run folder",
     ending: ".zip",
