@@ -26,6 +26,9 @@ def make(
             help="cast, core, halves, lost-core or printed; default: the first that is possible.",
         ),
     ] = None,
+    body: Annotated[
+        str | None, typer.Option("--body", help="The body to make, of a design with several.")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder; default: runs/NAME-make.")
     ] = None,
@@ -49,6 +52,7 @@ def make(
 ) -> None:
     """Make molds, cores and plates for casting a robot, and prove them before they are written."""
     from voxsoft import files
+    from voxsoft.cli.progress import ProgressBar
     from voxsoft.comparison.core_shift import core_shift
     from voxsoft.fabrication import WAYS, Printer
     from voxsoft.fabrication import make as make_molds
@@ -60,8 +64,16 @@ def make(
     with errors_in_words(json=json):
         limits = dict(_limit(each) for each in printer or [])
         loaded = files.load(design, assignments=sets or [])
+        if body is not None:
+            loaded = loaded.alone(body)
         wanted = next((each for each in WAYS if each == way), None)
-        made = make_molds(loaded, way=wanted, printer=Printer(**limits))
+        with ProgressBar("molds", 1) as bar:
+
+            def report(done: int, total: int) -> None:
+                bar.set_total(total)
+                bar.advance_to(done)
+
+            made = make_molds(loaded, way=wanted, printer=Printer(**limits), progress=report)
         summary = fabrication_summary(made, ".stl" if stl else ".3mf")
         if shift and not made.problems:
             summary["core_shift"] = [_shift(each) for each in core_shift(loaded)]

@@ -161,7 +161,9 @@ class Body:
         if design.bodies:
             names = ", ".join(design.body_names)
             what = f"has several bodies: {names}"
-            raise DesignError("bodies", what, "make each of them: design.alone(name)")
+            raise DesignError(
+                "bodies", what, "make one of them: --body NAME, or design.alone(name)"
+            )
         if design.mesh is not None:
             what = "is a mesh of tetrahedra, from which no mold is made"
             raise DesignError("mesh", what, "describe the body by shapes, or read its surface")

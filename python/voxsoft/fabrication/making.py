@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -155,7 +156,13 @@ class Fabrication:
         return found
 
 
-def make(design: Design, *, way: Way | None = None, printer: Printer | None = None) -> Fabrication:
+def make(
+    design: Design,
+    *,
+    way: Way | None = None,
+    printer: Printer | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Fabrication:
     """Make the molds of a soft robot, and prove that they can be used.
 
     Parameters
@@ -168,6 +175,8 @@ def make(design: Design, *, way: Way | None = None, printer: Printer | None = No
         default: the first of these that the shape allows.
     printer
         The printer; default: a nozzle of 0.4 mm and 220 mm of room.
+    progress
+        Called with the number of finished molds and that of all.
 
     Raises
     ------
@@ -213,6 +222,8 @@ def make(design: Design, *, way: Way | None = None, printer: Printer | None = No
             mold = mold_of(casting.solid, casting.low, casting.high, casting.frame, printer, name)
             cast = _cast(casting, mold)
             casts.append(cast)
+            if progress is not None:
+                progress(len(casts), sum(len(other.castings) for other in plans))
             problems += _proved(cast, printer)
     holes = list(inlets.values())
     printed += [
@@ -291,6 +302,12 @@ def _proved(cast: Cast, printer: Printer) -> list[ErrorDetail]:
         wall = format_quantity(printer.wall, "length")
         what = f"is thinner than a wall of {wall} at {_place(thin[1])}"
         found.append(ErrorDetail(thin[0], what, "a wider gap of the design, or a finer nozzle"))
+    place = proof.too_fine(mold)
+    if place is not None:
+        shown = format_quantity(printer.resolution, "length")
+        what = f"is less than two samples of {shown} thick at {_place(place)}"
+        hint = "a finer resolution of the printer"
+        return [ErrorDetail(cast.casting.name, what, hint)]
     if mold.trapped > 0.0:
         what = f"{mold.trapped * 1e9:.3g} mm³ of air stay in it"
         found.append(ErrorDetail(cast.casting.name, what, "another way, or a cut elsewhere"))

@@ -8,7 +8,17 @@ import numpy as np
 
 from voxsoft.design.discretization.cut_cells import built_parts
 from voxsoft.fabrication.body import Body, Filled, Inlet
-from voxsoft.fabrication.fields import Common, Field, Floats, Frame, Frustum, Outside, Parts, Turned
+from voxsoft.fabrication.fields import (
+    Box,
+    Common,
+    Field,
+    Floats,
+    Frame,
+    Frustum,
+    Outside,
+    Parts,
+    Turned,
+)
 from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid, Surface, surface_of
 
@@ -88,7 +98,10 @@ def plates_of(body: Body, inlets: list[Inlet], printer: Printer) -> list[Plate]:
         level = sign * at
         local = Turned(solid, frame)
         outline = _Outline(local, level - 1.5 * body.grid.step, 0.5 * printer.flange)
-        plate: Field = Common([_Slab(level, level + printer.floor), outline])
+        corners = frame.local(np.stack([body.low, body.high]))
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        low[2], high[2] = level, level + printer.floor
+        grid = Grid.around(low, high, printer.resolution, printer.flange)
         bores = [
             Frustum(
                 (float(center[0]), float(center[1])),
@@ -101,11 +114,13 @@ def plates_of(body: Body, inlets: list[Inlet], printer: Printer) -> list[Plate]:
             if (each.axis, each.sign) == (axis, sign) and abs(each.at[axis] - at) < body.grid.step
             for center in frame.local(np.array([each.at]))
         ]
-        if bores:
-            plate = Common([plate, *(Outside(bore) for bore in bores)])
-        corners = frame.local(np.stack([body.low, body.high]))
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        low[2], high[2] = level, level + printer.floor
-        grid = Grid.around(low, high, printer.resolution, printer.flange)
-        found.append(Plate(f"plate-{number}", surface_of(plate, grid), (axis, sign, at)))
+        rim = 0.5 * printer.flange
+        block = Box((low[0] - rim, low[1] - rim, low[2]), (high[0] + rim, high[1] + rim, high[2]))
+        # One plate for all that stands on the face: round it, or else a block below all of it.
+        for shape in (Common([_Slab(level, level + printer.floor), outline]), block):
+            pierced = Common([shape, *(Outside(bore) for bore in bores)])
+            surface = surface_of(pierced, grid)
+            if surface.components == 1:
+                break
+        found.append(Plate(f"plate-{number}", surface, (axis, sign, at)))
     return found

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from voxsoft.fabrication.draw import SHALLOW
 from voxsoft.fabrication.fields import Floats
 from voxsoft.fabrication.mold import Mold
-from voxsoft.fabrication.sampled import Surface
+from voxsoft.fabrication.sampled import Grid, Surface
 
 Bools = NDArray[np.bool_]
 
@@ -80,14 +80,29 @@ def thin_wall(mold: Mold, wall: float) -> tuple[str, Floats] | None:
     grid = mold.casting.grid
     count = int(np.ceil(wall / grid.step))
     for part in mold.parts:
-        solid = part.values < 0.0
-        reached = _slid(_slid(solid, count, np.minimum), -count, np.maximum)
-        # Edges and corners lie within a wall of these places.
-        near = _slid(_slid(reached, count + 1, np.maximum), -count - 1, np.maximum)
-        thin = solid & ~near
-        if thin.any():
-            return part.name, grid.points(np.argwhere(thin))[0]
+        place = _thin(part.values < 0.0, count, grid)
+        if place is not None:
+            return part.name, place
     return None
+
+
+def too_fine(mold: Mold) -> Floats | None:
+    """Return a place [m] where the casting is less than two samples thick, or None.
+
+    Its mold does not hold it there.
+    """
+    return _thin(mold.casting.values < 0.0, 2, mold.casting.grid)
+
+
+def _thin(solid: Bools, count: int, grid: Grid) -> Floats | None:
+    reached = _slid(_slid(solid, count, np.minimum), -count, np.maximum)
+    # Edges and corners lie within a wall of these places.
+    near = _slid(_slid(reached, count + 1, np.maximum), -count - 1, np.maximum)
+    thin = solid & ~near
+    if not thin.any():
+        return None
+    place: Floats = grid.points(np.argwhere(thin))[0]
+    return place
 
 
 def _slid(cells: Bools, count: int, of: np.ufunc) -> Bools:

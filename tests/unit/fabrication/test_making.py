@@ -168,6 +168,7 @@ def test_a_core_aside_bends_a_cylinder_toward_its_thicker_wall():
     assert abs(along_z[0]) < 0.2 * abs(along_x[0])
 
 
+@pytest.mark.long
 def test_a_study_can_ask_for_designs_that_molds_release():
     waist = vs.Cylinder(radius=8 * mm, height=4 * mm) | vs.Cylinder(radius=4 * mm, height=12 * mm)
     spool = waist | vs.Cylinder(radius=8 * mm, height=4 * mm, base=(0, 0, 8 * mm))
@@ -182,3 +183,40 @@ def test_a_study_can_ask_for_designs_that_molds_release():
     assert found["spool"].metrics["release"] == 0.0
     assert found["sponge"].metrics["release"] > 0.0
     assert "undercut" not in found["spool"].metrics
+
+
+def test_a_film_below_two_samples_is_refused():
+    film = vs.Box(size=(12 * mm, 12 * mm, 0.4 * mm))
+    part = vs.Part(shape=film, material="ecoflex-00-30", name="film")
+    (problem, *_) = make(chambered(parts=[part], clamps=[], probes={})).problems
+    assert problem.where == "film"
+    assert "less than two samples of 0.5 mm" in problem.what
+
+
+def test_two_feet_on_one_face_stand_on_one_plate():
+    foot = vs.Box(size=(5 * mm, 5 * mm, 6 * mm))
+    feet = [
+        vs.Part(shape=foot, material="ecoflex-00-30", name="left"),
+        vs.Part(shape=foot.translate((25 * mm, 0, 0)), material="ecoflex-00-30", name="right"),
+    ]
+    made = make(chambered(parts=feet, probes={}))
+    assert [cast.casting.name for cast in made.casts] == ["left and right 1", "left and right 2"]
+    (plate,) = made.printed
+    assert plate.surface.components == 1
+    low, high = plate.surface.bounds
+    rim = made.printer.flange / 2
+    assert sorted(high - low)[-1] == pytest.approx(30 * mm + 2 * rim, abs=1e-6)
+
+
+def test_one_of_several_bodies_is_made():
+    bar = chambered(
+        parts=[vs.Part(shape=vs.Box(size=(9 * mm, 6 * mm, 5 * mm)), material="ecoflex-00-30")]
+    )
+    pair = vs.Design(
+        name="pair",
+        voxel_size=2 * mm,
+        bodies=[vs.design.Body(name="left", design=bar, position=(0, 0, 20 * mm))],
+    )
+    with pytest.raises(DesignError, match="--body NAME"):
+        make(pair)
+    assert make(pair.alone("left")).way == "cast"
