@@ -116,7 +116,7 @@ def _show(made: Fabrication, summary: dict[str, Any]) -> None:
             each["name"],
             quantity(each["volume"], "volume"),
             quantity(each["poured"], "volume"),
-            quantity(each["deviation"], "length"),
+            f"{1e3 * each['deviation']:.3f} mm",
             quantity(each["trapped_air"], "volume"),
             f"{1e3 * each['mass']:.1f} g",
         ]
