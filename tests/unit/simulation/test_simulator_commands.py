@@ -360,6 +360,21 @@ def test_a_field_without_a_value_is_named_with_its_place_and_time(acceleration, 
     assert re.match(words, moved.message)
 
 
+def test_a_field_without_a_value_ends_a_load_path_with_its_place():
+    """A beam that is pulled until its end is 0.5 mm farther."""
+    design = BEAM.replace(loads=[ForceField(acceleration=("60 + 0*sqrt(0.0405 - x)", "0", "0"))])
+    found = vs.simulate(design, method="statics")
+    assert found.status == "not-at-rest"
+    words = r"loads\[0\].acceleration\[0\] has no finite value at \((.*), .*, .*\) .* past (.*) %"
+    match = re.match(words, found.message)
+    assert match
+    # Load steps are a thousandth at least, and so is the search past the last one.
+    assert float(match[1]) == pytest.approx(40.5, abs=4e-3 * 0.5 / 0.6)
+    assert float(match[2]) == pytest.approx(100.0 * found.load_factor, rel=1e-3)
+    more = vs.simulate(design.replace(loads=[ForceField(acceleration=("60", "0", "0"))]))
+    assert more.status == "ok"
+
+
 SCRIPT = """
 import sys
 sys.path.insert(0, {folder!r})

@@ -4,7 +4,7 @@ from voxsoft.simulation.loads.actions import Action, LoadReceiver
 from voxsoft.simulation.loads.kind import LoadedBody, LoadKind, LoadReading
 from voxsoft.simulation.loads.kinds import KINDS
 from voxsoft.simulation.loads.resolve import ResolvedLoad, read, readings, resolve
-from voxsoft.simulation.loads.undefined import undefined_in_words
+from voxsoft.simulation.loads.undefined import undefined_in_words, undefined_past
 
 __all__ = [
     "KINDS",
@@ -18,4 +18,5 @@ __all__ = [
     "readings",
     "resolve",
     "undefined_in_words",
+    "undefined_past",
 ]

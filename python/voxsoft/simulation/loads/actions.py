@@ -80,6 +80,16 @@ class Action(ABC):
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
         """Return its arrow on vertices (n, 3), m: position and direction, zero for none."""
 
+    def undefined(self, points: Floats) -> tuple[int, int] | None:
+        """Find a component without a finite value on points at rest, (n, 3), m.
+
+        Returns
+        -------
+        tuple or None
+            The component, 0 to 2, and the index of the point.
+        """
+        return None
+
 
 @dataclass(frozen=True, eq=False)
 class Acceleration(Action):
@@ -286,6 +296,14 @@ class FieldAcceleration(Action):
     def give_to(self, receiver: LoadReceiver) -> None:
         """Hand this to its receiver."""
         receiver.field(self)
+
+    def undefined(self, points: Floats) -> tuple[int, int] | None:
+        """Find a component without a finite value."""
+        still = np.zeros_like(points)
+        for axis, formula in enumerate(self.formulas):
+            if len(wrong := np.flatnonzero(~np.isfinite(formula.at(points, still, 0.0)))):
+                return axis, int(wrong[0])
+        return None
 
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
         """Return the point where a line along it in the middle enters the bounds, as an arrow."""

@@ -205,15 +205,14 @@ class ForceFieldKind(LoadKind[ForceField]):
     def actions(self, load: ForceField, body: LoadedBody, where: str) -> list[FieldAcceleration]:
         """Return the actions of the load."""
         x, y, z = (_core.Formula(text) for text in load.acceleration)
-        points = body.mesh.vertices
-        for axis, formula in enumerate((x, y, z)):
-            values = formula.at(points, np.zeros_like(points), 0.0)
-            if not np.isfinite(values).all():
-                first = ", ".join(f"{1e3 * c:.4g}" for c in points[~np.isfinite(values)][0])
-                what = f"has no finite value at ({first}) mm, for the body at rest and t = 0"
-                hint = "add a small number to what it divides by, or keep it where it has a value"
-                raise DesignError(f"{where}.acceleration[{axis}]", what, hint)
-        return [FieldAcceleration(load.value, (x, y, z))]
+        field, points = FieldAcceleration(load.value, (x, y, z)), body.mesh.vertices
+        if found := field.undefined(points):
+            axis, vertex = found
+            first = ", ".join(f"{1e3 * c:.4g}" for c in points[vertex])
+            what = f"has no finite value at ({first}) mm, for the body at rest and t = 0"
+            hint = "add a small number to what it divides by, or keep it where it has a value"
+            raise DesignError(f"{where}.acceleration[{axis}]", what, hint)
+        return [field]
 
 
 #: Kind of load of each model.

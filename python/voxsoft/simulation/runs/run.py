@@ -15,7 +15,7 @@ from voxsoft.design.refinement import TIMES_AS_SMALL
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.checks.falling import falls, flies
 from voxsoft.simulation.compatibility import refuse
-from voxsoft.simulation.loads import undefined_in_words
+from voxsoft.simulation.loads import undefined_in_words, undefined_past
 from voxsoft.simulation.results.contact_field import ContactField
 from voxsoft.simulation.results.result import Recording, Result, Status
 from voxsoft.simulation.runs.nested import nested
@@ -280,6 +280,8 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
                 f"nothing holds the body: it is free to {free}, so that its place under the loads "
                 "is not known; clamp it along these axes, or give the design an end_time"
             )
+        if report.status == Ended.NOT_CONVERGED and (nowhere := _undefined(setup, answer)):
+            return f"{nowhere}; kept is the last equilibrium"
         touches = setup.touching is not None
         ended = (report.status, report.steps, answer.residual, answer.path)
         is_cut = setup.mesh.fractions is not None
@@ -311,6 +313,13 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
                 f"{'s' if answer.substep else 'steps'} and {answer.back_offs} halvings of "
                 "the step: the material cannot carry the load, or it is a mechanism"
             )
+
+
+def _undefined(setup: Setup, answer: _core.Answer) -> str | None:
+    """Tell which load has no value past the end of a load path."""
+    assert answer.path is not None
+    rest, factor = setup.mesh.vertices, answer.path.factor
+    return undefined_past(setup.loads, rest, answer.positions, factor)
 
 
 def _lost_contact(setup: Setup, answer: _core.Answer) -> str:
