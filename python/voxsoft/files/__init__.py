@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from voxsoft.files.path_table import write_path
     from voxsoft.files.run_folder import write_run
     from voxsoft.files.study_folder import write_confirmation, write_study
-    from voxsoft.files.surfaces import write_surfaces
+    from voxsoft.files.surfaces import write_shape, write_surfaces
     from voxsoft.files.workspace_folder import write_workspace
 
 __all__ = [
@@ -36,6 +36,7 @@ __all__ = [
     "write_path",
     "write_run",
     "write_scene",
+    "write_shape",
     "write_study",
     "write_surfaces",
     "write_workspace",
@@ -58,6 +59,7 @@ _HOMES = {
     "write_path": "voxsoft.files.path_table",
     "write_run": "voxsoft.files.run_folder",
     "write_scene": "voxsoft.files.exports",
+    "write_shape": "voxsoft.files.surfaces",
     "write_study": "voxsoft.files.study_folder",
     "write_surfaces": "voxsoft.files.surfaces",
     "write_workspace": "voxsoft.files.workspace_folder",
