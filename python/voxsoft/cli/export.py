@@ -52,7 +52,7 @@ def export(
             lost = files.export(
                 source, target, sets or [], deformed=deformed, unit=unit, voxels=voxels
             )
-            has_unit = WRITTEN[target.suffix.lower()].unit is None
+            has_unit = WRITTEN[target.suffix.lower()].kind == "surface"
             shown = f", in {plain(files.unit_of(target, unit))}" if has_unit else ""
             say(f"wrote {plain(str(target))}{shown}")
             for each in lost:

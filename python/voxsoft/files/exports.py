@@ -21,7 +21,8 @@ from voxsoft.files.mesh_file import MeshFile
 from voxsoft.files.meshes import read_mesh_file, write_mesh
 from voxsoft.files.run_folder import csv_text
 from voxsoft.files.scenes.scene import Scene
-from voxsoft.files.surfaces import Triangles, shape_of, write_surfaces
+from voxsoft.files.shapes import shape_of
+from voxsoft.files.surfaces import Triangles, write_surfaces
 from voxsoft.formats.registry import WRITTEN, function
 from voxsoft.simulation import Result, Setup, named_regions
 from voxsoft.units import parse
@@ -85,7 +86,7 @@ def export(
     target
         Path of the file, whose suffix chooses among :data:`voxsoft.formats.registry.WRITTEN`: a
         mesh ``.vtu`` ``.msh`` ``.inp``, the smooth surfaces of its parts ``.stl`` ``.obj``
-        ``.3mf`` ``.glb`` (:func:`voxsoft.files.surfaces.shape_of`), the voxels as a NumPy array
+        ``.3mf`` ``.glb`` (:func:`voxsoft.files.shapes.shape_of`), the voxels as a NumPy array
         of part numbers ``.npy``, the robot for MuJoCo ``.xml`` or as USD ``.usda`` ``.usdc``
         ``.usdz``, the resolved design ``.toml``, or the displacements of the probes ``.csv`` (of a
         run folder).

@@ -14,7 +14,7 @@ from voxsoft.formats.contents import Contents
 _LISTS: Final = (".vtm", ".vtmb", ".pvd", ".pvtu", ".pvtp", ".pvti", ".pvts", ".pvtr")
 #: Advice for formats that are not read: programs that convert them.
 _WAYS: Final = (
-    ((".3mf", ".amf"), "open it in a slicer such as PrusaSlicer and export it as STL"),
+    ((".amf",), "open it in a slicer such as PrusaSlicer and export it as 3MF or STL"),
     ((".unv",), "open it in Gmsh and save it as .msh"),
     (
         (".gltf", ".dae", ".fbx", ".x3d", ".blend", ".usd", ".usda", ".usdc", ".usdz"),

@@ -173,6 +173,10 @@ FORMATS: Final = (
         (".3mf",),
         "surface",
         "3MF, for slicers and printers of several materials",
+        reader="voxsoft.formats.threemf:read",
+        taken="the objects that the build places, with components and transforms, in their unit; "
+        "objects and materials by name. Supports and objects that nothing places are left out; "
+        "lattices of beams, slices and encryption are refused",
         writer="voxsoft.files.surface_formats.threemf:write",
         holds=frozenset({"parts"}),
         purpose="To print the parts in their materials: one object, its parts by name, in mm.",
@@ -198,7 +202,8 @@ FORMATS: Final = (
         "surface",
         "glTF binary",
         reader="voxsoft.formats.by_trimesh:read",
-        taken="triangles of all meshes, each at its place; in m by definition",
+        taken="triangles of all meshes, each at its place and by its name; in m by definition, and "
+        "turned from y up to z up",
         writer="voxsoft.files.surface_formats.glb:write",
         holds=frozenset({"parts"}),
         purpose="To show the body on web pages and in viewers, its parts by name.",

@@ -35,7 +35,7 @@ def test_samples_that_touch_at_an_edge_or_a_corner_are_joined(labels):
     assert trimesh.Trimesh(found.points, found.around(1), process=False).body_count == 1
 
 
-def test_what_touches_by_faces_is_unchanged():
+def test_labels_that_touch_by_faces_are_unchanged():
     labels = np.zeros((4, 4, 4), dtype=np.uint8)
     labels[1:3, 1:3, 1:3], labels[1:3, 1:3, 3] = 1, 2
     assert (closed(labels) == labels).all()

@@ -8,7 +8,7 @@ import trimesh
 
 from voxsoft import Design, Part, mesh_of
 from voxsoft.design.body import Body
-from voxsoft.shapes import Box, Sphere
+from voxsoft.shapes import Box, Sphere, voxelize
 from voxsoft.simulation.setup.smooth_surfaces import part_volumes, smooth_surfaces
 from voxsoft.simulation.setup.volumes import volumes_of
 
@@ -47,7 +47,7 @@ def assert_sound(body, volume):
 
 
 @pytest.mark.parametrize("fill", ["fraction", "binary"])
-def test_parts_have_the_simulated_volumes_and_share_what_is_between_them(fill):
+def test_parts_have_the_simulated_volumes_and_share_a_surface(fill):
     body = ball_with_core(fill=fill)
     mesh = mesh_of(body)
     simulated = volumes_of(body, mesh).parts
@@ -131,3 +131,9 @@ def test_bodies_are_at_their_places():
         assert np.ptp(part.vertices[:, 0]) == pytest.approx(
             (7 * np.cos(1) + 15 * np.sin(1)) * MM, abs=0.02 * 2 * MM
         )
+
+
+def test_voxels_of_other_shapes_have_no_smooth_surface():
+    body = design({"box": Box(size=(40 * MM, 40 * MM, 40 * MM), center=(0, 0, 0))}, 2 * MM)
+    ball = voxelize(Sphere(radius=10 * MM), 2 * MM).mesh()
+    assert smooth_surfaces(body, ball) is None

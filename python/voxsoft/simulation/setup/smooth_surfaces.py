@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
@@ -30,8 +31,8 @@ _GOOD, _POOR = 3e-3, 2e-2
 _CRUMB: Final = 0.02
 #: Times that the surface is traced at most.
 _MOVES: Final = 6
-#: Largest move at once, in voxels.
-_REACH: Final = 0.25
+#: Largest move at once and in all, in voxels: shapes that need more are not those of the voxels.
+_REACH, _FARTHEST = 0.25, 0.75
 #: Distance from a surface, in steps between samples, within which samples count as outside.
 _TIE: Final = 1e-5
 #: Distance of finite differences, in steps.
@@ -141,7 +142,8 @@ def smooth_surfaces(design: Design, mesh: Mesh) -> SmoothSurfaces | None:
     Returns
     -------
     SmoothSurfaces or None
-        None for a mesh of other elements than voxels: its faces are the surface.
+        None for a mesh of other elements than voxels, or of voxels that are not those of the
+        shapes: its faces are the surface.
 
     Raises
     ------
@@ -169,6 +171,8 @@ def smooth_surfaces(design: Design, mesh: Mesh) -> SmoothSurfaces | None:
             return None
         grid = _Grid(own, body.mesh)
         net = grid.best()
+        if net is None:
+            return None
         numbers = [i for i, part in enumerate(design.parts, 1) if (part.body or "") == body.name]
         carriers, shares = grid.carriers(net.points)
         sides = np.array([0, *numbers], dtype=np.uint8)[net.sides]
@@ -204,8 +208,11 @@ class _Grid:
         for _ in range(round(design.voxel_size / self.size) - 1):
             self.near = beside_others(self.near.astype(np.uint8)) | self.near
 
-    def best(self) -> Net:
-        """Return the net of the coarsest samples that keep the parts in one and their volumes."""
+    def best(self) -> Net | None:
+        """Return the net of the coarsest samples that keep the parts in one and their volumes.
+
+        None where the shapes do not have the volumes of the voxels.
+        """
         least: tuple[float, int, bool] | None = None
         for along in [n for n in SAMPLES if self._fits(n)] or [1]:
             samples = _Samples(self, along)
@@ -219,7 +226,8 @@ class _Grid:
                 if least is None or excess < least[0]:
                     least = (excess, along, keeps_shapes)
         assert least is not None
-        return _Samples(self, least[1], drops_crumbs=True).fitted(least[2])[1]
+        wrong, net = _Samples(self, least[1], drops_crumbs=True).fitted(least[2])
+        return net if math.isfinite(wrong) else None
 
     def _fits(self, along: int) -> bool:
         samples = int(self.near.sum()) * along**3 * len(self.shapes)
@@ -297,7 +305,9 @@ class _Samples:
         return float(found)
 
     def fitted(self, keeps_shapes: bool) -> tuple[float, Net]:
-        """Return the net with the volumes of the voxels, and its largest relative error.
+        """Return the largest relative error of a volume, and the net, moved to that of the voxels.
+
+        The error is infinite where the surface would have to be moved too far.
 
         Parameters
         ----------
@@ -314,10 +324,11 @@ class _Samples:
             if best is None or wrong < best[0]:
                 best = (wrong, net)
             if wrong < _GOOD:
-                break
+                return best
             self._move(levels, expected - volumes, areas)
         assert best is not None
-        return best
+        is_far = np.abs(levels.outer).max() > _FARTHEST * self.grid.size
+        return (math.inf, best[1]) if is_far else best
 
     def _move(self, levels: _Levels, missing: Floats, areas: Floats) -> None:
         """Move the surfaces by the missing volume of each part over the areas around it."""

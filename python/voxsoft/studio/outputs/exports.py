@@ -19,7 +19,7 @@ from voxsoft.errors import ErrorDetail, FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.exports import write_source
 from voxsoft.files.scenes.scene import Scene, SceneState
-from voxsoft.files.surfaces import shape_of
+from voxsoft.files.shapes import shape_of
 from voxsoft.formats.registry import WRITTEN, Format
 from voxsoft.simulation import Result, named_regions
 from voxsoft.simulation.results.result import Status
