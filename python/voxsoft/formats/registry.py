@@ -119,6 +119,29 @@ FORMATS: Final = (
         taken="data sets of all kinds, as in the files above",
     ),
     Format(
+        (".nrrd", ".nhdr"),
+        "cells",
+        "NRRD images; `pip install 'voxsoft[images]'`",
+        reader="voxsoft.formats.images:read_nrrd",
+        taken="a brick for each voxel whose label is not 0, as in images of VTK, at its place; "
+        "left and posterior coordinates change their sign",
+    ),
+    Format(
+        (".nii", ".nii.gz"),
+        "cells",
+        "NIfTI images; `pip install 'voxsoft[images]'`",
+        reader="voxsoft.formats.images:read_nifti",
+        taken="as of NRRD, in the unit of the file; labels as they are stored, not as they are "
+        "scaled",
+    ),
+    Format(
+        (".tif", ".tiff"),
+        "cells",
+        "Stacks of TIFF; `pip install 'voxsoft[images]'`",
+        reader="voxsoft.formats.images:read_tiff",
+        taken="as of NRRD, with the spacing and unit that ImageJ writes; colors are refused",
+    ),
+    Format(
         (".msh",),
         "cells",
         "Gmsh 2.2 and 4.1",

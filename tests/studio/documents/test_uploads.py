@@ -31,6 +31,7 @@ from voxsoft.studio.documents.uploads import (
         ("\u202egpj.obj", "gpj.obj"),
         ("a" * 300 + ".npy", "a" * 120 + ".npy"),
         ("con.csv", "_con.csv"),
+        ("my scan.NII.gz", "my-scan.nii.gz"),
     ],
 )
 def test_a_name_stays_in_its_folder(given, stored):

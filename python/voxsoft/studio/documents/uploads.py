@@ -54,8 +54,11 @@ def safe_name(name: str) -> str:
     'My-arm.toml'
     """
     plain = name.replace("\\", "/").rpartition("/")[2]
+    double = next(
+        (kind for kind in KINDS if kind.count(".") > 1 and plain.lower().endswith(kind)), ""
+    )
     stem, _, suffix = plain.rpartition(".")
-    suffix = f".{suffix.lower()}"
+    stem, suffix = (plain[: -len(double)], double) if double else (stem, f".{suffix.lower()}")
     if is_cad_file(plain):
         raise FileError(plain[:80], WHAT, HINT)
     if suffix not in KINDS:
