@@ -77,7 +77,11 @@ def test_a_left_handed_grid_has_a_positive_volume(tmp_path, nrrd):
     entries = header(**{"space directions": np.diag(STEPS * (-1, 1, 1))})
     nrrd.write(str(tmp_path / "a.nrrd"), LABELS, entries)
     assert read_mesh(tmp_path / "a.nrrd").surface_volume == pytest.approx(5 * 8e-9)
-    assert box_of(read_contents(tmp_path / "a.nrrd"), 3) == ([6.5, 21, 28], [7.5, 23, 32])
+    found = read_contents(tmp_path / "a.nrrd")
+    assert box_of(found, 3) == ([6.5, 21, 28], [7.5, 23, 32])
+    (block,) = found.blocks
+    first, *sides = found.points[block.nodes[:, [0, 1, 3, 4]]].transpose(1, 0, 2)
+    assert np.linalg.det(np.stack([side - first for side in sides], axis=1)) == pytest.approx(8.0)
 
 
 def test_nrrd_takes_spacings_and_asks_for_a_missing_size(tmp_path, nrrd):

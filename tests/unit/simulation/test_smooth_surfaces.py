@@ -94,9 +94,10 @@ def test_faces_and_corners_of_a_box_off_the_grid_are_flat_and_sharp():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("thickness", [0.8, 1.2, 1.6])
+@pytest.mark.parametrize("thickness", [0.7, 0.9, 1.2, 1.6])
 def test_a_wall_thinner_than_a_voxel_stays_closed(thickness):
-    body = design({"wall": Sphere(radius=12 * MM).shell(thickness * MM)}, 2 * MM)
+    ball = Sphere(radius=12 * MM, center=(0.3 * MM, 0.7 * MM, 0.1 * MM))
+    body = design({"wall": ball.shell(thickness * MM)}, 2 * MM)
     mesh = mesh_of(body)
     assert len(mesh.cavities) == 1
     (found,) = bodies(smooth_surfaces(body, mesh).surfaces()).values()
@@ -105,7 +106,7 @@ def test_a_wall_thinner_than_a_voxel_stays_closed(thickness):
 
 
 def test_material_without_a_voxel_is_left_out():
-    crumb = Sphere(radius=0.4 * MM, center=(9.5 * MM, 0, 0))
+    crumb = Sphere(radius=0.6 * MM, center=(9.5 * MM, 0.5 * MM, 0.5 * MM))
     body = design({"box": Box(size=(16 * MM, 8 * MM, 8 * MM), center=(0, 0, 0)) | crumb}, 2 * MM)
     (found,) = bodies(smooth_surfaces(body, mesh_of(body)).surfaces()).values()
     assert found.body_count == 1
