@@ -32,6 +32,10 @@ def export(
         str | None,
         typer.Option("--unit", help=f"Unit of the numbers in {UNITLESS} files; default: mm."),
     ] = None,
+    voxels: Annotated[
+        bool,
+        typer.Option("--voxels", help="Surfaces: the faces of the voxels, not the smooth shape."),
+    ] = False,
     html: Annotated[
         Path | None,
         typer.Option("--html", help="Page to write, alive in any browser without VoxSoft."),
@@ -45,8 +49,10 @@ def export(
         raise typer.Exit(USAGE)
     with errors_in_words():
         if target is not None:
-            lost = files.export(source, target, sets or [], deformed=deformed, unit=unit)
-            has_unit = WRITTEN[target.suffix.lower()].unit is None
+            lost = files.export(
+                source, target, sets or [], deformed=deformed, unit=unit, voxels=voxels
+            )
+            has_unit = WRITTEN[target.suffix.lower()].kind == "surface"
             shown = f", in {plain(files.unit_of(target, unit))}" if has_unit else ""
             say(f"wrote {plain(str(target))}{shown}")
             for each in lost:

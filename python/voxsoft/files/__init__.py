@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from voxsoft.files.meshes import read_mesh, write_mesh
     from voxsoft.files.path_table import write_path
     from voxsoft.files.run_folder import write_run
+    from voxsoft.files.shapes import write_shape
     from voxsoft.files.study_folder import write_confirmation, write_study
     from voxsoft.files.surfaces import write_surfaces
     from voxsoft.files.workspace_folder import write_workspace
@@ -36,6 +37,7 @@ __all__ = [
     "write_path",
     "write_run",
     "write_scene",
+    "write_shape",
     "write_study",
     "write_surfaces",
     "write_workspace",
@@ -58,6 +60,7 @@ _HOMES = {
     "write_path": "voxsoft.files.path_table",
     "write_run": "voxsoft.files.run_folder",
     "write_scene": "voxsoft.files.exports",
+    "write_shape": "voxsoft.files.shapes",
     "write_study": "voxsoft.files.study_folder",
     "write_surfaces": "voxsoft.files.surfaces",
     "write_workspace": "voxsoft.files.workspace_folder",

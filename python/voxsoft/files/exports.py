@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from voxsoft.design import Design
 from voxsoft.design.discretization.discretize import mesh_of, voxels_of
@@ -20,7 +21,8 @@ from voxsoft.files.mesh_file import MeshFile
 from voxsoft.files.meshes import read_mesh_file, write_mesh
 from voxsoft.files.run_folder import csv_text
 from voxsoft.files.scenes.scene import Scene
-from voxsoft.files.surfaces import surfaces_of, write_surfaces
+from voxsoft.files.shapes import shape_of
+from voxsoft.files.surfaces import Triangles, write_surfaces
 from voxsoft.formats.registry import WRITTEN, function
 from voxsoft.simulation import Result, Setup, named_regions
 from voxsoft.units import parse
@@ -73,6 +75,7 @@ def export(
     *,
     deformed: bool = False,
     unit: str | None = None,
+    voxels: bool = False,
 ) -> tuple[ErrorDetail, ...]:
     """Write a design or a result in the format that the target's suffix names.
 
@@ -82,7 +85,8 @@ def export(
         A design file, or a run folder.
     target
         Path of the file, whose suffix chooses among :data:`voxsoft.formats.registry.WRITTEN`: a
-        mesh ``.vtu`` ``.msh`` ``.inp``, its surface ``.stl`` ``.obj``, the voxels as a NumPy array
+        mesh ``.vtu`` ``.msh`` ``.inp``, the smooth surfaces of its parts ``.stl`` ``.obj``
+        ``.3mf`` ``.glb`` (:func:`voxsoft.files.shapes.shape_of`), the voxels as a NumPy array
         of part numbers ``.npy``, the robot for MuJoCo ``.xml`` or as USD ``.usda`` ``.usdc``
         ``.usdz``, the resolved design ``.toml``, or the displacements of the probes ``.csv`` (of a
         run folder).
@@ -92,7 +96,9 @@ def export(
         True to write the shape under load; needs a run folder and a mesh or surface format.
     unit
         Unit of the numbers in ``.stl`` and ``.obj``; default: mm, as most programs read them.
-        Every other mesh is in m.
+        ``.3mf`` is in mm; every other mesh is in m.
+    voxels
+        True for surfaces of the faces of voxels.
 
     Returns
     -------
@@ -121,9 +127,17 @@ def export(
     origin, goal = Path(source), Path(target)
     suffix = goal.suffix.lower()
     _check(origin, goal, list(assignments), deformed, unit)
+    if voxels and WRITTEN[suffix].kind != "surface":
+        known = ", ".join(s for s, form in WRITTEN.items() if form.kind == "surface")
+        raise FileError(
+            str(goal), f"{suffix} is no surface", f"leave --voxels out; it is for {known}"
+        )
     design = load(_design_file(origin), assignments=assignments)
+    if WRITTEN[suffix].kind == "surface":
+        write_surfaces(goal, _surfaces(origin, design, deformed, voxels), unit)
+        return ()
     if WRITTEN[suffix].has_shape:
-        _write_body(goal, _body(origin, design), deformed, unit)
+        _write_body(goal, _body(origin, design), deformed)
         return ()
     return write_source(goal, _File(origin, design))
 
@@ -265,14 +279,29 @@ def _body(origin: Path, design: Design) -> MeshFile:
     return MeshFile(mesh, regions)
 
 
-def _write_body(goal: Path, body: MeshFile, deformed: bool, unit: str | None) -> None:
+def _surfaces(origin: Path, design: Design, deformed: bool, voxels: bool) -> dict[str, Triangles]:
+    """Return the surface of each part, of a run folder with the motion of its result."""
+    if not origin.is_dir():
+        return shape_of(design, mesh_of(design), voxels=voxels)
+    body = _body(origin, design)
+    mesh = body.mesh if voxels else mesh_of(design, design.solver.refine)
+    if mesh.vertices.shape != body.mesh.vertices.shape or not np.allclose(
+        mesh.vertices, body.mesh.vertices, rtol=0.0, atol=1e-9
+    ):
+        what = "holds a result on another mesh than that of its design"
+        raise FileError(str(origin), what, "write the faces of its voxels: --voxels")
+    positions = mesh.vertices + _displacement(body) if deformed else None
+    return shape_of(design, mesh, positions, voxels=voxels)
+
+
+def _displacement(body: MeshFile) -> NDArray[np.float64]:
+    return np.asarray(body.point_data["displacement"], dtype=np.float64)
+
+
+def _write_body(goal: Path, body: MeshFile, deformed: bool) -> None:
     mesh, form = body.mesh, WRITTEN[goal.suffix.lower()]
     if deformed:
-        moved = np.asarray(body.point_data["displacement"], dtype=np.float64)
-        mesh = replace(mesh, vertices=mesh.vertices + moved)
-    if form.kind == "surface":
-        write_surfaces(goal, surfaces_of(mesh, {}), unit)
-        return
+        mesh = replace(mesh, vertices=mesh.vertices + _displacement(body))
     keeps_values = "values" in form.holds
     points, cells = (body.point_data, body.cell_data) if keeps_values else ({}, {})
     regions = body.regions if "regions" in form.holds else {}

@@ -131,8 +131,7 @@ def read_mesh_file(path: str | os.PathLike[str], *, unit: str | None = None) -> 
     """
     source = Path(path)
     suffix = source.suffix.lower()
-    form = READ.get(suffix) or WRITTEN.get(suffix)
-    if form is not None and form.kind == "surface":
+    if suffix in READ and READ[suffix].kind == "surface":
         hint = "enter it as a shape and voxelize it"
         raise FileError(str(source), f"{suffix} holds a surface, not tetrahedra", hint)
     if is_cad_file(source.name):

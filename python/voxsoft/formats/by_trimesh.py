@@ -72,12 +72,15 @@ def _contents(path: Path, bodies: list[trimesh.Trimesh]) -> Contents:
         body.faces.reshape(-1, 3) + first for body, first in zip(bodies, firsts, strict=False)
     ]
     is_gltf = path.suffix.lower() == ".glb"
+    points = np.concatenate([body.vertices for body in bodies]).astype(np.float64)
+    if is_gltf:
+        points = points[:, [0, 2, 1]] * (1.0, -1.0, 1.0)
     return Contents(
-        np.concatenate([body.vertices for body in bodies]).astype(np.float64),
+        points,
         (CellBlock("triangle", np.concatenate(triangles).astype(np.int64)),),
         sets,
-        # glTF is in meters by its own specification, with y up.
+        # glTF is in meters by its own specification.
         unit=1.0 if is_gltf else None,
-        notes=("The y axis points up in glTF: the coordinates are as they stand",) * is_gltf,
+        notes=("The y axis, which points up in glTF, is turned into z",) * is_gltf,
         format="glTF binary" if is_gltf else path.suffix.lower().lstrip("."),
     )

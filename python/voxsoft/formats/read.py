@@ -14,16 +14,15 @@ from voxsoft.formats.contents import Contents
 _LISTS: Final = (".vtm", ".vtmb", ".pvd", ".pvtu", ".pvtp", ".pvti", ".pvts", ".pvtr")
 #: Advice for formats that are not read: programs that convert them.
 _WAYS: Final = (
-    ((".3mf", ".amf"), "open it in a slicer such as PrusaSlicer and export it as STL"),
+    ((".amf",), "open it in a slicer such as PrusaSlicer and export it as 3MF or STL"),
     ((".unv",), "open it in Gmsh and save it as .msh"),
     (
         (".gltf", ".dae", ".fbx", ".x3d", ".blend", ".usd", ".usda", ".usdc", ".usdz"),
         "open it in Blender and export it as STL or as glTF binary, .glb",
     ),
     (
-        (".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".tif", ".tiff"),
-        "open its labels, whole numbers with 0 outside, in ParaView or 3D Slicer and save them as "
-        ".vti or .vtk",
+        (".mha", ".mhd", ".dcm"),
+        "open its labels, whole numbers with 0 outside, in 3D Slicer and save them as .nrrd",
     ),
     ((".vtkhdf", ".hdf", ".vthb"), "open it in ParaView and save it as .vtu"),
     (
@@ -65,7 +64,7 @@ def read_contents(path: Path) -> Contents:
         ...
     voxsoft.errors.FileError: no-such-file.msh: no such file
     """
-    suffix = path.suffix.lower()
+    suffix = ".nii.gz" if path.name.lower().endswith(".nii.gz") else path.suffix.lower()
     if suffix not in known_suffixes() and suffix not in _LISTS:
         ways = (way for suffixes, way in _WAYS if suffix in suffixes)
         what = f"unknown format {path.suffix!r}; known are {', '.join(known_suffixes())}"

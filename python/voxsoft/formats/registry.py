@@ -119,6 +119,29 @@ FORMATS: Final = (
         taken="data sets of all kinds, as in the files above",
     ),
     Format(
+        (".nrrd", ".nhdr"),
+        "cells",
+        "NRRD images; `pip install 'voxsoft[images]'`",
+        reader="voxsoft.formats.images:read_nrrd",
+        taken="a brick for each voxel whose label is not 0, as in images of VTK, at its place; "
+        "left and posterior coordinates change their sign",
+    ),
+    Format(
+        (".nii", ".nii.gz"),
+        "cells",
+        "NIfTI images; `pip install 'voxsoft[images]'`",
+        reader="voxsoft.formats.images:read_nifti",
+        taken="as of NRRD, in the unit of the file; labels as they are stored, not as they are "
+        "scaled",
+    ),
+    Format(
+        (".tif", ".tiff"),
+        "cells",
+        "Stacks of TIFF; `pip install 'voxsoft[images]'`",
+        reader="voxsoft.formats.images:read_tiff",
+        taken="as of NRRD, with the spacing and unit that ImageJ writes; colors are refused",
+    ),
+    Format(
         (".msh",),
         "cells",
         "Gmsh 2.2 and 4.1",
@@ -173,6 +196,10 @@ FORMATS: Final = (
         (".3mf",),
         "surface",
         "3MF, for slicers and printers of several materials",
+        reader="voxsoft.formats.threemf:read",
+        taken="the objects that the build places, with components and transforms, in their unit; "
+        "objects and materials by name. Supports and objects that nothing places are left out; "
+        "lattices of beams, slices and encryption are refused",
         writer="voxsoft.files.surface_formats.threemf:write",
         holds=frozenset({"parts"}),
         purpose="To print the parts in their materials: one object, its parts by name, in mm.",
@@ -198,7 +225,8 @@ FORMATS: Final = (
         "surface",
         "glTF binary",
         reader="voxsoft.formats.by_trimesh:read",
-        taken="triangles of all meshes, each at its place; in m by definition",
+        taken="triangles of all meshes, each at its place and by its name; in m by definition, and "
+        "turned from y up to z up",
         writer="voxsoft.files.surface_formats.glb:write",
         holds=frozenset({"parts"}),
         purpose="To show the body on web pages and in viewers, its parts by name.",

@@ -9,9 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.errors import FileError, ShapeError
+from voxsoft.formats.contents import CellBlock, Contents
 from voxsoft.formats.faces import faces_of
 from voxsoft.formats.read import read_contents
+from voxsoft.formats.registry import READ
 from voxsoft.formats.report import counted_cells, held_by
+from voxsoft.records import closest
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 
 
@@ -22,17 +25,24 @@ class Surface(NamedTuple):
     triangles: NDArray[np.int64]
 
 
-def read_surface(path: Path) -> Surface:
+def read_surface(path: Path, part: str | None = None) -> Surface:
     """Read the triangles of a file, or the boundary of its volume cells.
 
     Vertices at the same place become one, as STL files repeat them for every triangle. Cells with
     curved edges are taken by their corners.
 
+    Parameters
+    ----------
+    path
+        Path of the file.
+    part
+        Name of an object, group or solid of a surface file; default: all.
+
     Raises
     ------
     ShapeError
-        For a CAD model, an unknown suffix, an unreadable file, NaN, and a file without faces or
-        volume cells.
+        For a CAD model, an unknown suffix, an unreadable file, NaN, a file without faces or volume
+        cells, and a part that the file does not have.
     """
     if is_cad_file(path.name):
         raise ShapeError("path", f"{path.name} {WHAT}", HINT)
@@ -40,7 +50,8 @@ def read_surface(path: Path) -> Surface:
         contents = read_contents(path)
     except FileError as error:
         raise ShapeError("path", f"{error.where} {error.what}", error.hint) from error
-    points, triangles = contents.points, faces_of(contents.points, contents.blocks)
+    blocks = contents.blocks if part is None else _blocks_of(contents, part, path.name)
+    points, triangles = contents.points, faces_of(contents.points, blocks)
     if not len(triangles):
         kinds = held_by(contents)["cells"].items()
         held = ", ".join(counted_cells(kind, count) for kind, count in kinds) or "no cells"
@@ -53,3 +64,52 @@ def read_surface(path: Path) -> Surface:
     joined = index.reshape(-1)[triangles].astype(np.int64)
     a, b, c = joined.T
     return Surface(merged, np.ascontiguousarray(joined[(a != b) & (b != c) & (c != a)]))
+
+
+def has_own_parts(path: Path) -> bool:
+    """Return True for a format of surfaces, whose parts are groups of its triangles.
+
+    Examples
+    --------
+    >>> has_own_parts(Path("arm.3mf")), has_own_parts(Path("arm.msh"))
+    (True, False)
+    """
+    form = READ.get(path.suffix.lower())
+    return form is not None and form.kind == "surface"
+
+
+def parts_in(contents: Contents) -> tuple[str, ...]:
+    """Return the names of parts of a surface file; none where one of them is open, or it is one.
+
+    Examples
+    --------
+    >>> parts_in(Contents(np.zeros((0, 3)), ()))
+    ()
+    """
+    names = tuple(contents.cell_sets)
+    if len(names) < 2:
+        return ()
+    for name in names:
+        faces = faces_of(contents.points, _selected(contents, contents.cell_sets[name]))
+        _, index = np.unique(contents.points, axis=0, return_inverse=True)
+        edges = np.sort(index.reshape(-1)[faces][:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        _, counts = np.unique(edges, axis=0, return_counts=True)
+        if not len(faces) or (counts % 2).any():
+            return ()
+    return names
+
+
+def _blocks_of(contents: Contents, part: str, name: str) -> list[CellBlock]:
+    if part not in contents.cell_sets:
+        hint = closest(part, contents.cell_sets)
+        raise ShapeError("part", f'{name} has no part "{part}"', hint)
+    return _selected(contents, contents.cell_sets[part])
+
+
+def _selected(contents: Contents, cells: NDArray[np.int64]) -> list[CellBlock]:
+    blocks, first = [], 0
+    for block in contents.blocks:
+        own = cells[(cells >= first) & (cells < first + len(block.nodes))] - first
+        blocks.append(CellBlock(block.kind, block.nodes[own]))
+        first += len(block.nodes)
+    return blocks

@@ -25,12 +25,14 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from voxsoft import _core
 from voxsoft.errors import FileError, ShapeError
+from voxsoft.formats.read import read_contents
+from voxsoft.formats.unit import sizes
 from voxsoft.records import Name
 from voxsoft.shapes.base import Scope, Shape, Triple
 from voxsoft.shapes.mesh_bodies import MeshBody, read_body
 from voxsoft.shapes.nesting import Nest, Nested, taken_once, unnested
 from voxsoft.shapes.shells import Hole, holes_of, in_one_sense
-from voxsoft.shapes.surface_files import read_surface
+from voxsoft.shapes.surface_files import has_own_parts, read_surface
 from voxsoft.units import format_quantity, parse
 
 __all__ = [
@@ -118,13 +120,17 @@ class TriangleMesh(Shape):
 
     kind: Literal["mesh"] = "mesh"
     path: Annotated[str, BeforeValidator(_whole_path)] = Field(
-        description="File: .stl, .obj, .ply, .off, .msh, .mesh, .vtk, .vtu and others."
+        description="File: .stl, .obj, .3mf, .ply, .off, .msh, .mesh, .vtk, .vtu and others."
     )
-    unit: Annotated[str, AfterValidator(_is_length_unit)] = Field(
-        description="Length unit of the file, such as mm; mesh files do not say it."
+    unit: Annotated[str, AfterValidator(_is_length_unit)] | None = Field(
+        None,
+        description="Length unit of the file, such as mm; default: as it says. 3MF, GLB and files "
+        "of VoxSoft do, most others do not.",
     )
     part: Name | None = Field(
-        None, description="Name of a part of a file of tetrahedra; default: all of it."
+        None,
+        description="Name of a part of a file of tetrahedra, or of an object, group or solid of a "
+        "surface; default: all of it.",
     )
     region: Name | None = Field(
         None,
@@ -146,8 +152,8 @@ class TriangleMesh(Shape):
     def make(self, scope: Scope) -> _core.Shape:
         """Return the compiled shape."""
         if self.region is not None:
-            path, meter = Path(self.path), parse(f"1 {self.unit}", "length")
-            return _body(path).distance_to(self.region, path.name, meter)
+            path = Path(self.path)
+            return _body(path).distance_to(self.region, path.name, self._meter)
         solid = self._solid
         return _core.Shape.sampled(solid.distances, solid.low, solid.high, solid.is_closed)
 
@@ -164,12 +170,34 @@ class TriangleMesh(Shape):
     @property
     def _solid(self) -> _Solid:
         path = Path(self.path)
-        try:
-            changed = path.stat().st_mtime_ns
-        except OSError as error:
-            raise ShapeError("path", f"{path} cannot be read: {error.strerror}") from None
-        factor = parse(f"1 {self.unit}", "length")
-        return _solid(path, changed, factor, self.part, self.nested)
+        return _solid(path, _changed(path), self._meter, self.part, self.nested)
+
+    @property
+    def _meter(self) -> float:
+        if self.unit is not None:
+            return parse(f"1 {self.unit}", "length")
+        path = Path(self.path)
+        return _stated(path, _changed(path))
+
+
+def _changed(path: Path) -> int:
+    try:
+        return path.stat().st_mtime_ns
+    except OSError as error:
+        raise ShapeError("path", f"{path} cannot be read: {error.strerror}") from None
+
+
+@lru_cache(maxsize=8)
+def _stated(path: Path, changed: int) -> float:
+    """Return meters in the unit that a file says, cached until it changes."""
+    del changed
+    try:
+        contents = read_contents(path)
+    except FileError as error:
+        raise ShapeError("path", f"{path.name}: {error.what}", error.hint) from None
+    if contents.unit is None:
+        raise ShapeError("unit", *sizes(np.ptp(contents.points, axis=0), "unit"))
+    return contents.unit
 
 
 @lru_cache(maxsize=8)
@@ -177,7 +205,10 @@ def _solid(
     path: Path, changed: int, factor: float, part: str | None, nested: Nested | None
 ) -> _Solid:
     """Read a file, cached until it changes."""
-    surface = read_surface(path) if part is None else _body(path).surface_of(part, path.name)
+    if part is None or has_own_parts(path):
+        surface = read_surface(path, part)
+    else:
+        surface = _body(path).surface_of(part, path.name)
     return _Solid(surface.points * factor, surface.triangles, str(path), nested)
 
 

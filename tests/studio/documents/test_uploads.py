@@ -11,6 +11,8 @@ from voxsoft import check
 from voxsoft.design import Design
 from voxsoft.design.discretization.discretize import mesh_of, voxels_of
 from voxsoft.errors import FileError, VoxelError
+from voxsoft.files import write_surfaces
+from voxsoft.simulation.setup.volumes import volumes_of
 from voxsoft.studio.documents.uploads import (
     design_of_array,
     design_of_mesh,
@@ -29,6 +31,7 @@ from voxsoft.studio.documents.uploads import (
         ("\u202egpj.obj", "gpj.obj"),
         ("a" * 300 + ".npy", "a" * 120 + ".npy"),
         ("con.csv", "_con.csv"),
+        ("my scan.NII.gz", "my-scan.nii.gz"),
     ],
 )
 def test_a_name_stays_in_its_folder(given, stored):
@@ -106,6 +109,19 @@ def test_a_mesh_that_says_its_unit_is_read_in_it(tmp_path):
     assert "Its numbers are, as it says, in m: change" in text
     design = Design.from_document(tomllib.loads(text))
     assert mesh_of(design).volume == pytest.approx(16e-6, rel=1e-3)
+
+
+def test_the_objects_of_a_3mf_are_parts_by_name_in_its_unit(tmp_path):
+    file = tmp_path / "two.3mf"
+    low, high = (
+        trimesh.creation.box(bounds=b) for b in (((0, 0, 0), (1, 1, 1)), ((0, 0, 1), (1, 1, 2)))
+    )
+    parts = {name: (0.02 * b.vertices, b.faces) for name, b in (("lower half", low), ("tip", high))}
+    write_surfaces(file, parts)
+    design = Design.from_document(tomllib.loads(design_of_mesh(file)))
+    assert [part.shape for part in design.parts] == ["lower half", "tip"]
+    found = volumes_of(design, mesh_of(design)).parts
+    assert [each.simulated for each in found.values()] == pytest.approx([8e-6, 8e-6], rel=0.05)
 
 
 def test_a_mesh_of_a_doubtful_size_is_asked_about(tmp_path):

@@ -36,10 +36,12 @@ def export(studio, format, **options):
 def test_a_surface_has_the_size_and_unit_asked_for(at_rest, tmp_path, unit, meter):
     for format in ("stl", "obj"):
         file = tmp_path / f"body.{format}"
-        file.write_bytes(export(at_rest, format, unit=unit).content)
-        found = meshio.read(file)
-        assert np.ptp(found.points, axis=0) * meter == pytest.approx([0.05, 0.05, 0.035], rel=1e-5)
-        assert len(found.cells_dict["triangle"]) == 1408
+        for voxels, count, rel in ((True, 1408, 1e-5), (False, 5616, 0.01)):
+            file.write_bytes(export(at_rest, format, unit=unit, voxels=voxels).content)
+            found = meshio.read(file)
+            size = np.ptp(found.points, axis=0) * meter
+            assert size == pytest.approx([0.05, 0.05, 0.035], rel=rel)
+            assert len(found.cells_dict["triangle"]) == count
     file.write_bytes(export(at_rest, "obj", unit=unit, deformed=True).content)
     assert np.ptp(meshio.read(file).points[:, 2]) * meter > 0.04  # it rose by some 13 mm
 

@@ -9,6 +9,7 @@ import trimesh
 
 from voxsoft.errors import FileError, UnitError
 from voxsoft.files import write_mesh, write_surfaces
+from voxsoft.formats.read import read_contents
 from voxsoft.voxels import Voxels
 
 #: Factor from m to the numbers of a file.
@@ -66,6 +67,21 @@ def test_glb_stands_upright_where_y_is_up(tmp_path):
         pytest.approx([0.0, 0.0, -0.02], abs=1e-8),
         pytest.approx([0.01, 0.05, 0.0], abs=1e-8),
     ]
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".obj", ".3mf", ".glb"])
+def test_a_written_file_is_read_at_the_same_places(tmp_path, suffix):
+    path = tmp_path / f"two{suffix}"
+    write_surfaces(path, PARTS)
+    found = read_contents(path)
+    points = found.points * (found.unit or 1e-3)
+    assert found.unit == {".3mf": 1e-3, ".glb": 1.0}.get(suffix)
+    assert points.min(axis=0) == pytest.approx([0, 0, 0], abs=1e-9)
+    assert points.max(axis=0) == pytest.approx([0.03, 0.02, 0.02], rel=1e-6)
+    assert {name.replace("_", " "): len(v) for name, v in found.cell_sets.items()} == {
+        "soft skin": 12,
+        "core": 12,
+    }
 
 
 def test_3mf_is_in_mm_with_its_parts_as_components_of_one_item(tmp_path):

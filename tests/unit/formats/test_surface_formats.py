@@ -106,10 +106,10 @@ def test_gltf_is_in_meters(tmp_path):
 @pytest.mark.parametrize(
     ("name", "way"),
     [
-        ("a.3mf", "slicer such as PrusaSlicer"),
+        ("a.amf", "slicer such as PrusaSlicer"),
         ("a.unv", "Gmsh and save it as .msh"),
         ("a.dae", "Blender"),
-        ("a.nrrd", "3D Slicer"),
+        ("a.mha", "3D Slicer"),
         ("a.npy", "Voxels.from_array"),
     ],
 )

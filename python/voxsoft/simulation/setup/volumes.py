@@ -131,7 +131,7 @@ def volumes_of(design: Design, mesh: Mesh, points: int = PRECISE) -> Volumes:
         found = _of_body(own, body.mesh, points)
         number = len(body.mesh.cavities)
         if found is not None:
-            labels = _labels(design, body.name)
+            labels = labels_of(design, body.name)
             parts |= dict(zip(labels, found[0], strict=True))
             names = [
                 mesh.cavities[first + index].name or f"cavity {first + index}"
@@ -222,7 +222,7 @@ def _is_rubber(design: Design) -> bool:
     return all(isinstance(design.material_of(part), Hyperelastic) for part in design.parts)
 
 
-def _labels(design: Design, body: str) -> list[str]:
+def labels_of(design: Design, body: str) -> list[str]:
     """Return the names of the parts of a body, each by another name."""
     labels: list[str] = []
     for index, part in enumerate(design.parts):

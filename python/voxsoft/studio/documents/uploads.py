@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import zipfile
 import zlib
 from collections.abc import Iterable, Sequence
@@ -23,6 +24,7 @@ from voxsoft.formats.unit import name_of
 from voxsoft.shapes import TriangleMesh
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 from voxsoft.shapes.mesh_bodies import sizes_in_units
+from voxsoft.shapes.surface_files import parts_in
 from voxsoft.units import format_quantity, parse
 from voxsoft.voxels import Voxels
 
@@ -52,8 +54,11 @@ def safe_name(name: str) -> str:
     'My-arm.toml'
     """
     plain = name.replace("\\", "/").rpartition("/")[2]
+    double = next(
+        (kind for kind in KINDS if kind.count(".") > 1 and plain.lower().endswith(kind)), ""
+    )
     stem, _, suffix = plain.rpartition(".")
-    suffix = f".{suffix.lower()}"
+    stem, suffix = (plain[: -len(double)], double) if double else (stem, f".{suffix.lower()}")
     if is_cad_file(plain):
         raise FileError(plain[:80], WHAT, HINT)
     if suffix not in KINDS:
@@ -76,7 +81,8 @@ def design_of_mesh(file: Path) -> str:
     FileError, ShapeError
         The mesh cannot be read, or encloses nothing.
     """
-    meter = read_contents(file).unit
+    contents = read_contents(file)
+    meter = contents.unit
     unit = "mm" if meter is None else name_of(meter)
     low, high = TriangleMesh(path=str(file), unit=unit).build().bounds()
     size = max(b - a for a, b in zip(low, high, strict=True)) / _FIRST_CELLS
@@ -87,7 +93,8 @@ def design_of_mesh(file: Path) -> str:
         f"# A body from {file.name}. Its numbers {why} {unit}: change `unit`, and",
         f"# the lengths below, if that is wrong. It would be, {sizes}.",
     )
-    return _standing(about, [_Piece(file, unit)], voxel, low[2], file.stem)
+    pieces = [_Piece(file, unit, part) for part in parts_in(contents) or (None,)]
+    return _standing(about, pieces, voxel, low[2], file.stem)
 
 
 def design_of_array(file: Path) -> str:
@@ -137,16 +144,24 @@ class _Piece(NamedTuple):
 
     @property
     def shape(self) -> str:
-        part = "" if self.part is None else f', part = "{self.part}"'
+        part = "" if self.part is None else f", part = {json.dumps(self.part)}"
         path = json.dumps(str(self.file))
         return f'{{ kind = "mesh", path = {path}, unit = "{self.unit}"{part} }}'
+
+
+def _key(name: str) -> str:
+    """Write a name as a key of TOML: bare where that is allowed."""
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name)
 
 
 def _standing(
     about: Iterable[str], pieces: Sequence[_Piece], voxel: str, lowest: float, name: str
 ) -> str:
     bottom = format_quantity(float(f"{lowest:.6g}"), "length")
-    made = [("", "[[parts]]", f'shape = "{each.name}"', f'material = "{_SOFT}"') for each in pieces]
+    made = [
+        ("", "[[parts]]", f"shape = {json.dumps(each.name)}", f'material = "{_SOFT}"')
+        for each in pieces
+    ]
     return "\n".join(
         (
             *about,
@@ -157,7 +172,7 @@ def _standing(
             f'voxel_size = "{voxel}"',
             "",
             "[shapes]",
-            *(f"{each.name} = {each.shape}" for each in pieces),
+            *(f"{_key(each.name)} = {each.shape}" for each in pieces),
             *(line for lines in made for line in lines),
             "",
             "[[clamps]]",

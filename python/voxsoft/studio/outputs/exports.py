@@ -19,7 +19,7 @@ from voxsoft.errors import ErrorDetail, FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.exports import write_source
 from voxsoft.files.scenes.scene import Scene, SceneState
-from voxsoft.files.surfaces import surfaces_of
+from voxsoft.files.shapes import shape_of
 from voxsoft.formats.registry import WRITTEN, Format
 from voxsoft.simulation import Result, named_regions
 from voxsoft.simulation.results.result import Status
@@ -131,7 +131,8 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         One of :data:`FORMATS`.
     options
         ``deformed``: whether a mesh or surface has the shape under load; ``unit`` of the numbers
-        in STL and OBJ files, ``"mm"`` by default; ``resolved``: whether a design file holds
+        in STL and OBJ files, ``"mm"`` by default; ``voxels``: whether a surface is that of the
+        voxels; ``resolved``: whether a design file holds
         values in place of formulas; ``scale`` of a picture.
     folder
         Folder of the files.
@@ -199,24 +200,28 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
     form = WRITTEN.get(f".{format}")
     unit = str(options.get("unit", "mm")) if form is not None and form.unit is None else None
     deformed = bool(options.get("deformed", False))
-    return Written(target, files.export(source, target, deformed=deformed, unit=unit))
+    voxels = bool(options.get("voxels", False))
+    lost = files.export(source, target, deformed=deformed, unit=unit, voxels=voxels)
+    return Written(target, lost)
 
 
 def _write_mesh(shown: Shown, target: Path, form: Format, options: dict[str, Any]) -> None:
-    mesh = shown.body.mesh
+    mesh, is_deformed = shown.body.mesh, bool(options.get("deformed", False))
+    if form.kind == "surface":
+        positions = shown.positions if is_deformed else None
+        is_stairs = bool(options.get("voxels", False))
+        surfaces = shape_of(shown.design, mesh, positions, voxels=is_stairs)
+        unit = options.get("unit") if form.unit is None else None
+        files.write_surfaces(target, surfaces, unit)
+        return
     data: dict[str, NDArray[np.float64]] = {}
     if "values" in form.holds:
         data["displacement"] = shown.positions - mesh.vertices
         if shown.result is not None:
             data["reaction"] = shown.result.reactions
     regions = named_regions(shown.design, mesh) if "regions" in form.holds else {}
-    vertices = shown.positions if options.get("deformed", False) else mesh.vertices
-    mesh = replace(mesh, vertices=vertices)
-    if form.kind == "surface":
-        unit = None if form.unit is not None else options.get("unit")
-        files.write_surfaces(target, surfaces_of(mesh, {}), unit)
-        return
-    files.write_mesh(target, mesh, point_data=data, regions=regions)
+    vertices = shown.positions if is_deformed else mesh.vertices
+    files.write_mesh(target, replace(mesh, vertices=vertices), point_data=data, regions=regions)
 
 
 def _table(shown: Shown) -> str:
