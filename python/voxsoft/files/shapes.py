@@ -53,6 +53,7 @@ def write_shape(
     Examples
     --------
     >>> import tempfile
+    >>> from pathlib import Path
     >>> from voxsoft.design import families
     >>> path = Path(tempfile.mkdtemp(), "ball.3mf")
     >>> write_shape(path, families.sphere())

@@ -60,7 +60,7 @@ def read_nifti(path: Path) -> Contents:
     except ImportError:
         raise _missing("nibabel", "NIfTI") from None
     try:
-        image = nibabel.load(path)
+        image: Any = nibabel.load(path)
         values = np.asarray(image.dataobj.get_unscaled())
     # nibabel raises errors of many kinds for damaged files.
     except Exception as error:
@@ -133,9 +133,8 @@ def read_tiff(path: Path) -> Contents:
             series = file.series[0]
             axes, values = series.axes, series.asarray()
             known: dict[str, Any] = dict(file.imagej_metadata or {})
-            resolution = {
-                axis: file.pages[0].tags.valueof(f"{axis}Resolution") for axis in ("X", "Y")
-            }
+            page: Any = file.pages[0]
+            resolution = {axis: page.tags.valueof(f"{axis}Resolution") for axis in ("X", "Y")}
     # tifffile raises errors of many kinds for damaged files.
     except Exception as error:
         raise _damaged(path, "TIFF", error) from error

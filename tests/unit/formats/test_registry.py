@@ -67,4 +67,4 @@ def test_a_written_file_holds_as_much_as_its_format_says(suffix, hollow, tmp_pat
 def test_lists_of_formats_follow_the_registry():
     target = get_type_hints(export, include_extras=True)["target"].__metadata__[0]
     assert target.help == f"File to write: {' '.join(WRITTEN)}"
-    assert {f".{name}" for name in EXPORTS} - set(WRITTEN) == {".run", ".png", ".html"}
+    assert {f".{name}" for name in EXPORTS} - set(WRITTEN) == {".molds", ".run", ".png", ".html"}

@@ -16,6 +16,7 @@ def rows(form: str, values: NDArray[Any]) -> Iterator[str]:
 
     Examples
     --------
+    >>> import numpy as np
     >>> "".join(rows("v %.9g %.9g;", np.array([[1.0, 0.5]])))
     'v 1 0.5;'
     """
