@@ -37,6 +37,7 @@ export const WRITTEN = {
   ".npy": {"title": "Voxels", "purpose": "To work on the voxels in Python: an array of part numbers.", "asksUnit": false, "asksShape": false},
   ".xml": {"title": "Scene", "purpose": "To simulate the robot in MuJoCo: flexes, contact, tendons, loads as actuators.", "asksUnit": false, "asksShape": false},
   ".usda": {"title": "Scene", "purpose": "To show the robot and its motion in Blender, Houdini or Omniverse.", "asksUnit": false, "asksShape": false},
+  ".pvd": {"title": "Series", "purpose": "To play a path in ParaView: the body at each value, with its objects.", "asksUnit": false, "asksShape": false},
   ".csv": {"title": "Table", "purpose": "To plot probes, residual and energies in a spreadsheet or Python.", "asksUnit": false, "asksShape": false},
   ".toml": {"title": "Design", "purpose": "To keep, cite or send the design: this page of text rebuilds everything.", "asksUnit": false, "asksShape": false},
 } as const;

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from voxsoft.files.checks import check_design, check_mesh
     from voxsoft.files.comparison_report import write_comparison
     from voxsoft.files.designs import load, save
-    from voxsoft.files.exports import export, unit_of, write_scene
+    from voxsoft.files.exports import export, unit_of, write_scene, write_series
     from voxsoft.files.family_file import write_family
     from voxsoft.files.meshes import read_mesh, write_mesh
     from voxsoft.files.path_table import write_path
@@ -37,6 +37,7 @@ __all__ = [
     "write_path",
     "write_run",
     "write_scene",
+    "write_series",
     "write_shape",
     "write_study",
     "write_surfaces",
@@ -60,6 +61,7 @@ _HOMES = {
     "write_path": "voxsoft.files.path_table",
     "write_run": "voxsoft.files.run_folder",
     "write_scene": "voxsoft.files.exports",
+    "write_series": "voxsoft.files.exports",
     "write_shape": "voxsoft.files.shapes",
     "write_study": "voxsoft.files.study_folder",
     "write_surfaces": "voxsoft.files.surfaces",

@@ -21,10 +21,11 @@ from voxsoft.files.mesh_file import MeshFile
 from voxsoft.files.meshes import read_mesh_file, write_mesh
 from voxsoft.files.run_folder import csv_text
 from voxsoft.files.scenes.scene import Scene
+from voxsoft.files.series import Series
 from voxsoft.files.shapes import shape_of
 from voxsoft.files.surfaces import Triangles, write_surfaces
 from voxsoft.formats.registry import WRITTEN, function
-from voxsoft.simulation import Result, Setup, named_regions
+from voxsoft.simulation import LoadPath, Result, Setup, named_regions
 from voxsoft.units import parse
 
 
@@ -40,6 +41,9 @@ class Source(Protocol):
 
     def scene(self) -> Scene:
         """Return the design prepared for another program, with its states."""
+
+    def series(self) -> Series:
+        """Return the states with all of their fields."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,10 @@ class _File:
             return Scene.of_run(self.origin, self.design)
         return Scene.of(self.design)
 
+    def series(self) -> Series:
+        """Return the states of a run folder."""
+        return Series.of_run(self.origin, self.design)
+
 
 def export(
     source: FilePath,
@@ -88,8 +96,8 @@ def export(
         mesh ``.vtu`` ``.msh`` ``.inp``, the smooth surfaces of its parts ``.stl`` ``.obj``
         ``.3mf`` ``.glb`` (:func:`voxsoft.files.shapes.shape_of`), the voxels as a NumPy array
         of part numbers ``.npy``, the robot for MuJoCo ``.xml`` or as USD ``.usda`` ``.usdc``
-        ``.usdz``, the resolved design ``.toml``, or the displacements of the probes ``.csv`` (of a
-        run folder).
+        ``.usdz``, the resolved design ``.toml``, and of a run folder the displacements of the
+        probes ``.csv`` or its states ``.pvd``, in files of a folder ``NAME-states`` beside it.
     assignments
         Changes ``key=value`` of a design file.
     deformed
@@ -160,6 +168,17 @@ class _Given:
         return self.held
 
 
+@dataclass(frozen=True)
+class _GivenSeries:
+    """Series that is there already."""
+
+    held: Series
+
+    def series(self) -> Series:
+        """Return it."""
+        return self.held
+
+
 def write_scene(
     path: FilePath, body: Design | Setup | Result | Sequence[Result]
 ) -> tuple[ErrorDetail, ...]:
@@ -206,6 +225,51 @@ def write_scene(
     return tuple(function(form.writer)(goal, _Given(Scene.of(body))))
 
 
+def write_series(
+    path: FilePath, body: Result | LoadPath | Sequence[Result]
+) -> tuple[ErrorDetail, ...]:
+    """Write the states of a path or a motion for ParaView, ``.pvd``.
+
+    Parameters
+    ----------
+    path
+        The file; the files of its states are written to a folder ``NAME-states`` beside it.
+    body
+        A path, whose values are the times where they ascend; several results, at 0, 1, 2; or a
+        result, with all of its recording where that has frames (``simulate(design, frames=True)``),
+        in seconds.
+
+    Returns
+    -------
+    tuple of ErrorDetail
+        Contents that the files do not hold: values of a path that goes back as times; stress over
+        time of rubber that softens or is activated.
+
+    Raises
+    ------
+    FileError
+        Another suffix, no result, or a file that cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import voxsoft as vs
+    >>> from voxsoft.design import families
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> write_series(folder / "beam.pvd", vs.follow(families.beam(), "loads[0].value=0..1 N/2"))
+    ()
+    >>> sorted(file.name for file in folder.glob("*/*"))
+    ['body-0000.vtu', 'body-0001.vtu']
+    """
+    goal = Path(path)
+    form = WRITTEN.get(goal.suffix.lower())
+    if form is None or form.writer is None or form.kind != "series":
+        known = " ".join(suffix for suffix, each in WRITTEN.items() if each.kind == "series")
+        what = f"{goal.suffix!r} is no format of a series; allowed are {known}"
+        raise FileError(str(goal), what)
+    return tuple(function(form.writer)(goal, _GivenSeries(Series.of(body))))
+
+
 def write_voxels(target: Path, source: Source) -> None:
     """Write the voxels as a NumPy array of part numbers."""
     array = io.BytesIO()
@@ -247,12 +311,15 @@ def _check(
         raise FileError(
             str(origin), "is a run, whose design is settled", "run the changed design, or export it"
         )
-    if not is_run and (deformed or form.kind == "table"):
+    if not is_run and (deformed or form.kind in ("series", "table")):
         what = "holds no result; a run folder does"
         raise FileError(str(origin), what, f"voxsoft run {origin}, then export its folder")
     if deformed and not form.has_shape:
-        hint = "leave --deformed out: USD has the states of a run folder, by their times"
-        hint = hint if form.kind == "scene" else "write .vtu or .stl"
+        hints = {
+            "scene": "leave --deformed out: USD has the states of a run folder, by their times",
+            "series": 'leave --deformed out: in ParaView, Warp By Vector with "displacement"',
+        }
+        hint = hints.get(form.kind, "write .vtu or .stl")
         raise FileError(str(goal), f"{suffix} cannot hold a deformed shape in place", hint)
     if unit is not None:
         parse(f"1 {unit}", "length", where="unit")

@@ -14,13 +14,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from voxsoft.design.document.documents import with_paths_from
-from voxsoft.errors import ErrorDetail, OutputError
+from voxsoft.errors import ErrorDetail, FileError, OutputError
 from voxsoft.files.atomic import write_atomically
+from voxsoft.files.designs import read_text
 from voxsoft.files.meshes import write_mesh
 from voxsoft.files.toml_text import write_toml
 from voxsoft.simulation import Result, named_regions
+
+Floats = NDArray[np.float64]
 
 
 def write_run(
@@ -74,21 +78,41 @@ def write_summary(
     return folder
 
 
-def _write_fields(result: Result, target: Path) -> None:
+def fields_in(result: Result) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Return the arrays of a result on vertices, (n, ...), and in tets, (m, ...), in SI units."""
     contact = result.contact_field
-    write_mesh(
-        target,
-        result.mesh,
-        point_data={
-            "displacement": result.displacements,
-            "velocity": result.velocities,
-            "reaction": result.reactions,
-            **result.fields.point_data(),
-            **({} if contact is None else contact.point_data()),
-        },
-        cell_data=result.fields.cell_data(result.mesh),
-        regions=named_regions(result.design, result.mesh),
-    )
+    points = {
+        "displacement": result.displacements,
+        "velocity": result.velocities,
+        "reaction": result.reactions,
+        **result.fields.point_data(),
+        **({} if contact is None else contact.point_data()),
+    }
+    return points, result.fields.cell_data(result.mesh)
+
+
+def _write_fields(result: Result, target: Path) -> None:
+    points, cells = fields_in(result)
+    regions = named_regions(result.design, result.mesh)
+    write_mesh(target, result.mesh, point_data=points, cell_data=cells, regions=regions)
+
+
+def read_summary(folder: Path) -> dict[str, Any]:
+    """Read the numbers of a run, ``summary.json``.
+
+    Raises
+    ------
+    FileError
+        The file is missing or damaged.
+    """
+    file = folder / "summary.json"
+    try:
+        found = json.loads(read_text(file))
+    except ValueError as error:
+        raise FileError(str(file), f"is damaged: {error}", "run the design again") from None
+    if not isinstance(found, dict):
+        raise FileError(str(file), "is damaged: expected an object", "run the design again")
+    return found
 
 
 class Unwritten:

@@ -14,14 +14,15 @@ from importlib import import_module
 from typing import Any, Final, Literal
 
 #: Subject of a file: volume cells, triangles, an array of voxels, a robot with its objects and
-#: drives for another program, a design, or a table.
-Kind = Literal["cells", "surface", "voxels", "scene", "design", "table"]
+#: drives for another program, the states of a path or a motion, a design, or a table.
+Kind = Literal["cells", "surface", "voxels", "scene", "series", "design", "table"]
 #: Heading of the files of each kind.
 HEADINGS: Final[dict[Kind, str]] = {
     "cells": "Mesh",
     "surface": "Surface",
     "voxels": "Voxels",
     "scene": "Scene",
+    "series": "Series",
     "design": "Design",
     "table": "Table",
 }
@@ -50,9 +51,9 @@ class Format:
         Function that writes a file, as ``"module:function"``; None if the format is not written.
         Of ``cells`` it takes the path and a :class:`~voxsoft.files.mesh_file.MeshFile`; of
         ``surface`` the path and vertices and triangles of each surface by its name, in the unit of
-        the file; of others the path and a :class:`~voxsoft.files.exports.Source`. Of ``scene`` it
-        returns a list of
-        :class:`~voxsoft.errors.ErrorDetail`, entries of the design that the file does not hold.
+        the file; of others the path and a :class:`~voxsoft.files.exports.Source`. Of ``scene`` and
+        ``series`` it returns :class:`~voxsoft.errors.ErrorDetail` of all that the file does not
+        hold.
     holds
         Contents beside the geometry that a written file keeps.
     purpose
@@ -255,6 +256,15 @@ FORMATS: Final = (
         writer="voxsoft.files.scenes.usd:write",
         holds=frozenset({"parts", "regions"}),
         purpose="To show the robot and its motion in Blender, Houdini or Omniverse.",
+    ),
+    Format(
+        (".pvd",),
+        "series",
+        "States of a path or a motion as VTU files, for ParaView and PyVista",
+        writer="voxsoft.files.series:write",
+        holds=frozenset({"parts", "regions", "cavities", "values"}),
+        purpose="To play a path in ParaView: the body at each value, with its objects.",
+        unit="is always in m, its times in SI units",
     ),
     Format(
         (".csv",),

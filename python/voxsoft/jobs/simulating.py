@@ -15,6 +15,7 @@ from voxsoft.comparison.path_bars import path_error_bars
 from voxsoft.design import Design, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.files.figures import save_figure, save_thumbnail
+from voxsoft.files.path_states import STATES, write_states
 from voxsoft.files.run_folder import Unwritten, make_folder, write_summary
 from voxsoft.jobs.events import Listener, Progress
 from voxsoft.jobs.folder import write_job
@@ -145,9 +146,13 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
         # Every exception, Ctrl-C too, leaves the equilibria that were found.
         if followed is not None:
             _write(spec, followed.results[-1], folder, unwritten, path_summary(followed))
+            with unwritten.attempt(STATES):
+                write_states(followed, folder)
         raise
     result = path.results[-1]
     _write(spec, result, folder, unwritten, path_summary(path))
+    with unwritten.attempt(STATES):
+        write_states(path, folder)
 
     def announce(size: float, voxels: int, seconds: float) -> None:
         length = format_quantity(float(f"{size:.4g}"), "length")

@@ -3,6 +3,7 @@
 import asyncio
 import io
 import tomllib
+import xml.etree.ElementTree as ET
 import zipfile
 
 import httpx
@@ -127,3 +128,12 @@ def test_a_download_that_is_not_there_is_reported(at_rest):
     answer = httpx.get(f"{at_rest.origin}/download/nothing", params={"token": at_rest.token})
     assert answer.status_code == 404
     assert "export it again" in answer.json()["hint"]
+
+
+def test_a_series_comes_as_an_archive_with_its_states(at_rest, tmp_path):
+    zipfile.ZipFile(io.BytesIO(export(at_rest, "pvd").content)).extractall(tmp_path)
+    (listed,) = tmp_path.glob("*/*.pvd")
+    (row,) = ET.parse(listed).getroot().iter("DataSet")
+    found = meshio.read(listed.parent / row.get("file"))
+    assert found.point_data["displacement"][:, 2].max() == pytest.approx(0.013, abs=1e-3)
+    assert {"von_mises", "max_stretch"} <= found.point_data.keys()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,8 +14,8 @@ from numpy.typing import NDArray
 from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design
 from voxsoft.errors import ErrorDetail, FileError
-from voxsoft.files.designs import read_text
 from voxsoft.files.meshes import read_mesh_file
+from voxsoft.files.run_folder import read_summary
 from voxsoft.mesh import BodyMesh, Mesh
 from voxsoft.simulation import Result, Setup
 from voxsoft.simulation.features import FEATURES
@@ -154,7 +153,7 @@ class Scene:
             what = "holds no displacement of the vertices of the design beside it"
             raise FileError(str(folder / "result.vtu"), what, "run the design again")
         positions = rest + np.asarray(moved, dtype=np.float64)
-        end = SceneState(1.0, positions, _poses(folder / "summary.json"))
+        end = SceneState(1.0, positions, poses_of_run(folder))
         return cls(setup, (SceneState(0.0, rest), end))
 
     @property
@@ -263,24 +262,45 @@ def _states_of(result: Result) -> list[SceneState]:
         SceneState(
             float(time),
             frame,
-            {name: _pose(at[index], turn[index]) for name, (at, turn) in recording.objects.items()},
+            {
+                name: pose_at(at[index], turn[index])
+                for name, (at, turn) in recording.objects.items()
+            },
         )
         for index, (time, frame) in enumerate(zip(recording.times, recording.frames, strict=True))
     ]
 
 
-def _pose(position: Floats, rotation: Floats) -> Pose:
+def pose_at(position: Floats, rotation: Floats) -> Pose:
+    """Return a pose from a place [m], (3,), and a rotation, (3, 3)."""
     x, y, z = position.tolist()
     rows = [(row[0], row[1], row[2]) for row in rotation.tolist()]
     return Pose((x, y, z), tuple(rows))
 
 
-def _poses(file: Path) -> dict[str, Pose]:
+def poses_of_run(folder: Path) -> dict[str, Pose]:
+    """Return the pose of each rigid object at the end of a run, from its summary.
+
+    Raises
+    ------
+    FileError
+        The summary is missing or damaged.
+    """
+    return poses_in_summary(folder / "summary.json", read_summary(folder).get("objects", {}))
+
+
+def poses_in_summary(file: Path, objects: Mapping[str, Any]) -> dict[str, Pose]:
+    """Return poses from plain data of a file, as :meth:`Pose.summary` gives it.
+
+    Raises
+    ------
+    FileError
+        An entry is no pose.
+    """
     try:
-        found = json.loads(read_text(file)).get("objects", {})
         return {
-            name: _pose(np.array(each["position"]), np.array(each["rotation"]))
-            for name, each in found.items()
+            name: pose_at(np.array(each["position"]), np.array(each["rotation"]))
+            for name, each in objects.items()
         }
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise FileError(str(file), f"is damaged: {error}", "run the design again") from None

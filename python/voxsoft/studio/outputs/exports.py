@@ -18,7 +18,9 @@ from voxsoft.design import Design
 from voxsoft.errors import ErrorDetail, FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.exports import write_source
+from voxsoft.files.run_folder import make_folder
 from voxsoft.files.scenes.scene import Scene, SceneState
+from voxsoft.files.series import Series
 from voxsoft.files.shapes import shape_of
 from voxsoft.formats.registry import WRITTEN, Format
 from voxsoft.simulation import Result, named_regions
@@ -96,6 +98,10 @@ class Shown:
         now = SceneState(1.0, self.positions, poses)
         return Scene(setup, (SceneState(0.0, setup.mesh.vertices), now))
 
+    def series(self) -> Series:
+        """Return the body as it stands, with its fields, as one state."""
+        return Series.of(self.measured())
+
     def measured(self) -> Result:
         """The state as a result: the solver's where one found it, else measured as it stands.
 
@@ -156,6 +162,9 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         write_atomically(target, shown.text)
     elif form is not None and form.has_shape:
         _write_mesh(shown, target, form, options)
+    elif form is not None and form.kind == "series":
+        lost = write_source(_within(target), shown)
+        target = _archive(_within(target).parent, target.with_suffix(".zip"))
     elif form is not None:
         lost = write_source(target, shown)
     elif format == "run":
@@ -201,7 +210,11 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
     unit = str(options.get("unit", "mm")) if form is not None and form.unit is None else None
     deformed = bool(options.get("deformed", False))
     voxels = bool(options.get("voxels", False))
-    lost = files.export(source, target, deformed=deformed, unit=unit, voxels=voxels)
+    several = form is not None and form.kind == "series"
+    written = _within(target) if several else target
+    lost = files.export(source, written, deformed=deformed, unit=unit, voxels=voxels)
+    if several:
+        target = _archive(written.parent, target.with_suffix(".zip"))
     return Written(target, lost)
 
 
@@ -255,6 +268,11 @@ def _write_molds(design: Design, folder: Path) -> Path:
 
     write_fabrication(make(design), folder)
     return _archive(folder, folder.with_suffix(".zip"))
+
+
+def _within(target: Path) -> Path:
+    """Return the path of a file with others beside it, in a folder of their own."""
+    return make_folder(target.with_name(f"{target.stem}-series")) / target.name
 
 
 def _archive(folder: Path, target: Path) -> Path:
