@@ -21,7 +21,7 @@ def check(
     source: Annotated[
         Path,
         typer.Argument(
-            help="A design file, or a mesh: .stl .obj .ply .off ...",
+            help="A design file, a mesh, .stl .obj .vtu ..., or an array of voxels, .npy .vxa.",
             exists=True,
             dir_okay=False,
         ),
@@ -31,7 +31,10 @@ def check(
         str | None, typer.Option("--unit", help="Unit of a mesh file's numbers: mm, cm, m, inch.")
     ] = None,
     voxel_size: Annotated[
-        str | None, typer.Option("--voxel-size", help="Voxel size for a mesh file, '2 mm'.")
+        str | None,
+        typer.Option(
+            "--voxel-size", help="Voxel size for a mesh file, or side of a voxel of .npy, '2 mm'."
+        ),
     ] = None,
     nested: Annotated[
         Literal["solid", "void"] | None,

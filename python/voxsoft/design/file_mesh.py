@@ -16,11 +16,11 @@ from pydantic import AfterValidator, BeforeValidator, ConfigDict
 from voxsoft.design.references import places_in
 from voxsoft.design.region import Region
 from voxsoft.errors import DesignError, ErrorDetail, FileError, VoxSoftError
-from voxsoft.formats.unit import doubt
+from voxsoft.formats.registry import counts_voxels
+from voxsoft.formats.unit import doubt, length_of, sizes
 from voxsoft.materials import Hyperelastic
 from voxsoft.records import Record, closest, place
 from voxsoft.shapes.mesh_bodies import MeshBody, read_body, sizes_in_units
-from voxsoft.units import parse
 
 if TYPE_CHECKING:
     from voxsoft.design.model import Design
@@ -47,7 +47,7 @@ def _whole_path(path: object) -> object:
 
 
 def _is_unit(unit: str) -> str:
-    parse(f"1 {unit}", "length", where="unit")
+    length_of(unit)
     return unit
 
 
@@ -61,7 +61,8 @@ class FileMesh(Record):
         ``.vtk``; a relative path is meant from the folder of the design file, in Python from the
         working directory.
     unit
-        Length unit of its numbers, such as ``"mm"``: mesh files do not say it.
+        Length unit of its numbers, such as ``"mm"``: mesh files do not say it. Of an array of
+        voxels the side of one, such as ``"0.5 mm"``.
 
     Notes
     -----
@@ -131,11 +132,11 @@ def _scaled(body: MeshBody, name: str, unit: str | None) -> ReadMesh:
     """The tetrahedra of a file in m, as elements of their own."""
     mesh = body.mesh
     if unit is None:
-        raise DesignError("mesh.unit", *_sizes(mesh.vertices))
+        raise DesignError("mesh.unit", *_sizes(mesh.vertices, name))
     if mesh.fractions is not None:
         what = f"{name} holds voxels that are partly filled, which tetrahedra are not"
         raise DesignError("mesh.path", what, "solve the design that they are of")
-    meter = parse(f"1 {unit}", "length")
+    meter = length_of(unit)
     cavities = tuple(
         replace(each, volume=each.volume * meter**3, area=each.area * meter**2)
         for each in mesh.cavities
@@ -156,9 +157,12 @@ def _scaled(body: MeshBody, name: str, unit: str | None) -> ReadMesh:
     return ReadMesh(scaled, body.parts)
 
 
-def _sizes(vertices: NDArray[np.float64]) -> tuple[str, str]:
+def _sizes(vertices: NDArray[np.float64], name: str) -> tuple[str, str]:
     """Text and hint of the error about a missing unit."""
     extents = np.ptp(vertices, axis=0)
+    if counts_voxels(name):
+        what, hint = sizes(extents, "unit", name)
+        return f"is missing: {what}", hint
     shown = " × ".join(f"{extent:.4g}" for extent in extents)
     return (
         f"is missing: the file does not say its unit; its numbers span {shown}",

@@ -13,6 +13,8 @@ import numpy as np
 from voxsoft.errors import UnitError, VoxSoftError
 from voxsoft.files.accounts import account_of_surface
 from voxsoft.files.designs import FilePath, load
+from voxsoft.formats.read import read_contents
+from voxsoft.formats.registry import counts_voxels
 from voxsoft.formats.unit import name_of
 from voxsoft.shapes import TriangleMesh, voxelize
 from voxsoft.shapes.nesting import Nested
@@ -70,7 +72,9 @@ def check_mesh(
         Unit of the numbers in the file: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``; not needed where
         the file gives it.
     voxel_size
-        Text with a unit, or a number in m; default: a 50th of the longest side.
+        Text with a unit, or a number in m; default: a 50th of the longest side. Of an array of
+        voxels, ``.npy``, it is the side of one, which is also the default where the file or
+        `unit` gives it.
     nested
         Meaning of closed shells within others, as in a design: ``"solid"``, ``"void"``.
 
@@ -90,8 +94,13 @@ def check_mesh(
     """
     file = Path(path)
     surface = read_surface(file)
-    account = account_of_surface(file, surface, unit, "--unit")
+    is_array = counts_voxels(file.name)
+    if is_array and unit is None and voxel_size is not None and read_contents(file).unit is None:
+        unit = f"{_voxel_size(voxel_size, np.ones(3))[0]!r} m"
+    account = account_of_surface(file, surface, unit, "--voxel-size" if is_array else "--unit")
     meter = account.meter
+    if is_array and voxel_size is None:
+        voxel_size = meter
     size, chosen = _voxel_size(voxel_size, _extents(surface) * meter)
     try:
         mesh = TriangleMesh(path=str(file), unit=unit or name_of(meter), nested=nested)

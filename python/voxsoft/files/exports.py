@@ -256,7 +256,8 @@ def write_series(
     >>> import voxsoft as vs
     >>> from voxsoft.design import families
     >>> folder = Path(tempfile.mkdtemp())
-    >>> write_series(folder / "beam.pvd", vs.follow(families.beam(), "loads[0].value=0..1 N/2"))
+    >>> path = vs.follow(families.beam(), "loads[0].value=1..2 m/s^2/2")
+    >>> write_series(folder / "beam.pvd", path)
     ()
     >>> sorted(file.name for file in folder.glob("*/*"))
     ['body-0000.vtu', 'body-0001.vtu']

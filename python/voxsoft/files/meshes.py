@@ -106,9 +106,9 @@ def read_mesh_file(path: str | os.PathLike[str], *, unit: str | None = None) -> 
     path
         Path of the file.
     unit
-        Unit of its numbers: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``. Files that were written here,
-        and
-        formats that state their unit, need none.
+        Unit of its numbers: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``, or of an array of voxels the
+        side of one, ``"0.5 mm"``. Files that were written here, and formats that state their unit,
+        need none.
 
     Returns
     -------

@@ -25,10 +25,7 @@ _WAYS: Final = (
         "open its labels, whole numbers with 0 outside, in 3D Slicer and save them as .nrrd",
     ),
     ((".vtkhdf", ".hdf", ".vthb"), "open it in ParaView and save it as .vtu"),
-    (
-        (".npy", ".npz"),
-        "make voxels of it in Python by Voxels.from_array, or drop it on the studio",
-    ),
+    ((".npz",), "save its array by numpy.save, as .npy"),
 )
 
 #: Formats of meshio that are drawings.

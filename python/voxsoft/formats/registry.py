@@ -236,10 +236,22 @@ FORMATS: Final = (
         (".npy",),
         "voxels",
         "NumPy array of the voxels' parts",
+        reader="voxsoft.formats.voxel_arrays:read_npy",
+        taken="a cube for each voxel along the axes x, y, z whose label is not 0: whole numbers to "
+        "255, which are parts, or booleans; the size of a voxel is asked for",
         writer="voxsoft.files.exports:write_voxels",
         holds=frozenset({"parts"}),
         purpose="To work on the voxels in Python: an array of part numbers.",
         unit="holds the parts of voxels, and no lengths",
+    ),
+    Format(
+        (".vxa", ".vxc", ".vxd"),
+        "voxels",
+        "VoxCAD, Voxelyze and voxcraft-sim",
+        reader="voxsoft.formats.voxel_arrays:read_voxcad",
+        taken="a cube for each voxel whose digit is not 0, in layers as readable text; "
+        "`Lattice_Dim` is its size, which is asked for in `.vxd` without it. Materials, "
+        "environment and controllers are not read",
     ),
     Format(
         (".xml",),
@@ -305,6 +317,18 @@ def function(name: str) -> Callable[..., Any]:
     module, _, attribute = name.partition(":")
     found: Callable[..., Any] = getattr(import_module(module), attribute)
     return found
+
+
+def counts_voxels(name: str) -> bool:
+    """Return True for a file whose coordinates count voxels, so that their size is its unit.
+
+    Examples
+    --------
+    >>> counts_voxels("scan.npy"), counts_voxels("scan.nrrd")
+    (True, False)
+    """
+    lower = name.lower()
+    return any(form.kind == "voxels" and lower.endswith(end) for end, form in READ.items())
 
 
 def suffixes_that_hold(*contents: Holding) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.errors import UnitError
+from voxsoft.formats.registry import counts_voxels
 from voxsoft.units import format_quantity, parse
 
 UNITS: Final = ("mm", "cm", "inch", "m")
@@ -27,7 +29,7 @@ def meter_of(
     stated
         Meters in the unit that the file gives, None if it gives none.
     given
-        A unit such as ``"mm"``, or None.
+        A unit such as ``"mm"``, a length such as ``"0.5 mm"``, or None.
     points
         Positions of the body in the file's unit, (n, 3).
     ask
@@ -44,26 +46,47 @@ def meter_of(
     0.001
     """
     if given is not None:
-        return parse(f"1 {given}", "length", where="unit")
+        return length_of(given)
     if stated is None:
-        raise UnitError(where, *sizes(np.ptp(points, axis=0), ask))
+        raise UnitError(where, *sizes(np.ptp(points, axis=0), ask, where))
     return stated
 
 
-def name_of(meter: float) -> str:
-    """Return the name of a unit from its length in meters.
+def length_of(unit: str) -> float:
+    """Return meters in a unit: its name, or a length with one, such as the size of a voxel.
+
+    Raises
+    ------
+    UnitError
+        If it is no length, or not positive.
 
     Examples
     --------
-    >>> name_of(0.001), name_of(0.0254), name_of(1e-6)
-    ('mm', 'inch', 'um')
+    >>> length_of("mm"), length_of("0.5 mm")
+    (0.001, 0.0005)
+    """
+    is_length = unit.lstrip()[:1] in ("+", "-", ".") or unit.lstrip()[:1].isdigit()
+    found = parse(unit if is_length else f"1 {unit}", "length", where="unit")
+    if not (math.isfinite(found) and found > 0.0):
+        raise UnitError("unit", f'"{unit}" is no positive length', 'write "mm", or "0.5 mm"')
+    return found
+
+
+def name_of(meter: float) -> str:
+    """Return the name of a unit from its length in meters; the length itself where none has it.
+
+    Examples
+    --------
+    >>> name_of(0.001), name_of(0.0254), name_of(1e-6), name_of(0.0005)
+    ('mm', 'inch', 'um', '0.0005 m')
     """
     known = {parse(f"1 {unit}", "length"): unit for unit in (*UNITS, "um", "nm", "ft")}
-    return min(known.items(), key=lambda each: abs(np.log(each[0] / meter)))[1]
+    size, name = min(known.items(), key=lambda each: abs(np.log(each[0] / meter)))
+    return name if math.isclose(size, meter, rel_tol=1e-6) else f"{meter!r} m"
 
 
-def sizes(extents: NDArray[np.float64], ask: str) -> tuple[str, str]:
-    """Return message and hint of the error about a missing unit.
+def sizes(extents: NDArray[np.float64], ask: str, name: str = "") -> tuple[str, str]:
+    """Return message and hint of the error about a missing unit; `name` is that of the file.
 
     Examples
     --------
@@ -72,6 +95,9 @@ def sizes(extents: NDArray[np.float64], ask: str) -> tuple[str, str]:
 inch, m; the body would be, in mm: 80 mm long, cm: 800 mm long, inch: 2.03 m long, m: 80 m long
     """
     shown = " × ".join(f"{extent:.4g}" for extent in extents)
+    if counts_voxels(name):
+        what = f"the file does not say how large its voxels are; its body is {shown} voxels"
+        return what, f'give {ask} the side of a voxel, such as "1 mm"'
     listed = ", ".join(
         f"{unit}: {_longest(extents, parse(f'1 {unit}', 'length'))}" for unit in UNITS
     )

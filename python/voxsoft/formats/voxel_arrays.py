@@ -36,12 +36,14 @@ def read_npy(path: Path) -> Contents:
         It is no such array, has another number of axes than three, other numbers, or is empty.
     """
     where = str(path)
+    hint = "save one array of numbers by numpy.save"
     try:
-        values = np.load(path, allow_pickle=False)
+        with path.open("rb") as file:
+            values = np.lib.format.read_array(file, allow_pickle=False)
     except (OSError, ValueError, EOFError) as error:
-        raise FileError(where, f"is no array of NumPy: {error}", "save it by numpy.save") from None
-    if not isinstance(values, np.ndarray):
-        raise FileError(where, "is an archive of NumPy", "save one array by numpy.save")
+        has_objects = "Object arrays" in str(error)
+        reason = "it holds objects of Python" if has_objects else str(error).partition("\n")[0]
+        raise FileError(where, f"is no array of NumPy: {reason}", hint) from None
     if values.ndim != 3:
         what = f"holds {values.dtype} of shape {values.shape}; expected three axes, x, y and z"
         raise FileError(where, what, "save the labels of voxels alone")

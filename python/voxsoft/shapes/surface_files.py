@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ from voxsoft.formats.registry import READ
 from voxsoft.formats.report import counted_cells, held_by
 from voxsoft.records import closest
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
+
+#: Array of labels of images and of arrays of voxels.
+LABEL: Final = "label"
 
 
 class Surface(NamedTuple):
@@ -97,6 +100,23 @@ def parts_in(contents: Contents) -> tuple[str, ...]:
         if not len(faces) or (counts % 2).any():
             return ()
     return names
+
+
+def labels_in(contents: Contents) -> tuple[str, ...]:
+    """Return the names of parts of an image or an array by its labels; none where it is one.
+
+    Examples
+    --------
+    >>> cube = CellBlock("hexahedron", np.zeros((3, 8), np.int64))
+    >>> labels = {"label": np.array([2.0, 7.0, 2.0])}
+    >>> labels_in(Contents(np.zeros((0, 3)), (cube,), arrays=labels))
+    ('label 2', 'label 7')
+    """
+    is_image = [block.kind for block in contents.blocks] == ["hexahedron"]
+    if not is_image or contents.arrays.keys() != {LABEL} or contents.cell_sets:
+        return ()
+    labels = np.unique(contents.arrays[LABEL])
+    return tuple(f"{LABEL} {int(label)}" for label in labels) if len(labels) > 1 else ()
 
 
 def _blocks_of(contents: Contents, part: str, name: str) -> list[CellBlock]:

@@ -26,14 +26,14 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from voxsoft import _core
 from voxsoft.errors import FileError, ShapeError
 from voxsoft.formats.read import read_contents
-from voxsoft.formats.unit import sizes
+from voxsoft.formats.unit import length_of, sizes
 from voxsoft.records import Name
 from voxsoft.shapes.base import Scope, Shape, Triple
 from voxsoft.shapes.mesh_bodies import MeshBody, read_body
 from voxsoft.shapes.nesting import Nest, Nested, taken_once, unnested
 from voxsoft.shapes.shells import Hole, holes_of, in_one_sense
 from voxsoft.shapes.surface_files import has_own_parts, read_surface
-from voxsoft.units import format_quantity, parse
+from voxsoft.units import format_quantity
 
 __all__ = [
     "TriangleMesh",
@@ -89,7 +89,7 @@ class SurfaceState(NamedTuple):
 
 
 def _is_length_unit(unit: str) -> str:
-    parse(f"1 {unit}", "length")
+    length_of(unit)
     return unit
 
 
@@ -120,12 +120,13 @@ class TriangleMesh(Shape):
 
     kind: Literal["mesh"] = "mesh"
     path: Annotated[str, BeforeValidator(_whole_path)] = Field(
-        description="File: .stl, .obj, .3mf, .ply, .off, .msh, .mesh, .vtk, .vtu and others."
+        description="File: .stl, .obj, .3mf, .ply, .off, .msh, .mesh, .vtk, .vtu, .npy and others."
     )
     unit: Annotated[str, AfterValidator(_is_length_unit)] | None = Field(
         None,
-        description="Length unit of the file, such as mm; default: as it says. 3MF, GLB and files "
-        "of VoxSoft do, most others do not.",
+        description="Length unit of the file, such as mm, or of an array of voxels the side of "
+        "one, such as 0.5 mm; default: as it says. 3MF, GLB and files of VoxSoft do, most others "
+        "do not.",
     )
     part: Name | None = Field(
         None,
@@ -175,7 +176,7 @@ class TriangleMesh(Shape):
     @property
     def _meter(self) -> float:
         if self.unit is not None:
-            return parse(f"1 {self.unit}", "length")
+            return length_of(self.unit)
         path = Path(self.path)
         return _stated(path, _changed(path))
 
@@ -196,7 +197,7 @@ def _stated(path: Path, changed: int) -> float:
     except FileError as error:
         raise ShapeError("path", f"{path.name}: {error.what}", error.hint) from None
     if contents.unit is None:
-        raise ShapeError("unit", *sizes(np.ptp(contents.points, axis=0), "unit"))
+        raise ShapeError("unit", *sizes(np.ptp(contents.points, axis=0), "unit", path.name))
     return contents.unit
 
 

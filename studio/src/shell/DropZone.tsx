@@ -4,7 +4,7 @@ import { toast } from "../store/studio";
 import { openDocument } from "./actions";
 
 /** Endings of files that can be opened. */
-export const TAKEN: readonly string[] = [".toml", ...MESHES, ".npy", ".zip"];
+export const TAKEN: readonly string[] = [".toml", ...MESHES, ".zip"];
 
 /** Send a file to the server and open it; tables of measurements are taken by their own pane. */
 export async function upload(file: File): Promise<void> {

@@ -10,11 +10,10 @@ import trimesh
 from voxsoft import check
 from voxsoft.design import Design
 from voxsoft.design.discretization.discretize import mesh_of, voxels_of
-from voxsoft.errors import FileError, VoxelError
+from voxsoft.errors import FileError
 from voxsoft.files import write_surfaces
 from voxsoft.simulation.setup.volumes import volumes_of
 from voxsoft.studio.documents.uploads import (
-    design_of_array,
     design_of_mesh,
     safe_name,
     unpack_folder,
@@ -69,14 +68,14 @@ def test_a_bomb_is_refused(tmp_path, monkeypatch):
 
 def uploaded(tmp_path, array):
     np.save(tmp_path / "scan.npy", array)
-    return Design.from_document(tomllib.loads(design_of_array(tmp_path / "scan.npy")))
+    return Design.from_document(tomllib.loads(design_of_mesh(tmp_path / "scan.npy")))
 
 
 def test_labels_of_an_array_are_parts(tmp_path):
     labels = np.zeros((6, 4, 3), np.uint8)
     labels[:3], labels[3:, 1:] = 1, 7
     design = uploaded(tmp_path, labels)
-    assert [part.label for part in design.parts] == ["part-1", "part-7"]
+    assert [part.label for part in design.parts] == ["label 1", "label 7"]
     filled = voxels_of(design).array
     np.testing.assert_array_equal(filled, np.select([labels == 1, labels == 7], [1, 2]))
     assert voxels_of(design).voxel_size == 1e-3
@@ -95,10 +94,12 @@ def test_an_array_of_one_label_is_one_part(tmp_path, labels):
         (np.full((4, 4, 4), 0.03), "compare with a threshold"),
         (np.full((4, 4, 4), -1000, np.int16), "numbered 0 .* to 255"),
         (np.full((4, 4, 4), 300, np.int16), "numbered 0 .* to 255"),
+        (np.ones((4, 4), np.uint8), "expected three axes"),
+        (np.zeros((4, 4, 4), np.uint8), "is 0 everywhere"),
     ],
 )
 def test_an_array_that_is_no_labels_is_refused(tmp_path, array, what):
-    with pytest.raises(VoxelError, match=what):
+    with pytest.raises(FileError, match=what):
         uploaded(tmp_path, array)
 
 
@@ -131,3 +132,31 @@ def test_a_mesh_of_a_doubtful_size_is_asked_about(tmp_path):
     assert ", m: 40 mm long" in text
     found = [str(each) for each in check(Design.from_document(tomllib.loads(text))).findings]
     assert any("box_m.stl is read in mm" in each for each in found)
+
+
+def test_the_labels_of_an_image_are_parts(tmp_path):
+    file = tmp_path / "scan.vti"
+    file.write_text(
+        '<VTKFile type="ImageData"><ImageData WholeExtent="0 2 0 1 0 1" Origin="0 0 0" '
+        'Spacing="10 10 10"><Piece Extent="0 2 0 1 0 1"><CellData><DataArray type="Int32" '
+        'Name="tissue" format="ascii">3 1000000</DataArray></CellData></Piece></ImageData>'
+        "</VTKFile>"
+    )
+    design = Design.from_document(tomllib.loads(design_of_mesh(file)))
+    assert [part.shape for part in design.parts] == ["label 3", "label 1000000"]
+    found = volumes_of(design, mesh_of(design)).parts
+    assert [each.simulated for each in found.values()] == pytest.approx([1e-6, 1e-6], rel=0.05)
+
+
+def test_voxels_of_voxcad_keep_their_size(tmp_path):
+    file = tmp_path / "robot.vxa"
+    file.write_text(
+        "<VXA><VXC><Lattice><Lattice_Dim>0.0005</Lattice_Dim></Lattice>"
+        '<Structure Compression="ASCII_READABLE"><X_Voxels>2</X_Voxels><Y_Voxels>1</Y_Voxels>'
+        "<Z_Voxels>2</Z_Voxels><Data><Layer>13</Layer><Layer>10</Layer></Data></Structure>"
+        "</VXC></VXA>"
+    )
+    design = Design.from_document(tomllib.loads(design_of_mesh(file)))
+    found = voxels_of(design)
+    assert found.voxel_size == 0.0005
+    np.testing.assert_array_equal(found.array, [[[1, 1]], [[2, 0]]])

@@ -44,7 +44,7 @@ def design(**changes):
         "solver": {"method": "statics", "error": "off"},
         **changes,
     }
-    return vs.Design.from_document(document)
+    return vs.Design.from_document({k: v for k, v in document.items() if v != {}})
 
 
 def listed(file):
@@ -88,6 +88,46 @@ def test_a_path_of_a_run_folder_has_every_equilibrium_with_all_fields(pressed, t
             # Reactions and contact are kept in 32 bits; the rest follows from positions.
             scale = max(float(np.nanmax(np.abs(second[array]), initial=0.0)), 1e-12)
             np.testing.assert_allclose(values, second[array], atol=1e-7 * scale, err_msg=array)
+
+
+SOFT = {**RUBBER, "mullins": {"r": 1.5, "m": "20 J/m^3", "beta": 0.1}}
+
+
+@pytest.mark.parametrize(
+    ("changes", "over"),
+    [
+        (
+            {"activations": [{"part": "firm", "kind": "strain", "value": 0.1}]},
+            "activations[0].value=0..0.1/3",
+        ),
+        (
+            {
+                "parts": [{"shape": box(["10 mm", "10 mm", "15 mm"], [0, 0, 0]), "material": SOFT}],
+                "loads": [{"kind": "gravity", "value": "300 m/s^2"}],
+            },
+            "loads[0].value=0..300..0 m/s^2/5",
+        ),
+        (
+            {
+                "loads": [{"kind": "gravity"}],
+                "solver": {"method": "statics", "error": "off", "refine": 2},
+            },
+            "loads[0].value=0..9.81 m/s^2/2",
+        ),
+    ],
+    ids=["activated", "softened", "refined"],
+)
+def test_stress_on_a_path_has_its_memory(tmp_path, changes, over):
+    made = design(objects=[], contact={}, **changes)
+    outcome = run_job(RunSpec(design=made, over=over), tmp_path / "run")
+    export(tmp_path / "run", tmp_path / "run.pvd")
+    results, files = outcome.path.results, listed(tmp_path / "run.pvd")
+    assert len(results) == len(files)
+    for result, (_, _, file) in zip(results, files, strict=True):
+        found = arrays_of(file)[1]["stress in cells"]
+        expected = result.fields.cell_data(result.mesh)["stress"]
+        scale = float(np.abs(expected).max())
+        np.testing.assert_allclose(found, expected, atol=1e-9 * scale + 1e-6)
 
 
 def test_the_last_state_is_the_result(pressed, tmp_path):

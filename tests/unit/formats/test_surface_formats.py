@@ -110,7 +110,7 @@ def test_gltf_is_in_meters(tmp_path):
         ("a.unv", "Gmsh and save it as .msh"),
         ("a.dae", "Blender"),
         ("a.mha", "3D Slicer"),
-        ("a.npy", "Voxels.from_array"),
+        ("a.npz", "numpy.save, as .npy"),
     ],
 )
 def test_formats_that_are_not_read_have_a_way_that_works(tmp_path, name, way):

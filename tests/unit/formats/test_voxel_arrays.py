@@ -58,7 +58,9 @@ def test_an_array_lies_along_x_y_z_with_its_labels(tmp_path):
     np.save(tmp_path / "a.npy", LABELS)
     found = design_of(tmp_path / "a.npy", "2 mm")
     filled = voxels_of(found)
-    np.testing.assert_array_equal(filled.array, np.select([LABELS == 2, LABELS == 7], [1, 2])[:, :2])
+    np.testing.assert_array_equal(
+        filled.array, np.select([LABELS == 2, LABELS == 7], [1, 2])[:, :2]
+    )
     read = read_mesh_file(tmp_path / "a.npy", unit="2 mm")
     assert list(read.report.parts.values()) == ["label 2", "label 7"]
     assert read.mesh.volume == pytest.approx(6 * 8e-9)
@@ -92,7 +94,7 @@ def test_any_array_is_filled_cell_by_cell(tmp_path, seed):
         (LABELS[0], "shape .3, 2.; expected three axes"),
         (0 * LABELS, "is 0 everywhere"),
         (LABELS[:0], "is empty: its shape is .0, 3, 2."),
-        (np.array([[[None]]]), "is no array of NumPy"),
+        (np.array([[[None]]]), "is no array of NumPy: it holds objects"),
     ],
 )
 def test_other_numbers_are_refused(tmp_path, array, what):
@@ -107,7 +109,7 @@ def test_a_file_that_is_no_array_is_refused(tmp_path):
         read_contents(tmp_path / "a.npy")
     np.savez(tmp_path / "b.npz", LABELS)
     (tmp_path / "b.npz").rename(tmp_path / "b.npy")
-    with pytest.raises(FileError, match="is an archive of NumPy"):
+    with pytest.raises(FileError, match="is no array of NumPy: the magic string"):
         read_contents(tmp_path / "b.npy")
 
 

@@ -13,7 +13,7 @@ from voxsoft.files.toml_edits import with_value
 from voxsoft.jobs import load
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 from voxsoft.studio.documents.document import DesignDocument
-from voxsoft.studio.documents.uploads import MESHES, design_of_array, design_of_mesh
+from voxsoft.studio.documents.uploads import MESHES, design_of_mesh
 from voxsoft.studio.running.studying import design_text_of, stored_trial
 from voxsoft.study.trial import Trial
 from voxsoft.units import format_quantity
@@ -117,8 +117,6 @@ def uploaded_document(file: Path, home: Path) -> DesignDocument:
         return opened
     if file.suffix in MESHES:
         text = design_of_mesh(file)
-    elif file.suffix == ".npy":
-        text = design_of_array(file)
     else:
         raise FileError(file.name, "holds measurements", "open it in the Calibrate pane")
     return DesignDocument(text, f"{file.stem}.toml", folder=home)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import re
 import zipfile
@@ -11,29 +10,25 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
-import numpy as np
-
 from voxsoft._folders import folder_name
 from voxsoft.errors import FileError
-from voxsoft.files import write_mesh
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
 from voxsoft.formats.read import read_contents
-from voxsoft.formats.registry import READ
-from voxsoft.formats.unit import name_of
+from voxsoft.formats.registry import READ, counts_voxels
+from voxsoft.formats.unit import length_of, name_of
 from voxsoft.shapes import TriangleMesh
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 from voxsoft.shapes.mesh_bodies import sizes_in_units
-from voxsoft.shapes.surface_files import parts_in
-from voxsoft.units import format_quantity, parse
-from voxsoft.voxels import Voxels
+from voxsoft.shapes.surface_files import labels_in, parts_in
+from voxsoft.units import format_quantity
 
 #: Largest size of all unpacked files of an archive [bytes].
 LARGEST_ARCHIVE: Final = 512 * 1024 * 1024
 #: Files in an archive.
 MOST_FILES: Final = 2_000
 MESHES: Final = tuple(READ)
-KINDS: Final = (".toml", *MESHES, ".npy", ".csv", ".zip")
+KINDS: Final = (".toml", *MESHES, ".csv", ".zip")
 #: Cells along the longest side of a mesh that is dropped on the page.
 _FIRST_CELLS: Final = 32
 #: The material of a body that says none.
@@ -69,66 +64,45 @@ def safe_name(name: str) -> str:
 
 
 def design_of_mesh(file: Path) -> str:
-    """Write a design file whose body is a mesh that was dropped on the page.
+    """Write a design file whose body is a mesh or an array of voxels, dropped on the page.
 
     Parameters
     ----------
     file
-        The mesh. Its numbers are in the unit that it says, else in mm, as most programs write them.
+        The file. Its numbers are in the unit that it says, else in mm, as most programs write them;
+        voxels of an array are 1 mm wide where it does not say it. Its objects, or its labels, are
+        parts.
 
     Raises
     ------
     FileError, ShapeError
-        The mesh cannot be read, or encloses nothing.
+        The file cannot be read, encloses nothing, or is an array of other numbers than labels.
     """
     contents = read_contents(file)
     meter = contents.unit
     unit = "mm" if meter is None else name_of(meter)
     low, high = TriangleMesh(path=str(file), unit=unit).build().bounds()
+    pieces = [
+        _Piece(file, unit, part) for part in parts_in(contents) or labels_in(contents) or (None,)
+    ]
+    if counts_voxels(file.name):
+        unit = "1 mm" if meter is None else format_quantity(meter, "length")
+        pieces = [each._replace(unit=unit) for each in pieces]
+        why = "are taken as" if meter is None else "are, as it says,"
+        about = (
+            f"# A body from {file.name}, each label of which is a part. Its voxels {why} {unit}",
+            "# wide: change `unit`, `voxel_size` and the lengths below, if that is wrong.",
+        )
+        return _standing(about, pieces, unit, low[2], file.stem)
     size = max(b - a for a, b in zip(low, high, strict=True)) / _FIRST_CELLS
     voxel = format_quantity(float(f"{size:.2g}"), "length")
-    sizes = sizes_in_units(_FIRST_CELLS * size / parse(f"1 {unit}", "length"))
+    sizes = sizes_in_units(_FIRST_CELLS * size / length_of(unit))
     why = "are taken as" if meter is None else "are, as it says, in"
     about = (
         f"# A body from {file.name}. Its numbers {why} {unit}: change `unit`, and",
         f"# the lengths below, if that is wrong. It would be, {sizes}.",
     )
-    pieces = [_Piece(file, unit, part) for part in parts_in(contents) or (None,)]
     return _standing(about, pieces, voxel, low[2], file.stem)
-
-
-def design_of_array(file: Path) -> str:
-    """Write a design file whose body is an array of voxels, and the mesh of it beside the array.
-
-    Each number that is not zero is a part; a voxel is 1 mm wide, as an array does not say it.
-
-    Raises
-    ------
-    FileError
-        It is no array with three axes.
-    VoxelError
-        Its numbers are no parts, 0 to 255, or no cell is full.
-    """
-    try:
-        array = np.load(io.BytesIO(file.read_bytes()), allow_pickle=False)
-    except (OSError, ValueError, EOFError) as error:
-        raise FileError(file.name, f"is no array of NumPy: {error}") from None
-    if array.ndim != 3:
-        what = f"holds {array.dtype} of shape {array.shape}; expected three axes of numbers"
-        raise FileError(file.name, what)
-    voxels = Voxels.from_array(array, 1e-3)
-    labels = sorted(voxels.part_counts)
-    # Only a file of tetrahedra has parts; one surface is read more quickly.
-    body = file.with_suffix(".stl" if len(labels) == 1 else ".vtu")
-    write_mesh(body, voxels.mesh())
-    parts = [_Piece(body, "m")]
-    if len(labels) > 1:
-        parts = [_Piece(body, "m", f"part-{label}") for label in labels]
-    about = (
-        f"# A body from {file.name}, each number of which is a part. An array does not say",
-        "# how large its voxels are: they are taken as 1 mm. For 2 mm scale the shapes by 2.",
-    )
-    return _standing(about, parts, "1 mm", 0.0, file.stem)
 
 
 class _Piece(NamedTuple):
