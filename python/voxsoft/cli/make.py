@@ -11,6 +11,7 @@ from voxsoft._folders import folder_name
 from voxsoft.cli.exits import INVALID, USAGE, errors_in_words
 from voxsoft.cli.options import DesignFile, Json, Sets
 from voxsoft.cli.output import plain, print_json, quantity, say, show_table
+from voxsoft.errors import DesignError
 
 if TYPE_CHECKING:
     from voxsoft.fabrication import Fabrication
@@ -37,8 +38,8 @@ def make(
         typer.Option(
             "--printer",
             metavar="NAME=VALUE",
-            help="A limit of the printer: wall='0.8 mm', clearance, tube, vent, pour, resolution. "
-            "Repeatable.",
+            help="A limit of the printer: wall='0.8 mm', clearance, tube, vent, pour, resolution, "
+            "volume='220 mm, 220 mm, 220 mm'. Repeatable.",
         ),
     ] = None,
     stl: Annotated[bool, typer.Option("--stl", help="Parts as STL in mm, not as 3MF.")] = False,
@@ -65,6 +66,9 @@ def make(
         limits = dict(_limit(each) for each in printer or [])
         loaded = files.load(design, assignments=sets or [])
         if body is not None:
+            if body not in loaded.body_names:
+                names = ", ".join(loaded.body_names) or "none, so that it needs no --body"
+                raise DesignError("body", f"{body!r} is not known; the design has {names}")
             loaded = loaded.alone(body)
         wanted = next((each for each in WAYS if each == way), None)
         with ProgressBar("molds", 1) as bar:
@@ -90,11 +94,11 @@ def make(
 
 
 def _limit(text: str) -> tuple[str, Any]:
-    from voxsoft.errors import DesignError
-
     name, equals, value = text.partition("=")
     if not equals:
         raise DesignError("printer", f"{text!r} came; expected NAME=VALUE", "wall='0.8 mm'")
+    if name.strip() == "volume":
+        return "volume", [each.strip() for each in value.split(",")]
     return name.strip(), value.strip()
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import count
 from typing import Final
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from voxsoft.design import Design
 from voxsoft.errors import ErrorDetail
 from voxsoft.fabrication import proof
-from voxsoft.fabrication.body import Body, Inlet
+from voxsoft.fabrication.body import Body, Inlet, inlets_of
 from voxsoft.fabrication.fields import Floats
 from voxsoft.fabrication.mold import Mold, mold_of
 from voxsoft.fabrication.planning import WAYS, Casting, Plan, Way, plan
@@ -55,6 +56,16 @@ class Cast:
     a: float
     b: float
     deviation: float
+
+    @property
+    def volume(self) -> float:
+        """Volume of silicone in the casting [m³]: without cores that are lost."""
+        return self.mold.surface.volume - self.casting.cores
+
+    @property
+    def poured(self) -> float:
+        """Volume of silicone in the mold [m³]: without cores that are lost."""
+        return self.mold.poured - self.casting.cores
 
     @property
     def waste(self) -> float:
@@ -181,7 +192,8 @@ def make(
     Raises
     ------
     DesignError
-        Several bodies, a mesh of tetrahedra, or a shape without an end.
+        Several bodies, a mesh of tetrahedra, a shape without an end, a part that samples miss, or
+        too many samples.
 
     Examples
     --------
@@ -193,44 +205,49 @@ def make(
     ('cast', ['part-1-lower'], ())
     """
     printer = printer or Printer()
+    names = _Names()
     body = Body.of(design, printer.resolution)
     plans: list[Plan] = []
-    inlets: dict[str, Inlet] = {}
+    holes: list[Inlet] | None = None
     printed: list[Printed] = []
     for component in body.components:
         if component.rigid:
             surface = surface_of(component.solid, body.grid, component.values)
-            printed.append(Printed(_file_name(component.name), "rigid", surface))
+            printed.append(Printed(names.of(component.name), "rigid", surface))
             continue
-        found, holes = plan(body, component, printer, way)
+        found, holes = plan(body, component, printer, way, holes)
         plans.append(found)
-        inlets.update({each.chamber: each for each in holes})
+    inlets = inlets_of(body, printer, None) if holes is None else holes
     problems: list[ErrorDetail] = []
     casts: list[Cast] = []
     for each in plans:
         if each.way == "printed":
             surface = surface_of(each.component.solid, body.grid, each.component.values)
-            printed.append(Printed(_file_name(each.component.name), "body", surface))
-        if each.way == "lost-core":
-            printed += [
-                Printed(f"core-{_file_name(void.name)}", "core", void.surface(body.grid))
-                for void in body.voids
-            ]
+            printed.append(Printed(names.of(each.component.name), "body", surface))
         problems += _unplanned(each, way)
         for casting in each.castings:
-            name = _file_name(casting.name)
+            name = names.of(casting.name, "-lower", "-upper")
             mold = mold_of(casting.solid, casting.low, casting.high, casting.frame, printer, name)
             cast = _cast(casting, mold)
             casts.append(cast)
             if progress is not None:
                 progress(len(casts), sum(len(other.castings) for other in plans))
             problems += _proved(cast, printer)
-    holes = list(inlets.values())
+    if any(each.way == "lost-core" for each in plans):
+        printed += [
+            Printed(names.of(f"core-{void.name}"), "core", void.surface(body.grid))
+            for void in body.voids
+        ]
     printed += [
-        Printed(plate.name, "plate", plate.surface) for plate in plates_of(body, holes, printer)
+        Printed(names.of(plate.name), "plate", plate.surface)
+        for plate in plates_of(body, inlets, printer)
     ]
+    if way is not None and plans and all(each.way not in (way, "printed") for each in plans):
+        what = f'"{way}" was asked for, and the way is {plans[0].way}: {plans[0].why}'
+        problems.append(ErrorDetail("way", what, f'leave it out, or take "{plans[0].way}"'))
+    reached = {each.chamber for each in inlets}
     for void in body.voids:
-        if void.name not in inlets and any(p.way in ("halves", "lost-core") for p in plans):
+        if void.name not in reached and any(each.way != "printed" for each in plans):
             what = "no straight hole leads to it through one wall"
             hint = "leave room for a tube where its wall is flat, or name another clamp"
             problems.append(ErrorDetail(f"chambers.{void.name}", what, hint))
@@ -238,30 +255,44 @@ def make(
         reason = proof.unsound(one.surface)
         if reason is not None:
             problems.append(ErrorDetail(one.name, reason, "a finer resolution of the printer"))
-    described = sum(each.mold.surface.volume for each in casts)
+    described = sum(each.volume for each in casts)
     return Fabrication(
         design=design,
         printer=printer,
         plans=tuple(plans),
         casts=tuple(casts),
         printed=tuple(printed),
-        inlets=tuple(holes),
+        inlets=tuple(inlets),
         described=described,
-        poured=sum(each.mold.poured for each in casts),
+        poured=sum(each.poured for each in casts),
         problems=tuple(problems),
-        notes=tuple(_notes(design, plans, holes)),
+        notes=tuple(_notes(body, plans, inlets)),
     )
 
 
-def _file_name(name: str) -> str:
-    kept = "".join(c if c.isalnum() else "-" for c in name.lower())
-    return "-".join(part for part in kept.split("-") if part) or "part"
+class _Names:
+    """Names of files, each given once."""
+
+    def __init__(self) -> None:
+        self._given: set[str] = set()
+
+    def of(self, name: str, *endings: str) -> str:
+        """Return a name that is free with all endings, from the letters and digits of another."""
+        kept = "".join(c if c.isalnum() else "-" for c in name.lower())
+        first = "-".join(part for part in kept.split("-") if part) or "part"
+        for number in count(1):
+            found = first if number == 1 else f"{first}-{number}"
+            names = {f"{found}{ending}" for ending in endings or ("",)}
+            if not names & self._given:
+                break
+        self._given |= names
+        return found
 
 
 def _cast(casting: Casting, mold: Mold) -> Cast:
     component = casting.component
     data = casting_data(component.material)
-    mass = mold.surface.volume * component.density
+    mass = (mold.surface.volume - casting.cores) * component.density
     total = mass * (1.0 + WASTE)
     first, second = data.parts if data is not None else (1.0, 0.0)
     share = first / (first + second)
@@ -311,14 +342,15 @@ def _proved(cast: Cast, printer: Printer) -> list[ErrorDetail]:
     if mold.trapped > 0.0:
         what = f"{mold.trapped * 1e9:.3g} mm³ of air stay in it"
         found.append(ErrorDetail(cast.casting.name, what, "another way, or a cut elsewhere"))
-    if cast.deviation > DEVIATION:
+    if not cast.deviation <= DEVIATION:
         shown = format_quantity(round(cast.deviation, 6), "length")
         most = format_quantity(DEVIATION, "length")
         what = f"its mold is {shown} off its shape; at most {most} count as equal"
         found.append(ErrorDetail(cast.casting.name, what, "a finer resolution of the printer"))
-    off = mold.poured / mold.surface.volume - 1.0
-    if abs(off) > VOLUME:
-        what = f"its mold holds {off:+.2%} of its volume more"
+    off = cast.poured / cast.volume - 1.0
+    if not abs(off) <= VOLUME:
+        more = "more" if off > 0.0 else "less"
+        what = f"its mold holds {abs(off):.2%} {more} than its volume"
         found.append(ErrorDetail(cast.casting.name, what, "a finer resolution of the printer"))
     return found
 
@@ -327,14 +359,26 @@ def _place(at: Floats) -> str:
     return f"({', '.join(f'{1e3 * each:.3g}' for each in at)}) mm of the mold"
 
 
-def _notes(design: Design, plans: list[Plan], inlets: list[Inlet]) -> list[str]:
+def _is_molded(inlet: Inlet, body: Body, plans: list[Plan]) -> bool:
+    """Return True if pins of cores make an inlet all through its wall."""
+    share = (np.arange(int(np.ceil(inlet.length / body.grid.step))) + 0.5) * body.grid.step
+    points = np.tile(np.array(inlet.at), (len(share), 1))
+    points[:, inlet.axis] -= inlet.sign * share
+    wall = body.grid.nearest(points)
+    made = np.zeros(len(points), dtype=bool)
+    for each in plans:
+        if each.cut is not None and each.cut.axis == inlet.axis:
+            made |= each.component.values[wall] < 0.0
+    return bool(made.all())
+
+
+def _notes(body: Body, plans: list[Plan], inlets: list[Inlet]) -> list[str]:
     """Return the steps that no mold does."""
-    notes = []
+    design, notes = body.design, []
     for inlet in inlets:
-        made = any(plan.cut is not None and plan.cut.axis == inlet.axis for plan in plans)
         at = ", ".join(f"{1e3 * each + 0.0:.3g}" for each in inlet.at)
         wide = f"{2e3 * inlet.radius:.2g} mm"
-        if not made:
+        if not _is_molded(inlet, body, plans):
             notes.append(f"Punch the inlet of {inlet.chamber}: {wide} wide, at ({at}) mm.")
     for number, layer in enumerate(design.layers, 1):
         name = layer.name or f"layer {number}"

@@ -60,8 +60,8 @@ def fabrication_summary(made: Fabrication, suffix: str = ".3mf") -> dict[str, An
             {
                 "name": cast.casting.name,
                 "material": cast.casting.component.material,
-                "volume": cast.mold.surface.volume,
-                "poured": cast.mold.poured,
+                "volume": cast.volume,
+                "poured": cast.poured,
                 "mass": cast.mass,
                 "deviation": cast.deviation,
                 "trapped_air": cast.mold.trapped,
@@ -199,8 +199,8 @@ def _cast_steps(cast: Cast) -> Iterator[str]:
         vents = sum(each.kind == "vent" for each in mold.openings)
         yield f"<li>Put {escape(mold.parts[1].name)} on {escape(mold.parts[0].name)}: the thin pin "
         yield "goes into the thin socket. Clamp the flanges. Hold it level and pour "
-        yield f"{name} through the funnel until silicone stands in "
-        yield f"{'the vent' if vents == 1 else f'all {vents} vents'}."
+        full = "in the vent" if vents == 1 else f"in all {vents} vents" if vents else "in it"
+        yield f"{name} through the funnel until silicone stands {full}."
     yield "<div class=row>"
     yield from _figure(_exploded(cast), f"Mold of {cast.casting.name}, open")
     yield "</div>"
@@ -219,8 +219,9 @@ def _joining_steps(made: Fabrication) -> Iterator[str]:
             yield f"({1e6 * plan.cut.seam:.0f} mm²), put {high} on it and let it cure under its "
             yield "own weight."
         if plan.way == "lost-core":
-            yield "<li>Hang the cores in the mold by wires through their inlets before pouring; "
-            yield "melt or dissolve them after the cure and rinse through the inlets."
+            yield "<li>Before pouring, hold each core at its place by pieces of cured silicone as "
+            yield "thick as the wall there. After the cure punch the inlets, melt or dissolve the "
+            yield "cores and rinse through the inlets."
     components = {plan.component.name for plan in made.plans}
     if len(components) + sum(each.kind == "rigid" for each in made.printed) > 1:
         yield "<li>Bond the components with silicone adhesive, as they touch in the design."
@@ -242,8 +243,8 @@ def _proof_table(made: Fabrication) -> Iterator[str]:
     yield "<th>largest deviation in mm<th>trapped air in mm³"
     for cast in made.casts:
         yield (
-            f"<tr><td>{escape(cast.casting.name)}<td>{1e9 * cast.mold.surface.volume:.1f}"
-            f"<td>{1e9 * cast.mold.poured:.1f}<td>{1e3 * cast.deviation:.3f}"
+            f"<tr><td>{escape(cast.casting.name)}<td>{1e9 * cast.volume:.1f}"
+            f"<td>{1e9 * cast.poured:.1f}<td>{1e3 * cast.deviation:.3f}"
             f"<td>{1e9 * cast.mold.trapped:.1f}"
         )
     yield "</table><p class=quiet>Each part is one closed solid, leaves along its direction "

@@ -92,6 +92,16 @@ def test_a_part_that_moves_the_wrong_way_is_found(made):
     assert place is not None
 
 
+def test_a_top_below_the_brim_of_an_open_mold_is_a_deviation():
+    bar = vs.Part(shape=vs.Box(size=(12 * mm, 8 * mm, 6 * mm)), material="ecoflex-00-30")
+    (cast,) = make(chambered(parts=[bar], clamps=[], probes={})).casts
+    assert proof.deviation(cast.mold) < 1e-9
+    vertices = cast.mold.surface.vertices.copy()
+    vertices[:, 2] = np.minimum(vertices[:, 2], cast.mold.draw.top - 0.4 * mm)
+    lower = replace(cast.mold, surface=replace(cast.mold.surface, vertices=vertices))
+    assert proof.deviation(lower) == pytest.approx(0.4 * mm)
+
+
 @pytest.mark.long
 def test_a_thin_rib_of_a_mold_is_found():
     slots = vs.Box(size=(20 * mm, 8 * mm, 8 * mm))
