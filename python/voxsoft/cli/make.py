@@ -114,7 +114,8 @@ def _shift(each: Any) -> dict[str, Any]:  # noqa: ANN401 - a CoreShift, imported
 
 def _show(made: Fabrication, summary: dict[str, Any]) -> None:
     color = "red" if made.problems else "green"
-    say(f"[{color}]{made.way}[/{color}]: {plain(made.why)}")
+    why = f": {plain(made.why)}" if made.why else ""
+    say(f"[{color}]{made.way}[/{color}]{why}")
     rows = [
         [
             each["name"],
@@ -127,9 +128,10 @@ def _show(made: Fabrication, summary: dict[str, Any]) -> None:
         for each in summary["castings"]
     ]
     heads = ["casting", "volume", "in the mold", "deviation", "trapped air", "mass"]
-    show_table("Castings", heads, rows)
-    pour = summary["pour"]
-    say(f"mix {1e3 * pour['a']:.1f} g of A and {1e3 * pour['b']:.1f} g of B")
+    if rows:
+        show_table("Castings", heads, rows)
+        pour = summary["pour"]
+        say(f"mix {1e3 * pour['a']:.1f} g of A and {1e3 * pour['b']:.1f} g of B")
     for note in made.notes:
         say(plain(note))
     for problem in made.problems:

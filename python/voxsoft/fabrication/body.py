@@ -15,7 +15,7 @@ from voxsoft.design import Design
 from voxsoft.design.discretization.cut_cells import built_parts
 from voxsoft.design.region import Region
 from voxsoft.errors import DesignError
-from voxsoft.fabrication.fields import Field, Floats, Joined, Outside, Parts
+from voxsoft.fabrication.fields import Common, Field, Floats, Joined, Outside, Parts
 from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid, Surface, extents, surface_of
 from voxsoft.units import format_quantity
@@ -119,8 +119,9 @@ class Inlet:
     radius: float
     in_clamp: bool
 
-    def hole(self) -> _core.Shape:
-        """Return its space, which ends beyond both sides of the wall."""
+    def hole(self, radius: float | None = None) -> _core.Shape:
+        """Return its space, which ends beyond both sides of the wall; its radius [m] or another."""
+        radius = self.radius if radius is None else radius
         inward = self.length + self.reach
         way = [0.0, 0.0, 0.0]
         way[self.axis] = float(self.sign)
@@ -128,7 +129,7 @@ class Inlet:
         base[self.axis] -= self.sign * inward
         x, y, z = base
         a, b, c = way
-        return _core.Shape.cylinder((x, y, z), (a, b, c), self.radius, inward + 2.0 * self.radius)
+        return _core.Shape.cylinder((x, y, z), (a, b, c), radius, inward + 2.0 * self.radius)
 
 
 @dataclass(frozen=True, eq=False)
@@ -339,6 +340,16 @@ def _voids(design: Design, shapes: Sequence[_core.Shape], grid: Grid, values: Fl
         name = _chamber(design, cells, grid, {each.name for each in found})
         found.append(Void(name, cells, extents(sampled, grid), solid, sampled))
     return found
+
+
+def bored(
+    solid: Field, values: Floats, holes: Sequence[_core.Shape], grid: Grid
+) -> tuple[Field, Floats]:
+    """Return a solid without some holes, and its samples."""
+    if not holes:
+        return solid, values
+    pierced = Common([solid, *(Outside(Parts([hole])) for hole in holes)])
+    return pierced, np.maximum(values, -grid.values(Parts(holes)))
 
 
 def _chamber(design: Design, cells: Bools, grid: Grid, used: set[str]) -> str:

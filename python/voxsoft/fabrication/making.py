@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Final
 
 import numpy as np
 
+from voxsoft import _core
 from voxsoft.design import Design
 from voxsoft.errors import ErrorDetail
 from voxsoft.fabrication import proof
-from voxsoft.fabrication.body import Body, Inlet, inlets_of
+from voxsoft.fabrication.body import Body, Component, Inlet, bored, inlets_of
 from voxsoft.fabrication.fields import Floats
 from voxsoft.fabrication.mold import Mold, mold_of
 from voxsoft.fabrication.planning import WAYS, Casting, Plan, Way, plan
@@ -211,19 +212,20 @@ def make(
     holes: list[Inlet] | None = None
     printed: list[Printed] = []
     for component in body.components:
-        if component.rigid:
-            surface = surface_of(component.solid, body.grid, component.values)
-            printed.append(Printed(names.of(component.name), "rigid", surface))
-            continue
-        found, holes = plan(body, component, printer, way, holes)
-        plans.append(found)
+        if not component.rigid:
+            found, holes = plan(body, component, printer, way, holes)
+            plans.append(found)
     inlets = inlets_of(body, printer, None) if holes is None else holes
+    tubes = [each.hole(printer.tube / 2.0 + printer.clearance) for each in inlets]
+    for component in body.components:
+        if component.rigid:
+            printed.append(_printed(component, "rigid", body, tubes, names))
     problems: list[ErrorDetail] = []
     casts: list[Cast] = []
     for each in plans:
         if each.way == "printed":
-            surface = surface_of(each.component.solid, body.grid, each.component.values)
-            printed.append(Printed(names.of(each.component.name), "body", surface))
+            bores = [inlet.hole() for inlet in inlets]
+            printed.append(_printed(each.component, "body", body, bores, names))
         problems += _unplanned(each, way)
         for casting in each.castings:
             name = names.of(casting.name, "-lower", "-upper")
@@ -252,7 +254,9 @@ def make(
             hint = "leave room for a tube where its wall is flat, or name another clamp"
             problems.append(ErrorDetail(f"chambers.{void.name}", what, hint))
     for one in printed:
-        reason = proof.unsound(one.surface)
+        # A connected solid has a surface around each space that it encloses.
+        hollow = one.kind in ("rigid", "body") and one.surface.is_closed
+        reason = None if hollow else proof.unsound(one.surface)
         if reason is not None:
             problems.append(ErrorDetail(one.name, reason, "a finer resolution of the printer"))
     described = sum(each.volume for each in casts)
@@ -287,6 +291,14 @@ class _Names:
                 break
         self._given |= names
         return found
+
+
+def _printed(
+    component: Component, kind: str, body: Body, holes: Sequence[_core.Shape], names: _Names
+) -> Printed:
+    """Return a component as it is printed, with bores for tubes."""
+    solid, values = bored(component.solid, component.values, holes, body.grid)
+    return Printed(names.of(component.name), kind, surface_of(solid, body.grid, values))
 
 
 def _cast(casting: Casting, mold: Mold) -> Cast:
@@ -360,16 +372,16 @@ def _place(at: Floats) -> str:
 
 
 def _is_molded(inlet: Inlet, body: Body, plans: list[Plan]) -> bool:
-    """Return True if pins of cores make an inlet all through its wall."""
+    """Return True if pins of cores, or prints, make an inlet all through its wall."""
     share = (np.arange(int(np.ceil(inlet.length / body.grid.step))) + 0.5) * body.grid.step
     points = np.tile(np.array(inlet.at), (len(share), 1))
     points[:, inlet.axis] -= inlet.sign * share
     wall = body.grid.nearest(points)
-    made = np.zeros(len(points), dtype=bool)
+    left = np.zeros(len(points), dtype=bool)
     for each in plans:
-        if each.cut is not None and each.cut.axis == inlet.axis:
-            made |= each.component.values[wall] < 0.0
-    return bool(made.all())
+        if each.way != "printed" and (each.cut is None or each.cut.axis != inlet.axis):
+            left |= each.component.values[wall] < 0.0
+    return not left.any()
 
 
 def _notes(body: Body, plans: list[Plan], inlets: list[Inlet]) -> list[str]:

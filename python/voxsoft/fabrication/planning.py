@@ -10,7 +10,7 @@ import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design
-from voxsoft.fabrication.body import Body, Component, Filled, Inlet, clamped, inlets_of
+from voxsoft.fabrication.body import Body, Component, Filled, Inlet, bored, clamped, inlets_of
 from voxsoft.fabrication.cutting import Cut, best_cut, least_caught
 from voxsoft.fabrication.draw import WITHIN, Draw, draw_along
 from voxsoft.fabrication.fields import (
@@ -19,8 +19,6 @@ from voxsoft.fabrication.fields import (
     Floats,
     Frame,
     HalfSpace,
-    Outside,
-    Parts,
     Turned,
 )
 from voxsoft.fabrication.printer import Printer
@@ -240,9 +238,7 @@ def _casting(
     low, high = (np.array(each) for each in extents(values, body.grid))
     corners = frame.local(np.stack([low, high]))
     low, high = corners.min(axis=0), corners.max(axis=0)
-    if holes:
-        solid = Common([solid, *(Outside(Parts([hole])) for hole in holes)])
-        values = np.maximum(values, -body.grid.values(Parts(holes)))
+    solid, values = bored(solid, values, holes, body.grid)
     turned, grid = turned_grid(values, body.grid, frame)
     return Casting(name, component, Sampled(Turned(solid, frame), grid, turned), frame, low, high)
 

@@ -6,6 +6,7 @@ import pytest
 import voxsoft as vs
 from voxsoft.errors import DesignError
 from voxsoft.fabrication import Printer, make
+from voxsoft.files.fabrication import write_fabrication
 from voxsoft.shapes import Shape
 from voxsoft.units import mm
 
@@ -130,3 +131,45 @@ def test_a_way_that_does_not_fit_is_told_from_the_one_that_does():
 def test_loose_pins_are_refused():
     with pytest.raises(DesignError, match=r"clearance: is 1 mm, more than half a wall"):
         Printer(clearance=1 * mm)
+
+
+def test_a_hollow_body_is_printed_with_its_inlet():
+    hollow = box((0, 0, 0), (20, 14, 10)) - box((3, 3, 3), (17, 11, 7))
+    made = make(soft(hollow), way="printed")
+    assert made.problems == ()
+    assert made.notes == ()
+    (body,) = made.printed
+    assert body.surface.components == 1
+    hole = np.pi * made.printer.inlet**2 * 3 * mm
+    full = (20 * 14 * 10 - 14 * 8 * 4) * mm**3
+    assert body.surface.volume == pytest.approx(full - hole, abs=0.05 * hole)
+
+
+def test_a_rigid_end_that_closes_a_chamber_has_a_bore_for_the_tube():
+    wall = vs.Cylinder(radius=8 * mm, height=20 * mm) - vs.Cylinder(radius=5 * mm, height=20 * mm)
+    ends = [
+        vs.Part(
+            shape=vs.Cylinder(radius=8 * mm, height=4 * mm, base=(0, 0, base)),
+            material=vs.materials.Rigid(),
+            name="end",
+        )
+        for base in (-4 * mm, 20 * mm)
+    ]
+    design = soft(wall, clamps=[vs.Clamp(region=vs.Region(z=(-4 * mm, -4 * mm)))])
+    made = make(design.replace(parts=[*design.parts, *ends]))
+    assert made.problems == ()
+    assert made.notes == ()
+    (inlet,) = made.inlets
+    assert inlet.at == (0.0, 0.0, -4 * mm)
+    full, bored = sorted(p.surface.volume for p in made.printed if p.kind == "rigid")[::-1]
+    tube = np.pi * (1.65 * mm) ** 2 * 4 * mm
+    assert full - bored == pytest.approx(tube, rel=0.05)
+
+
+def test_a_lost_core_is_placed_before_its_casting_is_poured(tmp_path):
+    hollow = box((0, 0, 0), (20, 14, 10)) - box((3, 3, 3), (17, 11, 7))
+    write_fabrication(make(soft(hollow), way="lost-core"), tmp_path)
+    sheet = (tmp_path / "sheet.html").read_text("utf-8")
+    steps = ["Hold each core", "Pour soft", "Punch the inlet", "Melt or dissolve"]
+    places = [sheet.index(step) for step in steps]
+    assert places == sorted(places)
