@@ -55,7 +55,7 @@ def make(
     from voxsoft import files
     from voxsoft.cli.progress import ProgressBar
     from voxsoft.comparison.core_shift import core_shift
-    from voxsoft.fabrication import WAYS, Printer
+    from voxsoft.fabrication import WAYS, Printer, one_body
     from voxsoft.fabrication import make as make_molds
     from voxsoft.files.fabrication import fabrication_summary, write_fabrication
 
@@ -66,10 +66,7 @@ def make(
         limits = dict(_limit(each) for each in printer or [])
         loaded = files.load(design, assignments=sets or [])
         if body is not None:
-            if body not in loaded.body_names:
-                names = ", ".join(loaded.body_names) or "none, so that it needs no --body"
-                raise DesignError("body", f"{body!r} is not known; the design has {names}")
-            loaded = loaded.alone(body)
+            loaded = one_body(loaded, body)
         wanted = next((each for each in WAYS if each == way), None)
         with ProgressBar("molds", 1) as bar:
 

@@ -174,7 +174,7 @@ class Body:
             names = ", ".join(design.body_names)
             what = f"has several bodies: {names}"
             raise DesignError(
-                "bodies", what, "make one of them: --body NAME, or design.alone(name)"
+                "bodies", what, "make one of them: --body NAME, or fabrication.one_body"
             )
         if design.mesh is not None:
             what = "is a mesh of tetrahedra, from which no mold is made"

@@ -9,7 +9,7 @@ import pytest
 import voxsoft as vs
 from voxsoft.design import families
 from voxsoft.errors import DesignError
-from voxsoft.fabrication import Printer, make, proof
+from voxsoft.fabrication import Printer, make, one_body, proof
 from voxsoft.units import mm
 
 PRINTER = Printer()
@@ -220,7 +220,9 @@ def test_two_feet_on_one_face_stand_on_one_plate():
 
 def test_one_of_several_bodies_is_made():
     bar = chambered(
-        parts=[vs.Part(shape=vs.Box(size=(9 * mm, 6 * mm, 5 * mm)), material="ecoflex-00-30")]
+        parts=[vs.Part(shape=vs.Box(size=(9 * mm, 6 * mm, 5 * mm)), material="ecoflex-00-30")],
+        layers=[vs.Layer(region=vs.Region(x=(0, 0)), young=1e6, thickness=0.2 * mm, name="net")],
+        probes={},
     )
     pair = vs.Design(
         name="pair",
@@ -229,4 +231,10 @@ def test_one_of_several_bodies_is_made():
     )
     with pytest.raises(DesignError, match="--body NAME"):
         make(pair)
-    assert make(pair.alone("left")).way == "cast"
+    left = make(one_body(pair, "left"))
+    assert left.way == "cast"
+    # Its clamps and layers are those of its own design.
+    assert [each.kind for each in left.printed] == ["plate"]
+    assert left.notes[0].startswith("Lay ")
+    with pytest.raises(DesignError, match="'right' is not known"):
+        one_body(pair, "right")
