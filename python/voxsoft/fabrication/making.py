@@ -14,7 +14,7 @@ from voxsoft.design import Design
 from voxsoft.errors import ErrorDetail
 from voxsoft.fabrication import proof
 from voxsoft.fabrication.body import Body, Component, Inlet, bored, inlets_of
-from voxsoft.fabrication.fields import Floats
+from voxsoft.fabrication.fields import Floats, Frame
 from voxsoft.fabrication.mold import Mold, mold_of
 from voxsoft.fabrication.planning import WAYS, Casting, Plan, Way, plan
 from voxsoft.fabrication.plates import plates_of
@@ -28,6 +28,8 @@ DEVIATION: Final = 0.2e-3
 VOLUME: Final = 0.005
 #: Silicone that stays in cups, pour holes and on tools, as a part of the casting.
 WASTE: Final = 0.15
+#: Frame of the design.
+_DESIGN: Final = Frame.along(2, 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -316,7 +318,7 @@ def _cast(casting: Casting, mold: Mold) -> Cast:
 def _unplanned(made: Plan, wanted: Way | None) -> list[ErrorDetail]:
     if made.way != "printed" or wanted == "printed":
         return []
-    place = "" if made.place is None else f" at {_place(made.place)}"
+    place = "" if made.place is None else f" at {_place(made.place, _DESIGN)}"
     what = f"cannot be cast{' as ' + wanted if wanted else ''}: {made.why}{place}"
     hint = 'open its inside on one side, or take way = "printed"'
     return [ErrorDetail(made.component.name, what, hint)] if wanted else []
@@ -338,17 +340,18 @@ def _proved(cast: Cast, printer: Printer) -> list[ErrorDetail]:
             found.append(ErrorDetail(part.name, what, "a larger printer, or a shorter body"))
     volume, place = proof.blocked(mold)
     if place is not None:
-        what = f"{volume * 1e9:.3g} mm³ of it meet something on the way out, at {_place(place)}"
+        at = _place(place, mold.frame)
+        what = f"{volume * 1e9:.3g} mm³ of it meet something on the way out, at {at}"
         found.append(ErrorDetail(cast.casting.name, what, "another way, or a rounder shape there"))
     thin = proof.thin_wall(mold, printer.wall)
     if thin is not None:
         wall = format_quantity(printer.wall, "length")
-        what = f"is thinner than a wall of {wall} at {_place(thin[1])}"
+        what = f"is thinner than a wall of {wall} at {_place(thin[1], mold.frame)}"
         found.append(ErrorDetail(thin[0], what, "a wider gap of the design, or a finer nozzle"))
     place = proof.too_fine(mold)
     if place is not None:
         shown = format_quantity(printer.resolution, "length")
-        what = f"is less than two samples of {shown} thick at {_place(place)}"
+        what = f"is less than two samples of {shown} thick at {_place(place, mold.frame)}"
         hint = "a finer resolution of the printer"
         return [ErrorDetail(cast.casting.name, what, hint)]
     if mold.trapped > 0.0:
@@ -367,8 +370,9 @@ def _proved(cast: Cast, printer: Printer) -> list[ErrorDetail]:
     return found
 
 
-def _place(at: Floats) -> str:
-    return f"({', '.join(f'{1e3 * each:.3g}' for each in at)}) mm of the mold"
+def _place(at: Floats, frame: Frame) -> str:
+    """Return a point [m] of a frame in words, in the frame of the design."""
+    return f"({', '.join(f'{1e3 * each + 0.0:.3g}' for each in frame.world(at))}) mm"
 
 
 def _is_molded(inlet: Inlet, body: Body, plans: list[Plan]) -> bool:

@@ -118,7 +118,7 @@ def test_an_inlet_ends_in_a_flat_chamber_and_lies_beside_no_deeper_wall():
     assert inlet.length == pytest.approx(12 * mm)
 
 
-def test_a_way_that_does_not_fit_is_told_from_the_one_that_does():
+def test_a_way_that_does_not_fit_is_refused_with_its_reason():
     bar = soft(box((0, 0, 0), (12, 8, 6)))
     (problem,) = make(bar, way="core").problems
     assert "the way is cast: one flat side" in problem.what
@@ -173,3 +173,13 @@ def test_a_lost_core_is_placed_before_its_casting_is_poured(tmp_path):
     steps = ["Hold each core", "Pour soft", "Punch the inlet", "Melt or dissolve"]
     places = [sheet.index(step) for step in steps]
     assert places == sorted(places)
+
+
+def test_the_place_of_a_thin_film_is_in_the_frame_of_the_design():
+    block = box((100, 0, 0), (112, 8, 6)) | box((112, 0, 0), (118, 8, 0.4))
+    problems = make(soft(block)).problems
+    (film,) = [each for each in problems if "less than two samples" in each.what]
+    x, y, z = (float(each) for each in film.what.split("(")[1].split(")")[0].split(","))
+    assert 112 < x < 118
+    assert 0 < y < 8
+    assert 0 < z < 1
