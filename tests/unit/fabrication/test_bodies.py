@@ -23,7 +23,7 @@ def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> vs
     return vs.Box(size=tuple(size), corner=tuple(np.array(low) * mm))
 
 
-def test_a_part_keeps_its_overlap_with_one_between_it_and_another_of_its_material():
+def test_a_part_keeps_its_overlap_with_a_later_one():
     parts = [
         vs.Part(shape=box((0, 0, 0), (12, 8, 6)), material="ecoflex-00-30", name="first"),
         vs.Part(shape=box((8, 0, 0), (20, 8, 6)), material="dragon-skin-30-tensile", name="mid"),
