@@ -194,8 +194,8 @@ def _cast_steps(cast: Cast) -> Iterator[str]:
     name = escape(cast.casting.name)
     mold = cast.mold
     if cast.casting.cores > 0.0:
-        yield "<li>Hold each core at its place in the mold by spacers of cured silicone as thick as "
-        yield "the wall there."
+        yield "<li>Hold each core at its place in the mold by spacers of cured silicone, as thick "
+        yield "as the wall there."
     if mold.is_open:
         yield f"<li>Pour {name} into {escape(mold.parts[0].name)} to the brim and level it with a "
         yield "straight edge; bubbles rise out."
