@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import count as numbers
 from typing import Final
 
@@ -74,7 +75,9 @@ class Void:
     solid
         Its function.
     values
-        Its samples on the grid of the body, negative inside [m].
+        Its samples, negative inside [m].
+    grid
+        Positions of samples.
     """
 
     name: str
@@ -82,10 +85,12 @@ class Void:
     extents: tuple[Floats, Floats]
     solid: Field = field(repr=False)
     values: Floats = field(repr=False)
+    grid: Grid
 
-    def surface(self, grid: Grid) -> Surface:
-        """Return its triangles."""
-        return surface_of(self.solid, grid, self.values)
+    @cached_property
+    def surface(self) -> Surface:
+        """Its triangles."""
+        return surface_of(self.solid, self.grid, self.values)
 
 
 @dataclass(frozen=True)
@@ -338,7 +343,7 @@ def _voids(design: Design, shapes: Sequence[_core.Shape], grid: Grid, values: Fl
         solid = _Near(Outside(Parts(shapes)), cells, grid, -values)
         sampled = np.where(cells, -values, np.abs(values))
         name = _chamber(design, cells, grid, {each.name for each in found})
-        found.append(Void(name, cells, extents(sampled, grid), solid, sampled))
+        found.append(Void(name, cells, extents(sampled, grid), solid, sampled, grid))
     return found
 
 

@@ -239,8 +239,7 @@ def make(
             problems += _proved(cast, printer)
     if any(each.way == "lost-core" for each in plans):
         printed += [
-            Printed(names.of(f"core-{void.name}"), "core", void.surface(body.grid))
-            for void in body.voids
+            Printed(names.of(f"core-{void.name}"), "core", void.surface) for void in body.voids
         ]
     printed += [
         Printed(names.of(plate.name), "plate", plate.surface)

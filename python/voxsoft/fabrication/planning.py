@@ -288,7 +288,7 @@ def _lost(
     values = np.where(cells, -np.abs(component.values), component.values)
     solid = Filled(component.solid, cells, body.grid, component.values)
     casting = _casting(component.name, component, solid, body, best.frame, values)
-    cores = sum(void.surface(body.grid).volume for void in body.voids)
+    cores = sum(void.surface.volume for void in body.voids)
     casting = replace(casting, cores=cores)
     reason = "asked for" if is_asked else "no plane opens its chambers without undercuts"
     why = f"{reason}: a core of wax or soluble print is lost"
