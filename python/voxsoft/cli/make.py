@@ -11,6 +11,7 @@ from voxsoft._folders import folder_name
 from voxsoft.cli.exits import INVALID, USAGE, errors_in_words
 from voxsoft.cli.options import DesignFile, Json, Sets
 from voxsoft.cli.output import plain, print_json, quantity, say, show_table
+from voxsoft.errors import DesignError
 
 if TYPE_CHECKING:
     from voxsoft.fabrication import Fabrication
@@ -37,8 +38,8 @@ def make(
         typer.Option(
             "--printer",
             metavar="NAME=VALUE",
-            help="A limit of the printer: wall='0.8 mm', clearance, tube, vent, pour, resolution. "
-            "Repeatable.",
+            help="A limit of the printer: wall='0.8 mm', clearance, tube, vent, pour, resolution, "
+            "volume='220 mm, 220 mm, 220 mm'. Repeatable.",
         ),
     ] = None,
     stl: Annotated[bool, typer.Option("--stl", help="Parts as STL in mm, not as 3MF.")] = False,
@@ -54,7 +55,7 @@ def make(
     from voxsoft import files
     from voxsoft.cli.progress import ProgressBar
     from voxsoft.comparison.core_shift import core_shift
-    from voxsoft.fabrication import WAYS, Printer
+    from voxsoft.fabrication import WAYS, Printer, one_body
     from voxsoft.fabrication import make as make_molds
     from voxsoft.files.fabrication import fabrication_summary, write_fabrication
 
@@ -65,7 +66,7 @@ def make(
         limits = dict(_limit(each) for each in printer or [])
         loaded = files.load(design, assignments=sets or [])
         if body is not None:
-            loaded = loaded.alone(body)
+            loaded = one_body(loaded, body)
         wanted = next((each for each in WAYS if each == way), None)
         with ProgressBar("molds", 1) as bar:
 
@@ -90,11 +91,11 @@ def make(
 
 
 def _limit(text: str) -> tuple[str, Any]:
-    from voxsoft.errors import DesignError
-
     name, equals, value = text.partition("=")
     if not equals:
         raise DesignError("printer", f"{text!r} came; expected NAME=VALUE", "wall='0.8 mm'")
+    if name.strip() == "volume":
+        return "volume", [each.strip() for each in value.split(",")]
     return name.strip(), value.strip()
 
 
@@ -110,7 +111,8 @@ def _shift(each: Any) -> dict[str, Any]:  # noqa: ANN401 - a CoreShift, imported
 
 def _show(made: Fabrication, summary: dict[str, Any]) -> None:
     color = "red" if made.problems else "green"
-    say(f"[{color}]{made.way}[/{color}]: {plain(made.why)}")
+    why = f": {plain(made.why)}" if made.why else ""
+    say(f"[{color}]{made.way}[/{color}]{why}")
     rows = [
         [
             each["name"],
@@ -123,9 +125,10 @@ def _show(made: Fabrication, summary: dict[str, Any]) -> None:
         for each in summary["castings"]
     ]
     heads = ["casting", "volume", "in the mold", "deviation", "trapped air", "mass"]
-    show_table("Castings", heads, rows)
-    pour = summary["pour"]
-    say(f"mix {1e3 * pour['a']:.1f} g of A and {1e3 * pour['b']:.1f} g of B")
+    if rows:
+        show_table("Castings", heads, rows)
+        pour = summary["pour"]
+        say(f"mix {1e3 * pour['a']:.1f} g of A and {1e3 * pour['b']:.1f} g of B")
     for note in made.notes:
         say(plain(note))
     for problem in made.problems:

@@ -97,7 +97,7 @@ def _moved_probes(design: Design) -> dict[str, Floats]:
 def _shifted(design: Design, body: Body, way: Floats) -> Design:
     shapes = Parts(built_parts(design))
     cells = np.any([void.cells for void in body.voids], axis=0)
-    outside = Filled(shapes, cells, body.grid)
+    outside = Filled(shapes, cells, body.grid, body.values)
     moved = [_Moved(void.solid, way) for void in body.voids]
     solid = Common([outside, *(Outside(each) for each in moved)])
 

@@ -77,8 +77,15 @@ def openings_of(cavity: Bools, grid: Grid, top: float, printer: Printer) -> tupl
         return ()
     spots.sort(reverse=True)
     area, room, main = spots[0]
-    found = [_opening("pour", main, min(printer.pour / 2, _WIDEST * room), grid, top)]
     level = main[2]
+    taller = np.pad(covered[:, :, level + 1], 1)
+    beside = (
+        ndimage.distance_transform_edt(~taller)[1:-1, 1:-1][main[:2]] if taller.any() else np.inf
+    )
+    radius = min(printer.pour / 2, _WIDEST * room)
+    # The funnel leaves a wall to a higher place beside it.
+    wide = min(2.0 * radius, max(radius, (float(beside) - 0.5) * grid.step - printer.wall))
+    found = [_opening("pour", main, radius, wide, grid, top)]
     place = _component(cavity[:, :, level], main[:2])
     distance = ndimage.distance_transform_edt(np.pad(place, 1))[1:-1, 1:-1]
     rows = np.argwhere(place & (distance >= 0.7 * distance.max()))
@@ -87,7 +94,8 @@ def openings_of(cavity: Bools, grid: Grid, top: float, printer: Printer) -> tupl
     if np.hypot(aside[0] - main[0], aside[1] - main[1]) * grid.step > printer.pour:
         spots.insert(1, (area, float(distance[other[:2]]) * grid.step, other))
     for _, room, spot in spots[1:]:
-        found.append(_opening("vent", spot, min(printer.vent / 2, _WIDEST * room), grid, top))
+        radius = min(printer.vent / 2, _WIDEST * room)
+        found.append(_opening("vent", spot, radius, radius, grid, top))
     return tuple(found)
 
 
@@ -145,9 +153,11 @@ def _component(layer: Bools, at: tuple[int, int]) -> Bools:
     return same
 
 
-def _opening(kind: str, at: tuple[int, int, int], radius: float, grid: Grid, top: float) -> Opening:
+def _opening(
+    kind: str, at: tuple[int, int, int], radius: float, wide: float, grid: Grid, top: float
+) -> Opening:
+    """Return an opening of a radius at the casting and another at the top of the mold [m]."""
     x, y, z = grid.points(np.array([at]))[0]
-    # A funnel for the pour hole, a straight hole for a vent; from a step inside the cavity.
-    wide = radius * (2.0 if kind == "pour" else 1.0)
+    # From a step inside the cavity.
     bore = Frustum((float(x), float(y)), float(z), top + grid.step, radius, wide)
     return Opening(kind, bore, at, float(z) + grid.step / 2)

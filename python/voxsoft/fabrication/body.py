@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import count as numbers
 from typing import Final
 
 import numpy as np
@@ -14,14 +16,20 @@ from voxsoft.design import Design
 from voxsoft.design.discretization.cut_cells import built_parts
 from voxsoft.design.region import Region
 from voxsoft.errors import DesignError
-from voxsoft.fabrication.fields import Field, Floats, Outside, Parts
+from voxsoft.fabrication.fields import Common, Field, Floats, Joined, Outside, Parts
 from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid, Surface, extents, surface_of
+from voxsoft.units import format_quantity
 
 Bools = NDArray[np.bool_]
+Ints = NDArray[np.int64]
 
 #: Distance of places at which inlets may be [m].
 _ROUND: Final = 0.5e-3
+#: Most samples of a body: ten arrays of them are 8 GB.
+_SAMPLES: Final = 1e8
+#: Number of samples below which a connected set counts as dust.
+_DUST: Final = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +75,9 @@ class Void:
     solid
         Its function.
     values
-        Its samples on the grid of the body, negative inside [m].
+        Its samples, negative inside [m].
+    grid
+        Positions of samples.
     """
 
     name: str
@@ -75,10 +85,12 @@ class Void:
     extents: tuple[Floats, Floats]
     solid: Field = field(repr=False)
     values: Floats = field(repr=False)
+    grid: Grid
 
-    def surface(self, grid: Grid) -> Surface:
-        """Return its triangles."""
-        return surface_of(self.solid, grid, self.values)
+    @cached_property
+    def surface(self) -> Surface:
+        """Its triangles."""
+        return surface_of(self.solid, self.grid, self.values)
 
 
 @dataclass(frozen=True)
@@ -95,6 +107,8 @@ class Inlet:
         Direction outward: an axis and 1 or -1.
     length
         Thickness of the wall there [m].
+    reach
+        Depth of the hole beyond the wall, into the chamber [m].
     radius
         In m.
     in_clamp
@@ -106,19 +120,21 @@ class Inlet:
     axis: int
     sign: int
     length: float
+    reach: float
     radius: float
     in_clamp: bool
 
-    def hole(self) -> _core.Shape:
-        """Return its space, which ends beyond both sides of the wall."""
-        beyond = self.length + 4.0 * self.radius
+    def hole(self, radius: float | None = None) -> _core.Shape:
+        """Return its space, which ends beyond both sides of the wall; its radius [m] or another."""
+        radius = self.radius if radius is None else radius
+        inward = self.length + self.reach
         way = [0.0, 0.0, 0.0]
         way[self.axis] = float(self.sign)
         base = list(self.at)
-        base[self.axis] -= self.sign * (self.length + 2.0 * self.radius)
+        base[self.axis] -= self.sign * inward
         x, y, z = base
         a, b, c = way
-        return _core.Shape.cylinder((x, y, z), (a, b, c), self.radius, beyond)
+        return _core.Shape.cylinder((x, y, z), (a, b, c), radius, inward + 2.0 * self.radius)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,19 +172,25 @@ class Body:
         Raises
         ------
         DesignError
-            Several bodies, or a body that is the mesh of a file.
+            Several bodies, a body that is the mesh of a file, a part that samples miss, or too many
+            samples.
         """
         if design.bodies:
             names = ", ".join(design.body_names)
             what = f"has several bodies: {names}"
             raise DesignError(
-                "bodies", what, "make one of them: --body NAME, or design.alone(name)"
+                "bodies", what, "make one of them: --body NAME, or fabrication.one_body"
             )
         if design.mesh is not None:
             what = "is a mesh of tetrahedra, from which no mold is made"
             raise DesignError("mesh", what, "describe the body by shapes, or read its surface")
         shapes = built_parts(design)
         low, high = _bounds(shapes)
+        count = float(np.prod((high - low) / resolution + 6.0))
+        if count > _SAMPLES:
+            shown = format_quantity(resolution, "length")
+            what = f"of {shown} takes {count:.1e} samples; at most {_SAMPLES:.0e} fit"
+            raise DesignError("resolution", what, "a coarser one: --printer resolution='1 mm'")
         grid = Grid.around(low, high, resolution, 2 * resolution)
         values = grid.values(Parts(shapes))
         components = tuple(_components(design, shapes, grid, values))
@@ -195,6 +217,11 @@ def _components(
         part.name or (part.shape if isinstance(part.shape, str) else f"part {k}")
         for k, part in enumerate(design.parts, 1)
     ]
+    for k, shape in enumerate(shapes):
+        values = joined if len(shapes) == 1 else grid.values(Parts([shape]))
+        if (values < 0.0).sum() < _DUST:
+            what = f"has no {_DUST} samples in it, at every {format_quantity(grid.step, 'length')}"
+            raise DesignError(f"parts[{k}]", what, "a finer resolution of the printer")
     found: list[Component] = []
     done: list[int] = []
     for index, material in enumerate(materials):
@@ -202,17 +229,16 @@ def _components(
             continue
         done.append(index)
         own = [k for k, each in enumerate(materials) if each == material]
-        before = [k for k in range(max(own)) if k not in own]
-        solid = Parts([shapes[k] for k in own], [shapes[k] for k in before])
+        solid = _joined(shapes, own)
         values = joined if len(own) == len(shapes) else grid.values(solid)
         labels, count = ndimage.label(values < 0.0)
         title = " and ".join(names[k] for k in own)
         text = design.parts[index].material
         for number in range(1, count + 1):
             part = labels == number
-            if part.sum() < 8:
-                continue  # dust of samples where surfaces touch
-            alone = solid if count == 1 else _Near(solid, part, grid)
+            if part.sum() < _DUST:
+                continue  # where surfaces touch
+            alone = solid if count == 1 else _Near(solid, part, grid, values)
             found.append(
                 Component(
                     name=title if count == 1 else f"{title} {number}",
@@ -224,6 +250,18 @@ def _components(
                 )
             )
     return found
+
+
+def _joined(shapes: Sequence[_core.Shape], own: Sequence[int]) -> Field:
+    """Join the shapes of one material, each without those of others that come before it."""
+    solids: dict[tuple[int, ...], list[int]] = {}
+    for k in own:
+        solids.setdefault(tuple(j for j in range(k) if j not in own), []).append(k)
+    found = [
+        Parts([shapes[k] for k in equal], [shapes[j] for j in before])
+        for before, equal in solids.items()
+    ]
+    return found[0] if len(found) == 1 else Joined(found)
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,14 +276,17 @@ class Filled:
         Samples in these spaces.
     grid
         Positions of samples.
+    values
+        Values of the solid at all samples, (nx, ny, nz) [m].
     """
 
     of: Field
     cells: Bools
     grid: Grid
+    values: Floats
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "cells", _reached(self.cells))
+        object.__setattr__(self, "cells", _reached(self.cells, self.values >= 0.0))
 
     def evaluate(self, points: Floats) -> Floats:
         """Return values [m] at points (n, 3) [m]."""
@@ -255,12 +296,19 @@ class Filled:
         return values
 
 
-def _reached(cells: Bools) -> Bools:
-    """Return samples up to two steps from some."""
+def _reached(cells: Bools, alike: Bools) -> Bools:
+    """Return samples up to two steps from some, and nearer to these than to others alike.
+
+    So a thin wall between an enclosed space and the outside is divided along its middle.
+    """
     from scipy import ndimage
 
-    reached: Bools = ndimage.binary_dilation(cells, np.ones((3, 3, 3), dtype=bool), iterations=2)
-    return reached
+    cube = np.ones((3, 3, 3), dtype=bool)
+    own, others = cells, alike & ~cells
+    for _ in range(2):
+        grown, rest = (ndimage.binary_dilation(each, cube) for each in (own, others))
+        own, others = own | (grown & ~rest & ~others), others | (rest & ~own)
+    return own
 
 
 @dataclass(frozen=True, eq=False)
@@ -270,9 +318,10 @@ class _Near:
     of: Field
     cells: Bools
     grid: Grid
+    values: Floats
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "cells", _reached(self.cells))
+        object.__setattr__(self, "cells", _reached(self.cells, self.values < 0.0))
 
     def evaluate(self, points: Floats) -> Floats:
         """Return values [m] at points (n, 3) [m]."""
@@ -284,25 +333,36 @@ class _Near:
 def _voids(design: Design, shapes: Sequence[_core.Shape], grid: Grid, values: Floats) -> list[Void]:
     from scipy import ndimage
 
-    labels, count = ndimage.label(values >= 0.0)
+    labels, last = ndimage.label(values >= 0.0)
     outside = labels[0, 0, 0]
     found: list[Void] = []
-    for number in range(1, count + 1):
+    for number in range(1, last + 1):
         cells = labels == number
-        if number == outside or cells.sum() < 8:
+        if number == outside or cells.sum() < _DUST:
             continue
-        solid = _Near(Outside(Parts(shapes)), cells, grid)
+        solid = _Near(Outside(Parts(shapes)), cells, grid, -values)
         sampled = np.where(cells, -values, np.abs(values))
-        name = _chamber(design, cells, grid, len(found))
-        found.append(Void(name, cells, extents(sampled, grid), solid, sampled))
+        name = _chamber(design, cells, grid, {each.name for each in found})
+        found.append(Void(name, cells, extents(sampled, grid), solid, sampled, grid))
     return found
 
 
-def _chamber(design: Design, cells: Bools, grid: Grid, number: int) -> str:
+def bored(
+    solid: Field, values: Floats, holes: Sequence[_core.Shape], grid: Grid
+) -> tuple[Field, Floats]:
+    """Return a solid without some holes, and its samples."""
+    if not holes:
+        return solid, values
+    pierced = Common([solid, *(Outside(Parts([hole])) for hole in holes)])
+    return pierced, np.maximum(values, -grid.values(Parts(holes)))
+
+
+def _chamber(design: Design, cells: Bools, grid: Grid, used: set[str]) -> str:
     for name, place in design.chambers.items():
         if place.point is not None and cells[grid.nearest(np.array([place.point]))].all():
             return name
-    return f"chamber {number + 1}"
+    free = (f"chamber {number}" for number in numbers(1))
+    return next(name for name in free if name not in used and name not in design.chambers)
 
 
 def inlets_of(body: Body, printer: Printer, along: int | None) -> list[Inlet]:
@@ -318,8 +378,6 @@ def inlets_of(body: Body, printer: Printer, along: int | None) -> list[Inlet]:
         Axis along which the molds are drawn: a pin of a core can make such an inlet; None for no
         preference.
     """
-    from scipy import ndimage
-
     solid = body.values < 0.0
     found = []
     for void in body.voids:
@@ -331,6 +389,9 @@ def inlets_of(body: Body, printer: Printer, along: int | None) -> list[Inlet]:
                 count = c.shape[2]
                 last = count - 1 - c[..., ::-1].argmax(axis=2)
                 index = np.arange(count)
+                # Cells of the chamber from its last one back to the next of the body.
+                back = np.where(~c & (index < last[..., None]), index, -1).max(axis=2)
+                deep = last - back
                 wall = (f & (index > last[..., None])).sum(axis=2)
                 free = ~f & (index > last[..., None])
                 # One run of the body beyond the chamber, then nothing.
@@ -338,12 +399,10 @@ def inlets_of(body: Body, printer: Printer, along: int | None) -> list[Inlet]:
                 straight = c.any(axis=2) & (first - last == wall) & (wall > 0) & free.any(axis=2)
                 if not straight.any():
                     continue
-                room = ndimage.distance_transform_edt(np.pad(straight, 1))[1:-1, 1:-1]
-                wide = room * body.grid.step >= printer.inlet + body.grid.step
-                if not wide.any():
+                found_spots = _thinnest(straight, wall, printer.inlet / body.grid.step)
+                if found_spots is None:
                     continue
-                thin = np.where(wide, wall, count).min()
-                spots = np.argwhere(wide & (wall <= thin))
+                thin, spots = found_spots
                 middle = spots.mean(axis=0)
                 best = spots[np.linalg.norm(spots - middle, axis=1).argmin()]
                 end = int(first[tuple(best)])
@@ -354,37 +413,68 @@ def inlets_of(body: Body, printer: Printer, along: int | None) -> list[Inlet]:
                 at = body.grid.points(where[None])[0]
                 at[axis] += sign * body.grid.step / 2
                 # A drill goes to round numbers; the nearest ones are within the room that is left.
+                face = float((body.high if sign > 0 else body.low)[axis])
+                is_end = abs(face - at[axis]) < body.grid.step
                 at = np.round(at / _ROUND) * _ROUND + 0.0
-                clamped = any(
-                    holds(body.design, clamp.region, at, body.grid.step)
-                    for clamp in body.design.clamps
-                )
+                at[axis] = round(face, 4) + 0.0 if is_end else at[axis]
+                in_clamp = bool(clamped(body.design, at[None], body.grid.step)[0])
                 inlet = Inlet(
                     void.name,
                     (float(at[0]), float(at[1]), float(at[2])),
                     axis,
                     sign,
                     float(thin) * body.grid.step,
+                    min(2.0 * printer.inlet, 0.5 * int(deep[tuple(best)]) * body.grid.step),
                     printer.inlet,
-                    clamped,
+                    in_clamp,
                 )
-                choices.append((not clamped, along is not None and axis != along, thin, inlet))
+                choices.append((not in_clamp, along is not None and axis != along, thin, inlet))
         if choices:
             found.append(min(choices, key=lambda each: each[:3])[3])
     return found
 
 
-def holds(design: Design, region: Region, at: Floats, near: float) -> bool:
-    """Return True if a region holds a point [m], to within a distance."""
+def _thinnest(straight: Bools, wall: Ints, radius: float) -> tuple[int, Ints] | None:
+    """Return the thinnest wall with room for a hole, in samples, and its columns (n, 2).
+
+    All columns of the hole and a sample around it are straight, and none has a wall thicker by
+    more than its radius, in samples: that one leads to another place of the chamber.
+    """
+    from scipy import ndimage
+
+    for thin in np.unique(wall[straight]):
+        alike = straight & (wall <= thin + np.ceil(radius))
+        room = ndimage.distance_transform_edt(np.pad(alike, 1))[1:-1, 1:-1]
+        spots = np.argwhere((room >= radius + 1.0) & alike & (wall <= thin))
+        if len(spots):
+            return int(thin), spots
+    return None
+
+
+def holds(design: Design, region: Region, points: Floats, near: float) -> Bools:
+    """Return True for points (n, 3) [m] that a region holds, to within a distance [m]."""
+    held = np.ones(len(points), dtype=bool)
     for axis, name in enumerate("xyz"):
         bounds = getattr(region, name)
-        if bounds is not None and not bounds[0] - near <= at[axis] <= bounds[1] + near:
-            return False
+        if bounds is not None:
+            held &= (points[:, axis] >= bounds[0] - near) & (points[:, axis] <= bounds[1] + near)
     if region.center is not None and region.radius is not None:
-        away = float(np.linalg.norm(at - np.array(region.center)))
-        if away > region.radius + near:
-            return False
+        away = np.linalg.norm(points - np.array(region.center), axis=1)
+        held &= away <= region.radius + near
     if region.shape is not None:
         shape = design.shapes[region.shape] if isinstance(region.shape, str) else region.shape
-        return bool(shape.build(design.shapes).evaluate(at[None])[0] <= near)
-    return True
+        values = shape.build(design.shapes).evaluate(np.ascontiguousarray(points))
+        held &= values <= near
+    return held
+
+
+def clamped(design: Design, points: Floats, near: float) -> Bools:
+    """Return True for points (n, 3) [m] that a clamp holds on all axes, to within a distance [m].
+
+    A clamp that leaves an axis free stands for a plane of symmetry or a guide: nothing is fixed.
+    """
+    held = np.zeros(len(points), dtype=bool)
+    for clamp in design.clamps:
+        if clamp.axes == "xyz":
+            held |= holds(design, clamp.region, points, near)
+    return held

@@ -49,6 +49,8 @@ class Draw:
         outline lies in the parting plane or on upright sides.
     has_recess
         True where the upper part reaches into the casting.
+    is_level
+        True where the top of the casting is flat: nothing between it and its highest point.
     """
 
     sides: NDArray[np.int8] = field(repr=False)
@@ -59,11 +61,12 @@ class Draw:
     place: Floats | None
     steps: float
     has_recess: bool
+    is_level: bool
 
     @property
     def is_open(self) -> bool:
         """True where the upper part is only a flat lid, which can be left out."""
-        return not self.has_recess and self.parting >= self.top
+        return self.is_level and self.parting >= self.top
 
 
 def draw_along(values: Floats, grid: Grid, top: float, bottom: float) -> Draw:
@@ -110,6 +113,7 @@ def draw_along(values: Floats, grid: Grid, top: float, bottom: float) -> Draw:
     # Sides that the plane gives too are left to it: it is exact, and samples are not.
     sides[(sides == ABOVE) & (heights > height)] = BESIDE
     sides[(sides == BELOW) & (heights < height)] = BESIDE
+    dips = (values > SHALLOW) & blocked_below & (heights < top - SHALLOW)
     recess = (sides == ABOVE) & (heights < height - grid.step)
     return Draw(
         sides=_filled(sides, inside),
@@ -120,6 +124,7 @@ def draw_along(values: Floats, grid: Grid, top: float, bottom: float) -> Draw:
         place=_largest(caught, grid),
         steps=steps,
         has_recess=bool(recess.any()),
+        is_level=not dips.any(),
     )
 
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import count
 from typing import Final
 
 import numpy as np
 
+from voxsoft import _core
 from voxsoft.design import Design
 from voxsoft.errors import ErrorDetail
 from voxsoft.fabrication import proof
-from voxsoft.fabrication.body import Body, Inlet
-from voxsoft.fabrication.fields import Floats
+from voxsoft.fabrication.body import Body, Component, Inlet, bored, inlets_of
+from voxsoft.fabrication.fields import Floats, Frame
 from voxsoft.fabrication.mold import Mold, mold_of
 from voxsoft.fabrication.planning import WAYS, Casting, Plan, Way, plan
 from voxsoft.fabrication.plates import plates_of
@@ -26,6 +28,8 @@ DEVIATION: Final = 0.2e-3
 VOLUME: Final = 0.005
 #: Silicone that stays in cups, pour holes and on tools, as a part of the casting.
 WASTE: Final = 0.15
+#: Frame of the design.
+_DESIGN: Final = Frame.along(2, 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +59,16 @@ class Cast:
     a: float
     b: float
     deviation: float
+
+    @property
+    def volume(self) -> float:
+        """Volume of silicone in the casting [m³]: without cores that are lost."""
+        return self.mold.surface.volume - self.casting.cores
+
+    @property
+    def poured(self) -> float:
+        """Volume of silicone in the mold [m³]: without cores that are lost."""
+        return self.mold.poured - self.casting.cores
 
     @property
     def waste(self) -> float:
@@ -181,7 +195,8 @@ def make(
     Raises
     ------
     DesignError
-        Several bodies, a mesh of tetrahedra, or a shape without an end.
+        Several bodies, a mesh of tetrahedra, a shape without an end, a part that samples miss, or
+        too many samples.
 
     Examples
     --------
@@ -193,75 +208,104 @@ def make(
     ('cast', ['part-1-lower'], ())
     """
     printer = printer or Printer()
+    names = _Names()
     body = Body.of(design, printer.resolution)
     plans: list[Plan] = []
-    inlets: dict[str, Inlet] = {}
+    holes: list[Inlet] | None = None
     printed: list[Printed] = []
     for component in body.components:
+        if not component.rigid:
+            found, holes = plan(body, component, printer, way, holes)
+            plans.append(found)
+    inlets = inlets_of(body, printer, None) if holes is None else holes
+    tubes = [each.hole(printer.tube / 2.0 + printer.clearance) for each in inlets]
+    for component in body.components:
         if component.rigid:
-            surface = surface_of(component.solid, body.grid, component.values)
-            printed.append(Printed(_file_name(component.name), "rigid", surface))
-            continue
-        found, holes = plan(body, component, printer, way)
-        plans.append(found)
-        inlets.update({each.chamber: each for each in holes})
+            printed.append(_printed(component, "rigid", body, tubes, names))
     problems: list[ErrorDetail] = []
     casts: list[Cast] = []
     for each in plans:
         if each.way == "printed":
-            surface = surface_of(each.component.solid, body.grid, each.component.values)
-            printed.append(Printed(_file_name(each.component.name), "body", surface))
-        if each.way == "lost-core":
-            printed += [
-                Printed(f"core-{_file_name(void.name)}", "core", void.surface(body.grid))
-                for void in body.voids
-            ]
+            bores = [inlet.hole() for inlet in inlets]
+            printed.append(_printed(each.component, "body", body, bores, names))
         problems += _unplanned(each, way)
         for casting in each.castings:
-            name = _file_name(casting.name)
+            name = names.of(casting.name, "-lower", "-upper")
             mold = mold_of(casting.solid, casting.low, casting.high, casting.frame, printer, name)
             cast = _cast(casting, mold)
             casts.append(cast)
             if progress is not None:
                 progress(len(casts), sum(len(other.castings) for other in plans))
             problems += _proved(cast, printer)
-    holes = list(inlets.values())
+    if any(each.way == "lost-core" for each in plans):
+        printed += [
+            Printed(names.of(f"core-{void.name}"), "core", void.surface) for void in body.voids
+        ]
     printed += [
-        Printed(plate.name, "plate", plate.surface) for plate in plates_of(body, holes, printer)
+        Printed(names.of(plate.name), "plate", plate.surface)
+        for plate in plates_of(body, inlets, printer)
     ]
+    if way is not None and plans and all(each.way not in (way, "printed") for each in plans):
+        what = f'"{way}" was asked for, and the way is {plans[0].way}: {plans[0].why}'
+        problems.append(ErrorDetail("way", what, f'leave it out, or take "{plans[0].way}"'))
+    reached = {each.chamber for each in inlets}
     for void in body.voids:
-        if void.name not in inlets and any(p.way in ("halves", "lost-core") for p in plans):
+        if void.name not in reached and any(each.way != "printed" for each in plans):
             what = "no straight hole leads to it through one wall"
             hint = "leave room for a tube where its wall is flat, or name another clamp"
             problems.append(ErrorDetail(f"chambers.{void.name}", what, hint))
     for one in printed:
-        reason = proof.unsound(one.surface)
+        # A connected solid has a surface around each space that it encloses.
+        hollow = one.kind in ("rigid", "body") and one.surface.is_closed
+        reason = None if hollow else proof.unsound(one.surface)
         if reason is not None:
             problems.append(ErrorDetail(one.name, reason, "a finer resolution of the printer"))
-    described = sum(each.mold.surface.volume for each in casts)
+    described = sum(each.volume for each in casts)
     return Fabrication(
         design=design,
         printer=printer,
         plans=tuple(plans),
         casts=tuple(casts),
         printed=tuple(printed),
-        inlets=tuple(holes),
+        inlets=tuple(inlets),
         described=described,
-        poured=sum(each.mold.poured for each in casts),
+        poured=sum(each.poured for each in casts),
         problems=tuple(problems),
-        notes=tuple(_notes(design, plans, holes)),
+        notes=tuple(_notes(body, plans, inlets)),
     )
 
 
-def _file_name(name: str) -> str:
-    kept = "".join(c if c.isalnum() else "-" for c in name.lower())
-    return "-".join(part for part in kept.split("-") if part) or "part"
+class _Names:
+    """Names of files, each given once."""
+
+    def __init__(self) -> None:
+        self._given: set[str] = set()
+
+    def of(self, name: str, *endings: str) -> str:
+        """Return a name that is free with all endings, from the letters and digits of another."""
+        kept = "".join(c if c.isalnum() else "-" for c in name.lower())
+        first = "-".join(part for part in kept.split("-") if part) or "part"
+        for number in count(1):
+            found = first if number == 1 else f"{first}-{number}"
+            names = {f"{found}{ending}" for ending in endings or ("",)}
+            if not names & self._given:
+                break
+        self._given |= names
+        return found
+
+
+def _printed(
+    component: Component, kind: str, body: Body, holes: Sequence[_core.Shape], names: _Names
+) -> Printed:
+    """Return a component as it is printed, with bores for tubes."""
+    solid, values = bored(component.solid, component.values, holes, body.grid)
+    return Printed(names.of(component.name), kind, surface_of(solid, body.grid, values))
 
 
 def _cast(casting: Casting, mold: Mold) -> Cast:
     component = casting.component
     data = casting_data(component.material)
-    mass = mold.surface.volume * component.density
+    mass = (mold.surface.volume - casting.cores) * component.density
     total = mass * (1.0 + WASTE)
     first, second = data.parts if data is not None else (1.0, 0.0)
     share = first / (first + second)
@@ -273,7 +317,7 @@ def _cast(casting: Casting, mold: Mold) -> Cast:
 def _unplanned(made: Plan, wanted: Way | None) -> list[ErrorDetail]:
     if made.way != "printed" or wanted == "printed":
         return []
-    place = "" if made.place is None else f" at {_place(made.place)}"
+    place = "" if made.place is None else f" at {_place(made.place, _DESIGN)}"
     what = f"cannot be cast{' as ' + wanted if wanted else ''}: {made.why}{place}"
     hint = 'open its inside on one side, or take way = "printed"'
     return [ErrorDetail(made.component.name, what, hint)] if wanted else []
@@ -295,46 +339,61 @@ def _proved(cast: Cast, printer: Printer) -> list[ErrorDetail]:
             found.append(ErrorDetail(part.name, what, "a larger printer, or a shorter body"))
     volume, place = proof.blocked(mold)
     if place is not None:
-        what = f"{volume * 1e9:.3g} mm³ of it meet something on the way out, at {_place(place)}"
+        at = _place(place, mold.frame)
+        what = f"{volume * 1e9:.3g} mm³ of it meet something on the way out, at {at}"
         found.append(ErrorDetail(cast.casting.name, what, "another way, or a rounder shape there"))
     thin = proof.thin_wall(mold, printer.wall)
     if thin is not None:
         wall = format_quantity(printer.wall, "length")
-        what = f"is thinner than a wall of {wall} at {_place(thin[1])}"
+        what = f"is thinner than a wall of {wall} at {_place(thin[1], mold.frame)}"
         found.append(ErrorDetail(thin[0], what, "a wider gap of the design, or a finer nozzle"))
     place = proof.too_fine(mold)
     if place is not None:
         shown = format_quantity(printer.resolution, "length")
-        what = f"is less than two samples of {shown} thick at {_place(place)}"
+        what = f"is less than two samples of {shown} thick at {_place(place, mold.frame)}"
         hint = "a finer resolution of the printer"
         return [ErrorDetail(cast.casting.name, what, hint)]
     if mold.trapped > 0.0:
         what = f"{mold.trapped * 1e9:.3g} mm³ of air stay in it"
         found.append(ErrorDetail(cast.casting.name, what, "another way, or a cut elsewhere"))
-    if cast.deviation > DEVIATION:
+    if not cast.deviation <= DEVIATION:
         shown = format_quantity(round(cast.deviation, 6), "length")
         most = format_quantity(DEVIATION, "length")
         what = f"its mold is {shown} off its shape; at most {most} count as equal"
         found.append(ErrorDetail(cast.casting.name, what, "a finer resolution of the printer"))
-    off = mold.poured / mold.surface.volume - 1.0
-    if abs(off) > VOLUME:
-        what = f"its mold holds {off:+.2%} of its volume more"
+    off = cast.poured / cast.volume - 1.0
+    if not abs(off) <= VOLUME:
+        more = "more" if off > 0.0 else "less"
+        what = f"its mold holds {abs(off):.2%} {more} than its volume"
         found.append(ErrorDetail(cast.casting.name, what, "a finer resolution of the printer"))
     return found
 
 
-def _place(at: Floats) -> str:
-    return f"({', '.join(f'{1e3 * each:.3g}' for each in at)}) mm of the mold"
+def _place(at: Floats, frame: Frame) -> str:
+    """Return a point [m] of a frame in words, in the frame of the design."""
+    return f"({', '.join(f'{1e3 * each + 0.0:.3g}' for each in frame.world(at))}) mm"
 
 
-def _notes(design: Design, plans: list[Plan], inlets: list[Inlet]) -> list[str]:
+def _is_molded(inlet: Inlet, body: Body, plans: list[Plan]) -> bool:
+    """Return True if pins of cores, or prints, make an inlet all through its wall."""
+    share = (np.arange(int(np.ceil(inlet.length / body.grid.step))) + 0.5) * body.grid.step
+    points = np.tile(np.array(inlet.at), (len(share), 1))
+    points[:, inlet.axis] -= inlet.sign * share
+    wall = body.grid.nearest(points)
+    left = np.zeros(len(points), dtype=bool)
+    for each in plans:
+        if each.way != "printed" and (each.cut is None or each.cut.axis != inlet.axis):
+            left |= each.component.values[wall] < 0.0
+    return not left.any()
+
+
+def _notes(body: Body, plans: list[Plan], inlets: list[Inlet]) -> list[str]:
     """Return the steps that no mold does."""
-    notes = []
+    design, notes = body.design, []
     for inlet in inlets:
-        made = any(plan.cut is not None and plan.cut.axis == inlet.axis for plan in plans)
         at = ", ".join(f"{1e3 * each + 0.0:.3g}" for each in inlet.at)
         wide = f"{2e3 * inlet.radius:.2g} mm"
-        if not made:
+        if not _is_molded(inlet, body, plans):
             notes.append(f"Punch the inlet of {inlet.chamber}: {wide} wide, at ({at}) mm.")
     for number, layer in enumerate(design.layers, 1):
         name = layer.name or f"layer {number}"

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal, get_args
 
 import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design
-from voxsoft.fabrication.body import Body, Component, Filled, Inlet, holds, inlets_of
+from voxsoft.fabrication.body import Body, Component, Filled, Inlet, bored, clamped, inlets_of
 from voxsoft.fabrication.cutting import Cut, best_cut, least_caught
 from voxsoft.fabrication.draw import WITHIN, Draw, draw_along
 from voxsoft.fabrication.fields import (
@@ -19,8 +19,6 @@ from voxsoft.fabrication.fields import (
     Floats,
     Frame,
     HalfSpace,
-    Outside,
-    Parts,
     Turned,
 )
 from voxsoft.fabrication.printer import Printer
@@ -31,6 +29,16 @@ Way = Literal["cast", "core", "halves", "lost-core", "printed"]
 WAYS: Final[tuple[Way, ...]] = get_args(Way)
 #: Mean upright step along the outline, in samples, up to which a parting plane follows it.
 _LEVEL: Final = 1.0
+#: Reasons why a component is printed, by the way that was wanted.
+_UNFIT: Final[dict[Way | None, str]] = {
+    None: "it has undercuts for every pair of mold parts, every cut by a plane and a core that is "
+    "lost",
+    "cast": "it has undercuts for every pair of mold parts",
+    "core": "it has undercuts for every pair of mold parts",
+    "halves": "it has undercuts for every cut by a plane",
+    "lost-core": "its outside has undercuts for every pair of mold parts",
+    "printed": "asked for",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +57,8 @@ class Casting:
         Axes of its mold.
     low, high
         Its exact corners in that frame [m].
+    cores
+        Volume of cores in it that are lost [m³].
     """
 
     name: str
@@ -57,6 +67,7 @@ class Casting:
     frame: Frame
     low: Floats
     high: Floats
+    cores: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,14 +118,29 @@ class _Direction:
 
 
 def plan(
-    body: Body, component: Component, printer: Printer, wanted: Way | None = None
-) -> tuple[Plan, list[Inlet]]:
+    body: Body,
+    component: Component,
+    printer: Printer,
+    wanted: Way | None = None,
+    inlets: list[Inlet] | None = None,
+) -> tuple[Plan, list[Inlet] | None]:
     """Choose the simplest way, or the wanted one.
+
+    Parameters
+    ----------
+    body, component
+        The body, and its component to be planned.
+    printer
+        The printer.
+    wanted
+        Way to take; None for the simplest.
+    inlets
+        Inlets of all chambers, where another component that is cut has them; else None.
 
     Returns
     -------
     tuple
-        The plan, and the inlets of the chambers in this component.
+        The plan, and the inlets: for a cut as pins of a core where they can be.
     """
     grid = body.grid
     directions = [_direction(component.values, grid, axis, s) for axis in range(3) for s in (1, -1)]
@@ -123,14 +149,13 @@ def plan(
         fit = [each for each in directions if each.fits]
         if fit:
             best = min(fit, key=lambda each: each.rank(grid.step))
-            return _whole(body, component, best), []
+            return _whole(body, component, best), inlets
     if wanted in (None, "halves"):
         ends = np.array([void.extents for void in body.voids]).reshape(-1, 2, 3)
         cut = best_cut(component.values, grid, ends, _held(body), (body.low + body.high) / 2.0)
         if cut is not None:
-            inlets = inlets_of(body, printer, cut.axis)
+            inlets = inlets_of(body, printer, cut.axis) if inlets is None else inlets
             return _halves(body, component, cut, inlets, caught.draw), inlets
-    inlets = inlets_of(body, printer, None)
     if wanted in (None, "lost-core") and body.voids:
         cells = np.any([void.cells for void in body.voids], axis=0)
         filled = np.where(cells, -np.abs(component.values), component.values)
@@ -138,11 +163,9 @@ def plan(
         fit = [each for each in closed if each.fits]
         if fit:
             best = min(fit, key=lambda each: each.rank(grid.step))
-            return _lost(body, component, best, inlets, caught.draw), inlets
-    why = (
-        "it has undercuts for every pair of mold parts, every cut by a plane and a core that is "
-        "lost"
-    )
+            asked = wanted is not None
+            return _lost(body, component, best, caught.draw, is_asked=asked), inlets
+    why = _UNFIT[wanted] if body.voids or wanted != "lost-core" else "it encloses no chamber"
     place = None if caught.draw.place is None else caught.frame.world(caught.draw.place)
     return Plan(component, "printed", why, (), None, caught.draw.undercut, place), inlets
 
@@ -198,11 +221,8 @@ def _held(body: Body) -> Floats:
     """Return the middle of the clamped samples [m]; NaN without clamps."""
     cells = np.argwhere(np.abs(body.values) < body.grid.step)
     points = body.grid.points(cells)
-    if len(points) > 20_000:
-        points = points[:: len(points) // 20_000]
-    clamps = [clamp.region for clamp in body.design.clamps]
-    held = [p for p in points if any(holds(body.design, r, p, body.grid.step) for r in clamps)]
-    middle: Floats = np.mean(held, axis=0) if held else np.full(3, np.nan)
+    held = points[clamped(body.design, points, body.grid.step)]
+    middle: Floats = held.mean(axis=0) if len(held) else np.full(3, np.nan)
     return middle
 
 
@@ -218,9 +238,7 @@ def _casting(
     low, high = (np.array(each) for each in extents(values, body.grid))
     corners = frame.local(np.stack([low, high]))
     low, high = corners.min(axis=0), corners.max(axis=0)
-    if holes:
-        solid = Common([solid, *(Outside(Parts([hole])) for hole in holes)])
-        values = np.maximum(values, -body.grid.values(Parts(holes)))
+    solid, values = bored(solid, values, holes, body.grid)
     turned, grid = turned_grid(values, body.grid, frame)
     return Casting(name, component, Sampled(Turned(solid, frame), grid, turned), frame, low, high)
 
@@ -253,19 +271,25 @@ def _halves(body: Body, component: Component, cut: Cut, inlets: list[Inlet], who
         name = f"{component.name}-{label}"
         castings.append(_casting(name, component, solid, body, frame, values, holes))
     axis = "xyz"[cut.axis]
-    why = (
-        f"its chamber is closed, and the plane {axis} = {1e3 * cut.at:.4g} mm opens it for a core "
-        f"with the smallest seam, {1e6 * cut.seam:.4g} mm²"
-    )
+    plane = f"the plane {axis} = {1e3 * cut.at:.4g} mm"
+    seam = f"with the smallest seam, {1e6 * cut.seam:.4g} mm²"
+    why = f"{plane} leaves two castings without undercuts, {seam}"
+    if body.voids:
+        one = len(body.voids) == 1
+        closed, them = ("its chamber is", "it") if one else ("its chambers are", "them")
+        why = f"{closed} closed, and {plane} opens {them} for a core {seam}"
     return Plan(component, "halves", why, tuple(castings), cut, whole.undercut, None)
 
 
 def _lost(
-    body: Body, component: Component, best: _Direction, inlets: list[Inlet], whole: Draw
+    body: Body, component: Component, best: _Direction, whole: Draw, *, is_asked: bool
 ) -> Plan:
     cells = np.any([void.cells for void in body.voids], axis=0)
     values = np.where(cells, -np.abs(component.values), component.values)
-    solid = Filled(component.solid, cells, body.grid)
+    solid = Filled(component.solid, cells, body.grid, component.values)
     casting = _casting(component.name, component, solid, body, best.frame, values)
-    why = "no plane opens its chambers without undercuts: a core of wax or soluble print is lost"
+    cores = sum(void.surface.volume for void in body.voids)
+    casting = replace(casting, cores=cores)
+    reason = "asked for" if is_asked else "no plane opens its chambers without undercuts"
+    why = f"{reason}: a core of wax or soluble print is lost"
     return Plan(component, "lost-core", why, (casting,), None, whole.undercut, None)

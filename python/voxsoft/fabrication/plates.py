@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 
 from voxsoft.design.discretization.cut_cells import built_parts
-from voxsoft.fabrication.body import Body, Filled, Inlet
+from voxsoft.fabrication.body import Body, Filled, Inlet, clamped
 from voxsoft.fabrication.fields import (
     Box,
     Common,
@@ -23,6 +24,11 @@ from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid, Surface, surface_of
 
 Face = tuple[int, int, float]
+
+#: Part of the area of a face that is flat, and held, where the face gets a plate.
+_MOST: Final = 0.5
+#: Depth behind a face at which it is as wide as one step inside if it is flat, in steps.
+_FLAT: Final = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,18 +77,23 @@ class _Slab:
 
 
 def clamped_faces(body: Body) -> list[Face]:
-    """Return flat clamped faces at an end of the body: axis, direction outward, position [m]."""
-    low, high = body.low, body.high
+    """Return flat faces at an end of the body that clamps hold for the most part.
+
+    Each is an axis, the direction outward, and the position [m].
+    """
+    solid = Parts(built_parts(body.design))
     found: list[Face] = []
-    for clamp in body.design.clamps:
-        for axis, name in enumerate("xyz"):
-            bounds = getattr(clamp.region, name)
-            if bounds is None:
-                continue
-            for sign, end in ((-1, low[axis]), (1, high[axis])):
-                face = (axis, sign, float(end))
-                if bounds[0] - 1e-6 <= end <= bounds[1] + 1e-6 and face not in found:
-                    found.append(face)
+    for axis in range(3):
+        for sign, end in ((-1, body.low[axis]), (1, body.high[axis])):
+            layers = np.flatnonzero((np.moveaxis(body.values, axis, 0) < 0.0).any(axis=(1, 2)))
+            layer = layers[0] if sign < 0 else layers[-1]
+            cells = np.argwhere(np.take(body.values, layer, axis) < 0.0)
+            points = body.grid.points(np.insert(cells, axis, layer, axis=1))
+            points[:, axis] = end - sign * _FLAT * body.grid.step
+            is_flat = (solid.evaluate(points) < 0.0).mean() > _MOST
+            points[:, axis] = end
+            if is_flat and clamped(body.design, points, 0.5 * body.grid.step).mean() > _MOST:
+                found.append((axis, sign, float(end)))
     return found
 
 
@@ -91,7 +102,7 @@ def plates_of(body: Body, inlets: list[Inlet], printer: Printer) -> list[Plate]:
     cells = np.any([void.cells for void in body.voids], axis=0) if body.voids else None
     solid: Field = Parts(built_parts(body.design))
     if cells is not None:
-        solid = Filled(solid, cells, body.grid)
+        solid = Filled(solid, cells, body.grid, body.values)
     found = []
     for number, (axis, sign, at) in enumerate(clamped_faces(body), 1):
         frame = Frame.along(axis, sign)

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from typing import Final
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from voxsoft.errors import DesignError
 from voxsoft.records import Record
-from voxsoft.units import PositiveLength
+from voxsoft.units import PositiveLength, format_quantity
 
 #: Heights of floors and lids, and widths of flanges, in walls: stiff beside soft castings.
 _FLOOR: Final = 5.0
 _FLANGE: Final = 10.0
+#: Largest clearance of a pin, in walls: the thin socket stays narrower than all other pins.
+_LOOSEST: Final = 0.5
 
 
 class Printer(Record):
@@ -22,7 +25,7 @@ class Printer(Record):
     wall
         Thinnest wall that it prints; default: 0.8 mm, two lines of a nozzle of 0.4 mm.
     clearance
-        Gap between a pin and its socket, on each side; default: 0.15 mm.
+        Gap between a pin and its socket, on each side, at most half a wall; default: 0.15 mm.
     volume
         Largest part along x, y, z; default: 220 x 220 x 220 mm.
     tube
@@ -48,6 +51,15 @@ class Printer(Record):
     resolution: PositiveLength = Field(
         0.5e-3, description="Distance of the samples from which molds are made."
     )
+
+    @model_validator(mode="after")
+    def _pins_fit(self) -> Printer:
+        most = _LOOSEST * self.wall
+        if self.clearance > most:
+            came, shown = (format_quantity(each, "length") for each in (self.clearance, most))
+            what = f"is {came}, more than half a wall: pins would fit sockets of other pins"
+            raise DesignError("clearance", what, f"at most {shown}, or a thicker wall")
+        return self
 
     @property
     def floor(self) -> float:

@@ -22,27 +22,27 @@ def deviation(mold: Mold) -> float:
     """Return the largest distance [m] between the side of a casting and the mold around it.
 
     Both ways: from points of the casting's surface to the nearest triangle of the mold, openings
-    and the brim of an open mold aside; and the depth to which the mold reaches into the casting.
+    aside, or to the brim of an open mold; and the depth to which the mold reaches into the casting.
     """
     import igl
 
-    step = mold.casting.grid.step
     surface = mold.surface
     points = surface.vertices[surface.triangles].mean(axis=1)
     if len(points) > _MOST:
         points = points[:: len(points) // _MOST + 1]
     near = np.ones(len(points), dtype=bool)
-    if mold.is_open:
-        near &= points[:, 2] < mold.draw.parting - step
     for opening in mold.openings:
-        near &= opening.bore.evaluate(points) > step
+        near &= opening.bore.evaluate(points) > mold.casting.grid.step
     vertices = np.concatenate([part.surface.vertices for part in mold.parts])
     starts = np.cumsum([0, *(len(part.surface.vertices) for part in mold.parts)])
     triangles = np.concatenate(
         [part.surface.triangles + start for part, start in zip(mold.parts, starts, strict=False)]
     )
     squares = igl.point_mesh_squared_distance(points[near], vertices, triangles)[0]
-    outward = float(np.sqrt(squares.max())) if near.any() else 0.0
+    away = np.sqrt(squares)
+    if mold.is_open:
+        away = np.minimum(away, np.abs(mold.draw.parting - points[near, 2]))
+    outward = float(away.max(initial=0.0))
     into = float(-mold.casting.evaluate(vertices).min())
     return max(outward, into, 0.0)
 

@@ -24,6 +24,8 @@ _PORTION: Final = 1_000_000
 _NEAR: Final = 3.0
 #: Distance from a surface, in steps, within which samples count as outside.
 _ON_SURFACE: Final = 1e-5
+#: Distance from a surface, in steps, within which a vertex stays: flat sides are there at once.
+_SETTLED: Final = 1e-6
 
 
 @dataclass(frozen=True)
@@ -204,5 +206,5 @@ def surface_of(solid: Field, grid: Grid, values: Floats | None = None) -> Surfac
     vertices, triangles = contour(_off_zero(values, grid.step), np.array(grid.first), grid.step)
     if not len(triangles):
         return Surface(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
-    sharp, corners = sharpened(solid, vertices, triangles, grid.step)
+    sharp, corners = sharpened(solid, vertices, triangles, grid.step, _SETTLED)
     return Surface(sharp, corners.astype(np.int64))

@@ -60,8 +60,8 @@ def fabrication_summary(made: Fabrication, suffix: str = ".3mf") -> dict[str, An
             {
                 "name": cast.casting.name,
                 "material": cast.casting.component.material,
-                "volume": cast.mold.surface.volume,
-                "poured": cast.mold.poured,
+                "volume": cast.volume,
+                "poured": cast.poured,
                 "mass": cast.mass,
                 "deviation": cast.deviation,
                 "trapped_air": cast.mold.trapped,
@@ -142,7 +142,8 @@ def _sheet(made: Fabrication, suffix: str) -> Iterator[str]:
     yield f'<html lang="en"><meta charset="utf-8"><title>{name}: molds</title>'
     yield f"<style>{_STYLE}</style>"
     yield f"<h1>{name}</h1>"
-    yield f"<p>{_WAYS[made.way]}. {escape(made.why[:1].upper() + made.why[1:])}.</p>"
+    why = f" {made.why[:1].upper()}{made.why[1:]}." if made.why else ""
+    yield f"<p>{_WAYS[made.way]}.{escape(why)}</p>"
     yield from _print_table(made, suffix)
     yield from _mix_table(made)
     yield "<h2>Steps</h2><ol>"
@@ -192,6 +193,9 @@ def _mix_table(made: Fabrication) -> Iterator[str]:
 def _cast_steps(cast: Cast) -> Iterator[str]:
     name = escape(cast.casting.name)
     mold = cast.mold
+    if cast.casting.cores > 0.0:
+        yield "<li>Hold each core at its place in the mold by spacers of cured silicone, as thick "
+        yield "as the wall there."
     if mold.is_open:
         yield f"<li>Pour {name} into {escape(mold.parts[0].name)} to the brim and level it with a "
         yield "straight edge; bubbles rise out."
@@ -199,8 +203,8 @@ def _cast_steps(cast: Cast) -> Iterator[str]:
         vents = sum(each.kind == "vent" for each in mold.openings)
         yield f"<li>Put {escape(mold.parts[1].name)} on {escape(mold.parts[0].name)}: the thin pin "
         yield "goes into the thin socket. Clamp the flanges. Hold it level and pour "
-        yield f"{name} through the funnel until silicone stands in "
-        yield f"{'the vent' if vents == 1 else f'all {vents} vents'}."
+        full = "in the vent" if vents == 1 else f"in all {vents} vents" if vents else "in it"
+        yield f"{name} through the funnel until silicone stands {full}."
     yield "<div class=row>"
     yield from _figure(_exploded(cast), f"Mold of {cast.casting.name}, open")
     yield "</div>"
@@ -218,14 +222,13 @@ def _joining_steps(made: Fabrication) -> Iterator[str]:
             yield f"<li>Spread a thin film of the same silicone on the seam of {low} "
             yield f"({1e6 * plan.cut.seam:.0f} mm²), put {high} on it and let it cure under its "
             yield "own weight."
-        if plan.way == "lost-core":
-            yield "<li>Hang the cores in the mold by wires through their inlets before pouring; "
-            yield "melt or dissolve them after the cure and rinse through the inlets."
     components = {plan.component.name for plan in made.plans}
     if len(components) + sum(each.kind == "rigid" for each in made.printed) > 1:
         yield "<li>Bond the components with silicone adhesive, as they touch in the design."
     for note in made.notes:
         yield f"<li>{escape(note)}"
+    if any(plan.way == "lost-core" for plan in made.plans):
+        yield "<li>Melt or dissolve the cores and rinse through the inlets."
     plates = [each for each in made.printed if each.kind == "plate"]
     if plates:
         names = escape(", ".join(each.name for each in plates))
@@ -238,19 +241,20 @@ def _joining_steps(made: Fabrication) -> Iterator[str]:
 
 
 def _proof_table(made: Fabrication) -> Iterator[str]:
+    if not made.casts:
+        return
     yield "<h2>Proofs</h2><table><tr><th>Casting<th>Volume in mm³<th>of the mold in mm³"
     yield "<th>largest deviation in mm<th>trapped air in mm³"
     for cast in made.casts:
         yield (
-            f"<tr><td>{escape(cast.casting.name)}<td>{1e9 * cast.mold.surface.volume:.1f}"
-            f"<td>{1e9 * cast.mold.poured:.1f}<td>{1e3 * cast.deviation:.3f}"
+            f"<tr><td>{escape(cast.casting.name)}<td>{1e9 * cast.volume:.1f}"
+            f"<td>{1e9 * cast.poured:.1f}<td>{1e3 * cast.deviation:.3f}"
             f"<td>{1e9 * cast.mold.trapped:.1f}"
         )
     yield "</table><p class=quiet>Each part is one closed solid, leaves along its direction "
     yield "without meeting the casting, and is nowhere thinner than the wall of the printer.</p>"
-    if made.design.layers or made.casts:
-        yield "<p class=quiet>Stretch while a casting leaves its mold is not computed: no part has "
-        yield "an undercut deeper than 0.1 mm, so that the casting need not stretch.</p>"
+    yield "<p class=quiet>Stretch while a casting leaves its mold is not computed: no part has "
+    yield "an undercut deeper than 0.1 mm, so that the casting need not stretch.</p>"
 
 
 def _exploded(cast: Cast) -> Figure:

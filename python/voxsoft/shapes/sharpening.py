@@ -34,14 +34,17 @@ class Evaluated(Protocol):
 
 
 def sharpened(
-    shape: Evaluated, vertices: Floats, triangles: Triangles, step: float
+    shape: Evaluated,
+    vertices: Floats,
+    triangles: Triangles,
+    step: float,
+    settled: float = 0.0,
 ) -> tuple[Floats, Triangles]:
     """Restore edges and corners of a surface that marching cubes traced.
 
     Vertices move to the surface. Each edge of the mesh that crosses a ridge is split where the
-    planes
-    at its ends meet, nearest to its middle; a triangle of three such edges gets a vertex where the
-    three planes at its corners meet. The surface stays closed.
+    planes at its ends meet, nearest to its middle; a triangle of three such edges gets a vertex
+    where the three planes at its corners meet. The surface stays closed.
 
     Parameters
     ----------
@@ -51,6 +54,8 @@ def sharpened(
         Traced mesh, (n, 3) in m and (t, 3).
     step
         Distance of the samples of the tracing [m].
+    settled
+        Value of the shape, in steps, up to which a vertex is on the surface and stays.
 
     References
     ----------
@@ -67,13 +72,15 @@ def sharpened(
     >>> bool(np.abs(sharp - [1, 1, 1]).max(axis=1).min() < 1e-9)
     True
     """
-    moved = to_surface(shape, vertices, step)
+    moved = to_surface(shape, vertices, step, settled)
     # All corners of a triangle beside a ridge may come to lie on it: such corners are not moved.
     needles = _areas(moved, triangles) < _NEEDLE * step**2
     moved[np.unique(triangles[needles])] = vertices[np.unique(triangles[needles])]
     normals = _normals(shape, moved, step)
-    edges = np.sort(triangles[:, [1, 2, 2, 0, 0, 1]].reshape(-1, 2), axis=1)
-    edges, of_side = np.unique(edges, axis=0, return_inverse=True)
+    edges = np.sort(triangles[:, [1, 2, 2, 0, 0, 1]].reshape(-1, 2), axis=1).astype(np.int64)
+    # One number for each edge sorts faster than a pair.
+    keys, of_side = np.unique(edges[:, 0] * len(moved) + edges[:, 1], return_inverse=True)
+    edges = np.stack(np.divmod(keys, len(moved)), axis=1)
     of_side = of_side.reshape(-1, 3)  # the edge opposite to each corner
     bent = np.einsum("ij,ij->i", normals[edges[:, 0]], normals[edges[:, 1]]) < _RIDGE
     places = np.zeros((len(edges), 3))
@@ -133,16 +140,24 @@ def _areas(vertices: Floats, triangles: Triangles) -> Floats:
     return areas
 
 
-def to_surface(shape: Evaluated, points: Floats, step: float) -> Floats:
-    """Move points near a surface onto it, by Newton's steps of at most one `step` [m]."""
+def to_surface(shape: Evaluated, points: Floats, step: float, settled: float = 0.0) -> Floats:
+    """Move points near a surface onto it, by Newton's steps of at most one `step` [m].
+
+    Points with values up to `settled`, in steps, are on it; by default all of them move on.
+    """
+    points = points.copy()
+    left = np.arange(len(points))
     for _ in range(_TO_SURFACE):
-        values = shape.evaluate(np.ascontiguousarray(points))
-        slopes = _slopes(shape, points, step)
+        values = shape.evaluate(np.ascontiguousarray(points[left]))
+        if settled > 0.0:
+            off = ~(np.abs(values) <= settled * step)
+            left, values = left[off], values[off]
+        slopes = _slopes(shape, points[left], step)
         squares = np.einsum("ij,ij->i", slopes, slopes)
         good = np.isfinite(values) & (squares > 1e-12)
         moves = np.where(good, values / np.where(good, squares, 1.0), 0.0)[:, None] * slopes
         lengths = np.linalg.norm(moves, axis=1, keepdims=True)
-        points = points - moves * np.minimum(1.0, step / np.maximum(lengths, 1e-300))
+        points[left] -= moves * np.minimum(1.0, step / np.maximum(lengths, 1e-300))
     return points
 
 

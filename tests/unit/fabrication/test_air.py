@@ -25,6 +25,19 @@ def test_a_bridge_with_two_towers_has_an_opening_in_each():
     assert round(trapped_air(cavity, grid, left) * 1e9) == 5 * 3 * 7
 
 
+def test_a_funnel_leaves_a_wall_to_a_higher_tower_beside_it():
+    cavity = np.zeros((40, 60, 80), dtype=bool)
+    cavity[2:24, 2:58, 2:6] = True
+    cavity[2:14, 2:58, 2:20] = True
+    cavity[15:22, 2:58, 2:60] = True
+    grid = Grid((0.0, 0.0, 0.0), 0.0005, cavity.shape)
+    printer = Printer()
+    pour = next(each for each in openings_of(cavity, grid, 0.042, printer) if each.kind == "pour")
+    tower = grid.along(0)[15] - grid.step / 2
+    assert pour.bore.radius < pour.bore.top_radius
+    assert pour.bore.center[0] + pour.bore.top_radius <= tower - printer.wall + 1e-12
+
+
 @settings(max_examples=25, deadline=None)
 @given(arrays.arrays(bool, (5, 4, 6), elements=st.booleans()))
 def test_air_is_trapped_where_no_way_up_leads_to_an_opening(cells):

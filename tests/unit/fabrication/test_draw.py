@@ -37,6 +37,14 @@ def test_a_bar_is_poured_openly_to_its_top():
     assert found.parting == 6 * mm
 
 
+def test_a_shallow_recess_in_the_top_needs_a_lid():
+    bar = Box(size=(20 * mm, 8 * mm, 6 * mm))
+    bar -= Box(size=(12 * mm, 4 * mm, 0.4 * mm), corner=(4 * mm, 2 * mm, 5.6 * mm))
+    found = draw_along(*sampled(bar))
+    assert found.parting == 6 * mm
+    assert not found.is_open
+
+
 def test_a_waist_is_an_undercut_of_its_volume():
     wide = Cylinder(radius=8 * mm, height=4 * mm)
     spool = wide | Cylinder(radius=4 * mm, height=12 * mm) | wide.translate((0, 0, 8 * mm))

@@ -9,7 +9,7 @@ import pytest
 import voxsoft as vs
 from voxsoft.design import families
 from voxsoft.errors import DesignError
-from voxsoft.fabrication import Printer, make, proof
+from voxsoft.fabrication import Printer, make, one_body, proof
 from voxsoft.units import mm
 
 PRINTER = Printer()
@@ -90,6 +90,16 @@ def test_a_part_that_moves_the_wrong_way_is_found(made):
     volume, place = proof.blocked(turned)
     assert volume > 0.0
     assert place is not None
+
+
+def test_a_top_below_the_brim_of_an_open_mold_is_a_deviation():
+    bar = vs.Part(shape=vs.Box(size=(12 * mm, 8 * mm, 6 * mm)), material="ecoflex-00-30")
+    (cast,) = make(chambered(parts=[bar], clamps=[], probes={})).casts
+    assert proof.deviation(cast.mold) < 1e-9
+    vertices = cast.mold.surface.vertices.copy()
+    vertices[:, 2] = np.minimum(vertices[:, 2], cast.mold.draw.top - 0.4 * mm)
+    lower = replace(cast.mold, surface=replace(cast.mold.surface, vertices=vertices))
+    assert proof.deviation(lower) == pytest.approx(0.4 * mm)
 
 
 @pytest.mark.long
@@ -210,7 +220,9 @@ def test_two_feet_on_one_face_stand_on_one_plate():
 
 def test_one_of_several_bodies_is_made():
     bar = chambered(
-        parts=[vs.Part(shape=vs.Box(size=(9 * mm, 6 * mm, 5 * mm)), material="ecoflex-00-30")]
+        parts=[vs.Part(shape=vs.Box(size=(9 * mm, 6 * mm, 5 * mm)), material="ecoflex-00-30")],
+        layers=[vs.Layer(region=vs.Region(x=(0, 0)), young=1e6, thickness=0.2 * mm, name="net")],
+        probes={},
     )
     pair = vs.Design(
         name="pair",
@@ -219,4 +231,10 @@ def test_one_of_several_bodies_is_made():
     )
     with pytest.raises(DesignError, match="--body NAME"):
         make(pair)
-    assert make(pair.alone("left")).way == "cast"
+    left = make(one_body(pair, "left"))
+    assert left.way == "cast"
+    # Its clamps and layers are those of its own design.
+    assert [each.kind for each in left.printed] == ["plate"]
+    assert left.notes[0].startswith("Lay ")
+    with pytest.raises(DesignError, match="'right' is not known"):
+        one_body(pair, "right")

@@ -81,6 +81,11 @@ def test_a_bad_limit_and_an_unknown_way_are_named(design_file):
     wrong = CliRunner().invoke(app, ["make", str(design_file), "--printer", "walls=1 mm"])
     assert wrong.exit_code == 3
     assert "walls" in wrong.output
+    room = ["--printer", "volume=9 mm, 9 mm, 9 mm"]
+    large = CliRunner().invoke(app, ["make", str(design_file), *room])
+    assert (large.exit_code, "larger than the printer's 9 mm" in large.output) == (3, True)
+    other = CliRunner().invoke(app, ["make", str(design_file), "--body", "tail"])
+    assert (other.exit_code, "'tail' is not known" in other.output) == (3, True)
     unknown = CliRunner().invoke(app, ["make", str(design_file), "--way", "forged"])
     assert unknown.exit_code == 2
     assert "expected cast, core, halves" in unknown.output
