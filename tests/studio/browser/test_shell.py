@@ -171,8 +171,8 @@ def test_a_server_that_dies_and_comes_back(own_server, open_tab):
     tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
     own_server.stop()
     tab.find("disconnected").wait_for()
-        # Each try says "connecting" for a moment.
-        tab.find("link").get_by_text("retrying").wait_for()
+    # Each try says "connecting" for a moment.
+    tab.find("link").get_by_text("retrying").wait_for()
     own_server.start()
     tab.find("disconnected").wait_for(state="detached")
     tab.find("play").click()
