@@ -34,6 +34,7 @@ class Page:
         self.smooth = None
         self.topology = None
         self.document = None
+        self.stat = None
         self.log = []
 
     @property
@@ -59,6 +60,8 @@ class Page:
         received = SimpleNamespace(**event)
         if received.t == "document":
             self.document = received
+        elif received.t == "stat":
+            self.stat = received
         return received
 
     def _binary(self, message):
@@ -84,9 +87,12 @@ class Page:
                 if message.t == tag and condition(message):
                     return message
 
-    async def shown(self, condition, seconds=PATIENCE):
-        """Read on until a statistic meets a condition and its frame has come; in any order."""
-        stat = None
+    async def shown(self, condition, seconds=PATIENCE, *, seen=False):
+        """Read on until a statistic meets a condition and its frame has come; in any order.
+
+        With `seen` the last statistic that came before counts too.
+        """
+        stat = self.stat if seen else None
         async with asyncio.timeout(seconds):
             while True:
                 frame = self.frames[-1] if self.frames else None
@@ -163,7 +169,10 @@ class Studio:
             await page.send("open", what="file", name=str(source))
             await page.until("document", lambda d: d.rev > rev)
             body = await page.until("body", lambda b: b.rev == page.rev)
-            await page.shown(lambda s: s.state == "paused" and s.topology == body.topology)
+            # Its statistic may have come before it, and a body that stands still has no other.
+            await page.shown(
+                lambda s: s.state == "paused" and s.topology == body.topology, seen=True
+            )
 
 
 @asynccontextmanager
