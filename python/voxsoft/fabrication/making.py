@@ -114,7 +114,8 @@ class Fabrication:
     inlets
         Holes for air tubes.
     described, poured
-        Volume of all castings by the design, without inlets, and by their molds [m³].
+        Volume of all castings, traced from samples of the design and without inlets, and of the
+        space in their molds [m³].
     problems
         Proofs that failed; empty for molds that can be made and used.
     notes

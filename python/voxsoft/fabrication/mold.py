@@ -17,7 +17,7 @@ from voxsoft.fabrication.sampled import Grid, Sampled, Surface, surface_of
 #: Height of a pin, in its radii.
 _PIN_HEIGHT: Final = 2.0
 #: Value of samples beyond those of a casting, in steps: far outside.
-_NEAR_NOTHING: Final = 8.0
+_FAR_OUTSIDE: Final = 8.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +173,7 @@ def _within(casting: Sampled, block: Box) -> Sampled:
     before = np.maximum(np.ceil((first - np.array(block.low)) / grid.step) + 2, 0).astype(int)
     after = np.maximum(np.ceil((np.array(block.high) - last) / grid.step) + 2, 0).astype(int)
     ways = list(zip(before, after, strict=True))
-    values = np.pad(casting.values, ways, constant_values=_NEAR_NOTHING * grid.step)
+    values = np.pad(casting.values, ways, constant_values=_FAR_OUTSIDE * grid.step)
     return Sampled(casting.of, grid.padded(before, after), values)
 
 
