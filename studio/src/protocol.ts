@@ -260,6 +260,15 @@ export interface RemoveCommand {
   name: string;
 }
 
+/** Give a named thing of the design another name, everywhere the text speaks of it. */
+export interface RenameCommand {
+  t: "rename";
+  seq: number;
+  section: "bodies" | "chambers" | "constraints" | "histories" | "materials" | "objectives" | "objects" | "parameters" | "probes" | "shapes";
+  name: string;
+  to: string;
+}
+
 /**
  * Add a body: a design file of the folder, a template, or a file that was uploaded.
  *
@@ -1762,6 +1771,7 @@ export type AnyCommand =
   | CopyCommand
   | MoveCommand
   | RemoveCommand
+  | RenameCommand
   | AddBodyCommand
   | DesignsCommand
   | MaterialsCommand

@@ -77,6 +77,7 @@ const ON_DOCUMENT: ReadonlySet<Draft["t"]> = new Set([
   "copy",
   "move",
   "remove",
+  "rename",
   "add_body",
   "take",
   "version_show",

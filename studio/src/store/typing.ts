@@ -1,12 +1,9 @@
 // Text being typed that was not sent yet. Any other command about the document hands it over
 // first, so that nothing typed is lost by undo, by opening another document, or by leaving.
-import { useStudio } from "./studio";
 
 interface Typing {
   /** Send the typed text, if there is any. */
   flush(): void;
-  /** Typed text that was not sent yet. */
-  text(): string | null;
 }
 
 let editor: Typing | null = null;
@@ -22,11 +19,6 @@ export function provideTyping(typing: Typing): () => void {
 /** Send the text typed into the editor. */
 export function flushText(): void {
   editor?.flush();
-}
-
-/** The text as it stands in the editor, sent or not. */
-export function textNow(): string {
-  return editor?.text() ?? useStudio.getState().document?.text ?? "";
 }
 
 /** Let the field being typed into take its value, and send the text typed into the editor. */

@@ -340,6 +340,23 @@ def test_a_removed_object_takes_its_pairs_along(opened):
     assert session.document.text == before
 
 
+def test_a_new_name_keeps_a_change_that_the_page_had_not_seen(opened):
+    """The page names the thing; the text that is changed is the newest one."""
+    session = opened()
+    path = ["bodies", 0, "rotation"]
+    turned = {"axis": [0, 0, 1], "angle": "90 deg"}
+    do(session, commands.Edit(seq=1, rev=session.document.rev, path=path, value=turned))
+    do(session, commands.Rename(seq=2, section="bodies", name="left", to="thumb"))
+    [body, *_] = session.document.source["bodies"]
+    assert body["name"] == "thumb"
+    assert body["rotation"] == turned
+    do(session, commands.Undo(seq=3))
+    assert session.document.source["bodies"][0]["name"] == "left"
+    assert "nothing called" in refused(
+        session, commands.Rename(seq=4, section="bodies", name="thumb", to="index")
+    )
+
+
 def test_bodies_are_added_from_the_folder_from_templates_and_from_uploads(opened, folder):
     session = opened()
     session.handle(object(), commands.Designs(seq=1))

@@ -52,6 +52,32 @@ def is_formula(value: object) -> bool:
     return isinstance(value, str) and value.lstrip().startswith("=")
 
 
+def with_renamed(text: str, name: str, to: str) -> str:
+    """Give a parameter of a formula another name; the rest of its text stays.
+
+    A name straight after a number stays too: it is a unit, or is refused by :func:`evaluate`.
+
+    Parameters
+    ----------
+    text
+        The formula with its leading ``=``.
+    name, to
+        Name of the parameter now, and from now on.
+
+    Examples
+    --------
+    >>> with_renamed("= m + 5 m - 2*m", "m", "height")
+    '= height + 5 m - 2*height'
+    """
+    pieces, done, number = [], 0, False
+    for found in _TOKEN.finditer(text):
+        if found["name"] == name and not number:
+            pieces += [text[done : found.start("name")], to]
+            done = found.end()
+        number = found["number"] is not None
+    return "".join([*pieces, text[done:]])
+
+
 def evaluate(text: str, parameter: Callable[[str], Quantity]) -> Quantity:
     """Evaluate a formula.
 

@@ -21,6 +21,20 @@ RestMethod = Literal["auto", "statics", "xpbd"]
 #: Keys and indices from the top of a design document: ["parts", 0, "material"].
 Path = Annotated[list[str | int], Meta(min_length=1, max_length=50)]
 
+#: Sections whose entries have names that the rest of the text speaks of.
+Named = Literal[
+    "bodies",
+    "objects",
+    "parameters",
+    "shapes",
+    "materials",
+    "histories",
+    "chambers",
+    "probes",
+    "objectives",
+    "constraints",
+]
+
 
 class Command(Message):
     """Base of all commands; `seq` grows with each, and frames and errors echo it."""
@@ -117,6 +131,14 @@ class Remove(Command):
     """Take a body or a rigid object out of the design, with the pairs of contact that name it."""
 
     name: ShortText
+
+
+class Rename(Command):
+    """Give a named thing of the design another name, everywhere the text speaks of it."""
+
+    section: Named
+    name: ShortText
+    to: ShortText
 
 
 class AddBody(Command):
@@ -471,6 +493,7 @@ AnyCommand = (
     | Copy
     | Move
     | Remove
+    | Rename
     | AddBody
     | Designs
     | Materials

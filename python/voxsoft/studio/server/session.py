@@ -47,6 +47,7 @@ from voxsoft.studio.documents.opening import (
 )
 from voxsoft.studio.documents.positions import diagnostics_of
 from voxsoft.studio.documents.recent import RecentFiles
+from voxsoft.studio.documents.renaming import renamed
 from voxsoft.studio.documents.several import (
     added,
     changed_text,
@@ -252,6 +253,12 @@ class Session:
         self._author = tab
         source, design = self._good(self.document)
         self._change(self.document, removed(source, design, command.name))
+
+    @_execute.register
+    def _on_rename(self, command: commands.Rename, tab: Tab) -> None:
+        self._author = tab
+        text = renamed(self.document.text, command.section, command.name, command.to)
+        self._changed(self.document.replace(text))
 
     @_execute.register
     def _on_add_body(self, command: commands.AddBody, tab: Tab) -> None:

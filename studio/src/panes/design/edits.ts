@@ -1,9 +1,11 @@
 // Changes of the document, from the form and from other panes; all end in the one text.
-import type { Diagnostic, OpenCommand } from "../../protocol";
+import type { Diagnostic, OpenCommand, RenameCommand } from "../../protocol";
 import { openDocument } from "../../shell/actions";
 import { send } from "../../store/session";
 import { useStudio } from "../../store/studio";
-import { flushText } from "../../store/typing";
+
+/** Sections whose entries have names that the rest of the text speaks of. */
+export type Named = RenameCommand["section"];
 
 export type Path = readonly (string | number)[];
 
@@ -32,6 +34,21 @@ export function editAll(changes: readonly Change[]): void {
   });
 }
 
+/** Give a named thing another name, everywhere the text speaks of it. */
+export function rename(section: Named, name: string, to: string): void {
+  send({ t: "rename", section, name, to });
+}
+
+/** Problem of a name that something is to get, or null. */
+export function problemOfName(name: string, section: Named, taken: readonly string[]): string | null {
+  // Formulas read a minus sign where the name of a parameter had one.
+  const formulas = section === "parameters";
+  if (!(formulas ? /^[A-Za-z_]\w*$/ : /^[A-Za-z_][\w-]*$/).test(name)) {
+    return formulas ? "letters, digits and _ only" : "letters, digits, _ and - only";
+  }
+  return taken.includes(name) ? `“${name}” is taken` : null;
+}
+
 type Table = Readonly<Record<string, unknown>>;
 
 /** Changes that turn a table into another one: keys alone, so that a pending change of another key stays. */
@@ -44,13 +61,6 @@ export function changesOf(path: Path, before: Table, after: Table): readonly Cha
     ...gone.map((key) => ({ path: [...path, key], value: null })),
     ...other.map(([key, value]) => ({ path: [...path, key], value })),
   ];
-}
-
-/** Replace the text of the document. */
-export function replaceText(text: string): void {
-  flushText();
-  const rev = useStudio.getState().document?.rev ?? 0;
-  send({ t: "text", rev, text });
 }
 
 /** Open another document; undo brings the one before back, so nothing is asked. */

@@ -1,6 +1,5 @@
 import { describe, expect, it } from "vitest";
 import { changesOf, placeText, problemsAt } from "../../../src/panes/design/edits";
-import { renamed } from "../../../src/panes/design/fields/rename";
 import { shapeTree } from "../../../src/panes/design/shapes/shapeTree";
 import { tableAt, valueOffers } from "../../../src/panes/design/text/complete";
 import { difference } from "../../../src/panes/design/text/editor";
@@ -57,85 +56,6 @@ it("offers parameters in formulas, shapes where one is named", () => {
   expect(valueOffers(hello, formula, whole)).toEqual([{ label: "wall" }]);
   const named = { path: ["parts", 0, "shape"], word: "", quoted: true };
   expect(valueOffers(hello, named, whole)).toEqual([{ label: "body" }]);
-});
-
-describe("renamed", () => {
-  const text = [
-    "[parameters] # wall",
-    'wall = { value = "5 mm" }',
-    'big-wall = { value = "= 2*wall" }',
-    "[shapes]",
-    'wall = { kind = "box", size = ["= wall", "= big-wall", 1] } # the wall',
-    'all = { kind = "union", of = ["wall", "other"] }',
-    "[[parts]]",
-    'shape = "wall"',
-    'name = "wall"',
-  ].join("\n");
-  it("leaves the unit behind a number alone, where a parameter is called like it", () => {
-    const after = renamed('height = "= m + 5 m - 2 * m"', "parameters", "m", "height");
-    expect(after).toBe('height = "= height + 5 m - 2 * height"');
-  });
-
-  it("renames a parameter in its definition and in formulas only", () => {
-    const after = renamed(text, "parameters", "wall", "skin");
-    expect(after).toContain('skin = { value = "5 mm" }');
-    expect(after).toContain('"= 2*skin"');
-    expect(after).toContain(
-      'wall = { kind = "box", size = ["= skin", "= big-wall", 1] } # the wall',
-    );
-    expect(after).toContain('shape = "wall"');
-  });
-  it("renames a history where loads and motions call it", () => {
-    const text = '[histories]\nlift = { time = [0] }\n[[loads]]\nhistory = "lift" # lift';
-    expect(renamed(text, "histories", "lift", "rise")).toBe(
-      '[histories]\nrise = { time = [0] }\n[[loads]]\nhistory = "rise" # lift',
-    );
-  });
-  it("renames a shape where shapes are named, not other things of its name", () => {
-    const after = renamed(text, "shapes", "wall", "hull");
-    expect(after).toContain('hull = { kind = "box", size = ["= wall"');
-    expect(after).toContain('of = ["hull", "other"]');
-    expect(after).toContain('shape = "hull"\nname = "wall"');
-    expect(after).toContain("[parameters] # wall\nwall = { value");
-  });
-});
-
-it("renames a body or an object where they are spoken of", () => {
-  const text = [
-    "[shapes]",
-    'left = { kind = "box" }',
-    'all = { kind = "union", of = ["left", "other"] }',
-    "[[bodies]]",
-    'name = "left" # the left one',
-    'set = { left = "= left" }',
-    "[[clamps]]",
-    'region = { body = "left", z = [0, 0] }',
-    "[[loads]]",
-    'cavity = "left.air"',
-    "[[objects]]",
-    'name = "lefty"',
-    'shape = "left"',
-    "[contact]",
-    'pairs = [{ of = ["left", "lefty"] }]',
-    "[objectives]",
-    'a = { minimize = "displacement", probe = "left.tip" }',
-    'b = { minimize = "contact_area", object = "lefty" }',
-  ].join("\n");
-  const body = renamed(text, "bodies", "left", "thumb").split("\n");
-  const changed = body.filter((line, i) => line !== text.split("\n")[i]);
-  expect(changed).toEqual([
-    'name = "thumb" # the left one',
-    'region = { body = "thumb", z = [0, 0] }',
-    'cavity = "thumb.air"',
-    'pairs = [{ of = ["thumb", "lefty"] }]',
-    'a = { minimize = "displacement", probe = "thumb.tip" }',
-  ]);
-  const object = renamed(text, "objects", "lefty", "cube").split("\n");
-  expect(object.filter((line, i) => line !== text.split("\n")[i])).toEqual([
-    'name = "cube"',
-    'pairs = [{ of = ["left", "cube"] }]',
-    'b = { minimize = "contact_area", object = "cube" }',
-  ]);
 });
 
 it("orders shapes below their users, each once", () => {

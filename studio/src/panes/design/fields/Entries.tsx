@@ -5,15 +5,13 @@ import { describeValue } from "../../../controls/kinds";
 import { TextField } from "../../../controls/TextField";
 import { send } from "../../../store/session";
 import { useStudio } from "../../../store/studio";
-import { textNow } from "../../../store/typing";
 import { setView, useView } from "../../../store/view";
 import { takeDropped } from "../../materials/give";
 import { DRAGGED } from "../../materials/use";
-import { edit, problemsAt, replaceText } from "../edits";
+import { edit, type Named, problemOfName, problemsAt, rename } from "../edits";
 import { useForm } from "../form";
 import { Glyph } from "./Glyph";
 import type { MenuPlace } from "./Menu";
-import { NAME, type Named, renamed } from "./rename";
 import { swapped, TableFields } from "./SchemaField";
 import { controlOf, resolve, type Schema, single, summary } from "./schema";
 import { freeName, starter } from "./starters";
@@ -398,9 +396,9 @@ export function NameField(props: {
       label="Name"
       value={props.name}
       onCommit={(name) => {
-        if (!NAME.test(name)) return "letters, digits, _ and - only";
-        if (props.taken.includes(name)) return `“${name}” is taken`;
-        replaceText(renamed(textNow(), props.section, props.name, name));
+        const problem = problemOfName(name, props.section, props.taken);
+        if (problem) return problem;
+        rename(props.section, props.name, name);
         props.onRenamed?.(name);
         return null;
       }}

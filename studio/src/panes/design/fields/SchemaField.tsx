@@ -364,7 +364,7 @@ function ListField(props: SchemaFieldProps & { item: Schema }) {
             value={value}
             label={entryLabel(props.within, i)}
             onRemove={
-              values.length > 1 ? () => set(values.filter((_, other) => other !== i)) : undefined
+              values.length > 1 ? () => edit([...props.path, i], null) : undefined
             }
           />
           <Button
@@ -378,7 +378,7 @@ function ListField(props: SchemaFieldProps & { item: Schema }) {
           </Button>
         </div>
       ))}
-      <Button kind="quiet" onClick={() => set([...values, starter(root, props.item, names)])}>
+      <Button kind="quiet" onClick={() => edit([...props.path, values.length], starter(root, props.item, names))}>
         <Glyph name="plus" /> Add
       </Button>
     </Nested>

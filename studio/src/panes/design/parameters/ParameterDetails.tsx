@@ -3,9 +3,7 @@ import { readWritten, siUnit } from "../../../controls/kinds";
 import { TextField } from "../../../controls/TextField";
 import { formatQuantity } from "../../../controls/units";
 import type { Parameter } from "../../../protocol";
-import { textNow } from "../../../store/typing";
-import { edit, replaceText } from "../edits";
-import { NAME, renamed } from "../fields/rename";
+import { edit, problemOfName, rename } from "../edits";
 import { useForm } from "../form";
 
 /** Content of a parameter's menu: its name, its range and step, and its meaning. */
@@ -39,10 +37,10 @@ export function ParameterDetails(props: { parameter: Parameter; onDone(): void }
         label="Name"
         value={parameter.name}
         onCommit={(name) => {
-          if (!NAME.test(name)) return "letters, digits, _ and - only";
-          if (name in ((source.parameters as object | undefined) ?? {})) return "is taken";
-          replaceText(renamed(textNow(), "parameters", parameter.name, name));
-          return null;
+          const taken = Object.keys((source.parameters as object | undefined) ?? {});
+          const problem = problemOfName(name, "parameters", taken);
+          if (problem === null) rename("parameters", parameter.name, name);
+          return problem;
         }}
       />
       <TextField label="Smallest" value={shown("min")} onCommit={(t) => set("min", t)} />

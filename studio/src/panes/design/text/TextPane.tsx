@@ -70,7 +70,6 @@ function Text() {
         // Something else is asked now, and its answer is to be shown.
         sent.current = null;
       },
-      text: () => pending.current,
     });
     return () => {
       flush();
