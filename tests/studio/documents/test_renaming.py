@@ -97,7 +97,7 @@ def test_sections_of_their_own_and_quoted_keys_are_definitions():
 
 
 @pytest.mark.parametrize(
-    "section, name, to, word",
+    ("section", "name", "to", "word"),
     [
         ("shapes", "wall", "all", "taken"),
         ("shapes", "wall", "a wall", "cannot be called"),
@@ -118,7 +118,7 @@ def test_a_text_that_is_no_toml_yet_can_be_renamed():
 
 
 @pytest.mark.parametrize(
-    "formula, after",
+    ("formula", "after"),
     [
         ("= m + 5 m - 2 * m", "= height + 5 m - 2 * height"),
         ("=m", "=height"),

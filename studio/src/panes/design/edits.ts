@@ -40,7 +40,11 @@ export function rename(section: Named, name: string, to: string): void {
 }
 
 /** Problem of a name that something is to get, or null. */
-export function problemOfName(name: string, section: Named, taken: readonly string[]): string | null {
+export function problemOfName(
+  name: string,
+  section: Named,
+  taken: readonly string[],
+): string | null {
   // Formulas read a minus sign where the name of a parameter had one.
   const formulas = section === "parameters";
   if (!(formulas ? /^[A-Za-z_]\w*$/ : /^[A-Za-z_][\w-]*$/).test(name)) {

@@ -363,9 +363,7 @@ function ListField(props: SchemaFieldProps & { item: Schema }) {
             schema={props.item}
             value={value}
             label={entryLabel(props.within, i)}
-            onRemove={
-              values.length > 1 ? () => edit([...props.path, i], null) : undefined
-            }
+            onRemove={values.length > 1 ? () => edit([...props.path, i], null) : undefined}
           />
           <Button
             icon
@@ -378,7 +376,10 @@ function ListField(props: SchemaFieldProps & { item: Schema }) {
           </Button>
         </div>
       ))}
-      <Button kind="quiet" onClick={() => edit([...props.path, values.length], starter(root, props.item, names))}>
+      <Button
+        kind="quiet"
+        onClick={() => edit([...props.path, values.length], starter(root, props.item, names))}
+      >
         <Glyph name="plus" /> Add
       </Button>
     </Nested>
