@@ -39,7 +39,13 @@ def make(
             "--printer",
             metavar="NAME=VALUE",
             help="A limit of the printer: wall='0.8 mm', clearance, tube, vent, pour, resolution, "
-            "volume='220 mm, 220 mm, 220 mm'. Repeatable.",
+            "dowel, draft='1 deg', volume='220 mm, 220 mm, 220 mm'. Repeatable.",
+        ),
+    ] = None,
+    shrinkage: Annotated[
+        str | None,
+        typer.Option(
+            "--shrinkage", help="Shrinkage of all castings, '0.2 %'; default: the silicone's own."
         ),
     ] = None,
     stl: Annotated[bool, typer.Option("--stl", help="Parts as STL in mm, not as 3MF.")] = False,
@@ -58,6 +64,7 @@ def make(
     from voxsoft.fabrication import WAYS, Printer, one_body
     from voxsoft.fabrication import make as make_molds
     from voxsoft.files.fabrication import fabrication_summary, write_fabrication
+    from voxsoft.units import parse
 
     if way is not None and way not in WAYS:
         say(f"--way: {plain(way)} is not known; expected {', '.join(WAYS)}")
@@ -74,7 +81,13 @@ def make(
                 bar.set_total(total)
                 bar.advance_to(done)
 
-            made = make_molds(loaded, way=wanted, printer=Printer(**limits), progress=report)
+            made = make_molds(
+                loaded,
+                way=wanted,
+                printer=Printer(**limits),
+                shrinkage=None if shrinkage is None else parse(shrinkage, "number"),
+                progress=report,
+            )
         summary = fabrication_summary(made, ".stl" if stl else ".3mf")
         if shift and not made.problems:
             summary["core_shift"] = [_shift(each) for each in core_shift(loaded)]

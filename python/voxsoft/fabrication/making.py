@@ -11,15 +11,17 @@ import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design
-from voxsoft.errors import ErrorDetail
+from voxsoft.errors import DesignError, ErrorDetail
 from voxsoft.fabrication import proof
-from voxsoft.fabrication.body import Body, Component, Inlet, bored, inlets_of
+from voxsoft.fabrication.body import Body, Component
 from voxsoft.fabrication.fields import Floats, Frame
+from voxsoft.fabrication.inlets import Inlet, bored, inlets_of
 from voxsoft.fabrication.mold import Mold, mold_of
 from voxsoft.fabrication.planning import WAYS, Casting, Plan, Way, plan
 from voxsoft.fabrication.plates import plates_of
 from voxsoft.fabrication.printer import Printer
-from voxsoft.fabrication.sampled import Surface, surface_of
+from voxsoft.fabrication.sampled import Surface, counted_volume, surface_of
+from voxsoft.fabrication.splitting import fits, segments_of
 from voxsoft.materials.casting import CastingData, casting_data
 from voxsoft.units import format_quantity
 
@@ -28,6 +30,8 @@ DEVIATION: Final = 0.2e-3
 VOLUME: Final = 0.005
 #: Silicone that stays in cups, pour holes and on tools, as a part of the casting.
 WASTE: Final = 0.15
+#: Shrinkage that no casting has.
+_MOST_SHRINKAGE: Final = 0.1
 #: Frame of the design.
 _DESIGN: Final = Frame.along(2, 1)
 
@@ -50,6 +54,12 @@ class Cast:
         Masses of both components with waste [kg]; of a silicone that is not known, `a` is all.
     deviation
         Largest distance of the mold from the casting's side [m].
+    counted
+        Volume of the casting [m³] with lost cores, counted from its shapes, and the noise of that.
+    shrinkage
+        Part of its length that the casting loses as it cures; its mold is larger by as much.
+    segments
+        Triangles of each mold part, the lower first: several where the printer has no room for it.
     """
 
     casting: Casting
@@ -59,6 +69,9 @@ class Cast:
     a: float
     b: float
     deviation: float
+    counted: tuple[float, float]
+    shrinkage: float
+    segments: tuple[tuple[Surface, ...], ...] = field(repr=False)
 
     @property
     def volume(self) -> float:
@@ -119,7 +132,8 @@ class Fabrication:
     problems
         Proofs that failed; empty for molds that can be made and used.
     notes
-        Steps that are left to the hand: holes to be punched, layers, threads, tendons.
+        Steps that are left to the hand: holes to be punched, layers, threads, tendons; and
+        differences between the castings and the design.
     """
 
     design: Design
@@ -161,11 +175,13 @@ class Fabrication:
         """
         found = {}
         for cast in self.casts:
-            for part in cast.mold.parts:
-                vertices = part.surface.vertices
-                if part.direction > 0:
-                    vertices = vertices * np.array([1.0, -1.0, -1.0])
-                found[part.name] = (vertices, part.surface.triangles)
+            for part, segments in zip(cast.mold.parts, cast.segments, strict=True):
+                for number, segment in enumerate(segments, 1):
+                    vertices = segment.vertices / (1.0 - cast.shrinkage)
+                    if part.direction > 0:
+                        vertices = vertices * np.array([1.0, -1.0, -1.0])
+                    name = part.name if len(segments) == 1 else f"{part.name}-{number}"
+                    found[name] = (vertices, segment.triangles)
         for each in self.printed:
             found[each.name] = (each.surface.vertices, each.surface.triangles)
         return found
@@ -176,6 +192,7 @@ def make(
     *,
     way: Way | None = None,
     printer: Printer | None = None,
+    shrinkage: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Fabrication:
     """Make the molds of a soft robot, and prove that they can be used.
@@ -190,6 +207,9 @@ def make(
         default: the first of these that the shape allows.
     printer
         The printer; default: a nozzle of 0.4 mm and 220 mm of room.
+    shrinkage
+        Part of its length that a casting loses as it cures, 0 to below 0.1, for which molds are
+        larger; default: the largest that the maker of each silicone states.
     progress
         Called with the number of finished molds and that of all.
 
@@ -209,6 +229,9 @@ def make(
     ('cast', ['part-1-lower'], ())
     """
     printer = printer or Printer()
+    if shrinkage is not None and not 0.0 <= shrinkage < _MOST_SHRINKAGE:
+        what = f"is {shrinkage:g}; expected 0 to {_MOST_SHRINKAGE:g}"
+        raise DesignError("shrinkage", what, "silicones shrink by about 0.1 %: 0.001")
     names = _Names()
     body = Body.of(design, printer.resolution)
     plans: list[Plan] = []
@@ -222,18 +245,18 @@ def make(
     tubes = [each.hole(printer.tube / 2.0 + printer.clearance) for each in inlets]
     for component in body.components:
         if component.rigid:
-            printed.append(_printed(component, "rigid", body, tubes, names))
+            printed += _printed(component, "rigid", body, tubes, names, printer)
     problems: list[ErrorDetail] = []
     casts: list[Cast] = []
     for each in plans:
         if each.way == "printed":
             bores = [inlet.hole() for inlet in inlets]
-            printed.append(_printed(each.component, "body", body, bores, names))
+            printed += _printed(each.component, "body", body, bores, names, printer)
         problems += _unplanned(each, way)
         for casting in each.castings:
             name = names.of(casting.name, "-lower", "-upper")
             mold = mold_of(casting.solid, casting.low, casting.high, casting.frame, printer, name)
-            cast = _cast(casting, mold)
+            cast = _cast(casting, mold, printer, shrinkage)
             casts.append(cast)
             if progress is not None:
                 progress(len(casts), sum(len(other.castings) for other in plans))
@@ -256,6 +279,7 @@ def make(
             hint = "leave room for a tube where its wall is flat, or name another clamp"
             problems.append(ErrorDetail(f"chambers.{void.name}", what, hint))
     for one in printed:
+        problems += _too_large(one.name, [one.surface], printer)
         # A connected solid has a surface around each space that it encloses.
         hollow = one.kind in ("rigid", "body") and one.surface.is_closed
         reason = None if hollow else proof.unsound(one.surface)
@@ -272,7 +296,7 @@ def make(
         described=described,
         poured=sum(each.poured for each in casts),
         problems=tuple(problems),
-        notes=tuple(_notes(body, plans, inlets)),
+        notes=(*_notes(body, plans, inlets), *_changes(casts, printer)),
     )
 
 
@@ -296,22 +320,49 @@ class _Names:
 
 
 def _printed(
-    component: Component, kind: str, body: Body, holes: Sequence[_core.Shape], names: _Names
-) -> Printed:
-    """Return a component as it is printed, with bores for tubes."""
+    component: Component,
+    kind: str,
+    body: Body,
+    holes: Sequence[_core.Shape],
+    names: _Names,
+    printer: Printer,
+) -> list[Printed]:
+    """Return a component as it is printed, with bores for tubes; if rigid, in segments."""
     solid, values = bored(component.solid, component.values, holes, body.grid)
-    return Printed(names.of(component.name), kind, surface_of(solid, body.grid, values))
+    segments: tuple[Surface, ...] = (surface_of(solid, body.grid, values),)
+    if kind == "rigid":
+        segments = segments_of(solid, values, body.grid, segments[0], printer)
+    if len(segments) == 1:
+        return [Printed(names.of(component.name), kind, segments[0])]
+    return [
+        Printed(names.of(f"{component.name}-{number}"), kind, segment)
+        for number, segment in enumerate(segments, 1)
+    ]
 
 
-def _cast(casting: Casting, mold: Mold) -> Cast:
+def _cast(casting: Casting, mold: Mold, printer: Printer, shrinkage: float | None) -> Cast:
     component = casting.component
     data = casting_data(component.material)
     mass = (mold.surface.volume - casting.cores) * component.density
     total = mass * (1.0 + WASTE)
     first, second = data.parts if data is not None else (1.0, 0.0)
     share = first / (first + second)
+    if shrinkage is None:
+        shrinkage = 0.0 if data is None else data.shrinkage
+    grid = mold.casting.grid
     return Cast(
-        casting, mold, data, mass, total * share, total * (1.0 - share), proof.deviation(mold)
+        casting=casting,
+        mold=mold,
+        data=data,
+        mass=mass,
+        a=total * share,
+        b=total * (1.0 - share),
+        deviation=proof.deviation(mold),
+        counted=counted_volume(mold.casting),
+        shrinkage=shrinkage,
+        segments=tuple(
+            segments_of(part.solid, part.values, grid, part.surface, printer) for part in mold.parts
+        ),
     )
 
 
@@ -324,20 +375,30 @@ def _unplanned(made: Plan, wanted: Way | None) -> list[ErrorDetail]:
     return [ErrorDetail(made.component.name, what, hint)] if wanted else []
 
 
+def _too_large(name: str, segments: Sequence[Surface], printer: Printer) -> list[ErrorDetail]:
+    """Return a problem where a segment is larger than the printer's room."""
+    for segment in segments:
+        low, high = segment.bounds
+        if not fits(low, high, printer):
+            shown, room = (
+                " x ".join(f"{1e3 * float(each):.4g}" for each in size)
+                for size in (high - low, printer.volume)
+            )
+            what = f"is {shown} mm, larger than the printer's {room} mm, and cannot be divided"
+            return [ErrorDetail(name, what, "a larger printer, or a shorter body")]
+    return []
+
+
 def _proved(cast: Cast, printer: Printer) -> list[ErrorDetail]:
     """Return the proofs of a mold that fail."""
     mold, found = cast.mold, []
-    for part in mold.parts:
-        reason = proof.unsound(part.surface)
+    finer = "less draft, or none" if mold.thicker > 0.0 else "a finer resolution of the printer"
+    for part, segments in zip(mold.parts, cast.segments, strict=True):
+        reasons = [proof.unsound(each) for each in (part.surface, *segments)]
+        reason = next((each for each in reasons if each is not None), None)
         if reason is not None:
-            found.append(ErrorDetail(part.name, reason, "a finer resolution of the printer"))
-        low, high = part.surface.bounds
-        size = high - low
-        if (np.sort(size) > np.sort(np.array(printer.volume))).any():
-            shown = " x ".join(format_quantity(float(each), "length") for each in size)
-            room = " x ".join(format_quantity(each, "length") for each in printer.volume)
-            what = f"is {shown}, larger than the printer's {room}"
-            found.append(ErrorDetail(part.name, what, "a larger printer, or a shorter body"))
+            found.append(ErrorDetail(part.name, reason, finer))
+        found += _too_large(part.name, segments, printer)
     volume, place = proof.blocked(mold)
     if place is not None:
         at = _place(place, mold.frame)
@@ -361,12 +422,18 @@ def _proved(cast: Cast, printer: Printer) -> list[ErrorDetail]:
         shown = format_quantity(round(cast.deviation, 6), "length")
         most = format_quantity(DEVIATION, "length")
         what = f"its mold is {shown} off its shape; at most {most} count as equal"
-        found.append(ErrorDetail(cast.casting.name, what, "a finer resolution of the printer"))
+        found.append(ErrorDetail(cast.casting.name, what, finer))
     off = cast.poured / cast.volume - 1.0
     if not abs(off) <= VOLUME:
         more = "more" if off > 0.0 else "less"
         what = f"its mold holds {abs(off):.2%} {more} than its volume"
-        found.append(ErrorDetail(cast.casting.name, what, "a finer resolution of the printer"))
+        found.append(ErrorDetail(cast.casting.name, what, finer))
+    counted, noise = cast.counted
+    if not abs(mold.surface.volume - counted) <= VOLUME * counted + 4.0 * noise:
+        off = mold.surface.volume / counted - 1.0
+        more = "more" if off > 0.0 else "less"
+        what = f"its triangles enclose {abs(off):.2%} {more} than its shapes"
+        found.append(ErrorDetail(cast.casting.name, what, finer))
     return found
 
 
@@ -407,4 +474,25 @@ def _notes(body: Body, plans: list[Plan], inlets: list[Inlet]) -> list[str]:
     for number, tendon in enumerate(design.tendons, 1):
         name = tendon.name or f"tendon {number}"
         notes.append(f"Span a tube for {name} through the mold before pouring.")
+    return notes
+
+
+def _changes(casts: Sequence[Cast], printer: Printer) -> list[str]:
+    """Return differences between castings and the design, and joints of molds."""
+    notes = []
+    for cast in casts:
+        name, mold = cast.casting.name, cast.mold
+        if mold.thicker > 0.0:
+            angle, most = np.degrees(printer.draft), 1e3 * mold.thicker
+            notes.append(
+                f"The draft of {angle:.3g} deg makes sides of {name} up to {most:.3g} mm thicker "
+                "than in the design, which was simulated without it."
+            )
+        for part, segments in zip(mold.parts, cast.segments, strict=True):
+            if len(segments) > 1:
+                dowel = format_quantity(printer.dowel, "length")
+                notes.append(
+                    f"Join the {len(segments)} segments of {part.name} by dowels of {dowel} and "
+                    "glue, and seal the seams inside with wax."
+                )
     return notes

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.fabrication.air import Opening, openings_of, trapped_air
+from voxsoft.fabrication.drafting import Drafted, drafted
 from voxsoft.fabrication.draw import ABOVE, BELOW, BESIDE, WITHIN, Draw, draw_along
 from voxsoft.fabrication.fields import Box, Common, Field, Floats, Frame, Frustum, Joined, Outside
 from voxsoft.fabrication.printer import Printer
@@ -28,15 +29,18 @@ class MoldPart:
     ----------
     name
         Name of its file.
+    solid
+        Its function, in the frame of the mold.
     values
         Its samples on the grid of the mold, negative inside [m].
     surface
-        Its triangles, in the frame of the mold.
+        Its triangles.
     direction
         1 if it is drawn upward, -1 downward.
     """
 
     name: str
+    solid: Field = field(repr=False)
     values: Floats = field(repr=False)
     surface: Surface
     direction: int
@@ -59,7 +63,9 @@ class Mold:
     trapped
         Volume of air that no opening lets out [m³].
     casting
-        The casting in the frame of the mold, with its samples.
+        The casting in the frame of the mold, with its samples; with its draft.
+    thicker
+        Largest distance [m] by which the draft makes a side thicker; zero without draft.
     surface
         Triangles of the casting, in the frame of the mold.
     poured
@@ -72,6 +78,7 @@ class Mold:
     openings: tuple[Opening, ...]
     trapped: float
     casting: Sampled = field(repr=False)
+    thicker: float
     surface: Surface
     poured: float
 
@@ -147,6 +154,9 @@ def mold_of(
         # A hole that goes through an open mold stands on its floor, as a pillar.
         sides = np.where(draw.sides == WITHIN, BESIDE, draw.sides).astype(np.int8)
         draw = replace(draw, sides=sides)
+    if printer.draft > 0.0:
+        casting = drafted(casting, draw, float(np.tan(printer.draft)))
+        cavity = casting.values < 0.0
     openings = () if draw.is_open else openings_of(cavity, grid, block.high[2], printer)
     pins = [] if draw.is_open else _pins(block, draw.parting, printer)
     lower, upper = (_Half(casting, block, draw, is_upper) for is_upper in (False, True))
@@ -161,6 +171,7 @@ def mold_of(
         openings=openings,
         trapped=0.0 if draw.is_open else trapped_air(cavity, grid, openings),
         casting=casting,
+        thicker=casting.of.largest if isinstance(casting.of, Drafted) else 0.0,
         surface=surface_of(casting, grid, casting.values),
         poured=_poured(block, draw, parts, pins, openings),
     )
@@ -189,7 +200,7 @@ def _part(
     if removed:
         solid = Common([solid, *(Outside(each) for each in removed)])
     surface = surface_of(solid, grid, values)
-    return MoldPart(name, values, surface, 1 if half.upper else -1)
+    return MoldPart(name, solid, values, surface, 1 if half.upper else -1)
 
 
 def _poured(

@@ -10,7 +10,8 @@ import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design
-from voxsoft.fabrication.body import Body, Component, Filled, Inlet, bored, clamped, inlets_of
+from voxsoft.fabrication.body import Body, Component, Filled
+from voxsoft.fabrication.clamped import clamped
 from voxsoft.fabrication.cutting import Cut, best_cut, least_caught
 from voxsoft.fabrication.draw import WITHIN, Draw, draw_along
 from voxsoft.fabrication.fields import (
@@ -21,6 +22,7 @@ from voxsoft.fabrication.fields import (
     HalfSpace,
     Turned,
 )
+from voxsoft.fabrication.inlets import Inlet, bored, inlets_of
 from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid, Sampled, extents
 

@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 
 from voxsoft.design.discretization.cut_cells import built_parts
-from voxsoft.fabrication.body import Body, Filled, Inlet, clamped
+from voxsoft.fabrication.body import Body, Filled
+from voxsoft.fabrication.clamped import clamped
 from voxsoft.fabrication.fields import (
     Box,
     Common,
@@ -20,6 +21,7 @@ from voxsoft.fabrication.fields import (
     Parts,
     Turned,
 )
+from voxsoft.fabrication.inlets import Inlet
 from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid, Surface, surface_of
 

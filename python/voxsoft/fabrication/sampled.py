@@ -22,6 +22,8 @@ _PORTION: Final = 1_000_000
 #: Distance from a surface, in steps, from which the nearest sample stands for its neighborhood: a
 #: function whose slope is at most one changes by less than a step from there to the sample.
 _NEAR: Final = 3.0
+#: Divisions of a cell along each axis where volumes are counted.
+_DIVISIONS: Final = 2
 #: Distance from a surface, in steps, within which samples count as outside.
 _ON_SURFACE: Final = 1e-5
 #: Distance from a surface, in steps, within which a vertex stays: flat sides are there at once.
@@ -119,6 +121,40 @@ class Sampled:
         return values
 
 
+def counted_volume(solid: Sampled) -> tuple[float, float]:
+    """Return the volume [m³] of a sampled solid and its noise, from signs and not from triangles.
+
+    Cells that the surface may cross are divided in eight; each of these counts by the sign at a
+    point that is drawn in it, always alike for one grid. So no side that lies along the grid is
+    favored, and the noise is half a division for each one that the surface crosses, added as
+    squares.
+
+    Examples
+    --------
+    >>> from voxsoft.fabrication.fields import Box
+    >>> cube = Box((0.0, 0.0, 0.0), (0.01, 0.01, 0.01))
+    >>> grid = Grid.around(np.zeros(3), np.full(3, 0.01), 0.0005, 0.001)
+    >>> volume, noise = counted_volume(Sampled(cube, grid, grid.values(cube)))
+    >>> bool(abs(volume - 1e-6) < 4 * noise < 1e-8)
+    True
+    """
+    grid, fine = solid.grid, solid.grid.step / _DIVISIONS
+    near = np.abs(solid.values) < grid.step
+    count = int(((solid.values < 0.0) & ~near).sum()) * _DIVISIONS**3
+    crossed = 0
+    drawn = np.random.default_rng(0)
+    corners = np.stack(np.meshgrid(*[np.arange(_DIVISIONS)] * 3), axis=-1).reshape(-1, 3)
+    cells = np.argwhere(near)
+    for start in range(0, len(cells), _PORTION // len(corners)):
+        centers = grid.points(cells[start : start + _PORTION // len(corners)])
+        places = corners + drawn.random((len(centers), len(corners), 3))
+        points = centers[:, None] + places * fine - grid.step / 2.0
+        values = solid.of.evaluate(points.reshape(-1, 3))
+        count += int((values < 0.0).sum())
+        crossed += int((np.abs(values) < fine).sum())
+    return count * fine**3, 0.5 * fine**3 * float(np.sqrt(crossed))
+
+
 @dataclass(frozen=True, eq=False)
 class Surface:
     """Closed surface of triangles.
@@ -149,9 +185,8 @@ class Surface:
         back = np.sort(sides[:, 1] * count + sides[:, 0])
         return bool(len(there) > 0 and np.array_equal(there, back))
 
-    @property
-    def components(self) -> int:
-        """Number of its connected sets of triangles."""
+    def divided(self) -> list[Surface]:
+        """Return its connected sets of triangles."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
@@ -159,7 +194,17 @@ class Surface:
         count = len(self.vertices)
         graph = coo_array((np.ones(len(sides)), (sides[:, 0], sides[:, 1])), shape=(count, count))
         _, labels = connected_components(graph, directed=False)
-        return len(np.unique(labels[self.triangles[:, 0]]))
+        of = labels[self.triangles[:, 0]]
+        found = []
+        for label in np.unique(of):
+            used, corners = np.unique(self.triangles[of == label], return_inverse=True)
+            found.append(Surface(self.vertices[used], corners.reshape(-1, 3).astype(np.int64)))
+        return found
+
+    @property
+    def components(self) -> int:
+        """Number of its connected sets of triangles."""
+        return len(self.divided())
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:

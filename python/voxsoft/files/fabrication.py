@@ -65,6 +65,8 @@ def fabrication_summary(made: Fabrication, suffix: str = ".3mf") -> dict[str, An
                 "mass": cast.mass,
                 "deviation": cast.deviation,
                 "trapped_air": cast.mold.trapped,
+                "shrinkage": cast.shrinkage,
+                "thicker": cast.mold.thicker,
                 "open": cast.mold.is_open,
             }
             for cast in made.casts
@@ -187,6 +189,9 @@ def _mix_table(made: Fabrication) -> Iterator[str]:
     sources = sorted({cast.data.source for cast in made.casts if cast.data is not None})
     mass = sum(cast.mass for cast in made.casts)
     yield f"<p class=quiet>Expected mass of all castings: {1e3 * mass:.1f} g. "
+    shrinking = max(cast.shrinkage for cast in made.casts)
+    if shrinking > 0.0:
+        yield f"Molds are larger by up to {100.0 * shrinking:.2g} %: silicone shrinks. "
     yield f"{escape('; '.join(sources))}</p>"
 
 

@@ -9,7 +9,7 @@ import pytest
 import voxsoft as vs
 from voxsoft.design import families
 from voxsoft.errors import DesignError
-from voxsoft.fabrication import Printer, make, one_body, proof
+from voxsoft.fabrication import Printer, make, making, one_body, proof
 from voxsoft.units import mm
 
 PRINTER = Printer()
@@ -117,10 +117,105 @@ def test_a_thin_rib_of_a_mold_is_found():
 
 
 @pytest.mark.long
-def test_a_part_larger_than_the_printer_is_refused():
-    small = PRINTER.replace(volume=(25 * mm, 20 * mm, 25 * mm))
-    problems = make(chambered(), printer=small).problems
-    assert any("larger than the printer's" in each.what for each in problems)
+def test_a_plate_larger_than_the_printer_is_refused():
+    small = PRINTER.replace(volume=(20 * mm, 20 * mm, 25 * mm))
+    (problem,) = make(chambered(), printer=small).problems
+    assert problem.where == "plate-1"
+    assert "larger than the printer's" in problem.what
+
+
+def test_molds_larger_than_the_printer_are_printed_in_segments_with_dowels():
+    bar = vs.Part(shape=vs.Box(size=(60 * mm, 8 * mm, 6 * mm)), material="ecoflex-00-30")
+    design = vs.Design(name="bar", voxel_size=2 * mm, parts=[bar])
+    small = PRINTER.replace(volume=(30 * mm, 32 * mm, 30 * mm))
+    made = make(design, printer=small)
+    assert made.problems == ()
+    (cast,) = made.casts
+    (part,), (segments,) = cast.mold.parts, cast.segments
+    assert len(segments) == 3
+    assert list(made.surfaces()) == [f"part-1-lower-{number}" for number in (1, 2, 3)]
+    for segment in segments:
+        low, high = segment.bounds
+        assert (np.sort(high - low) <= np.sort(small.volume)).all()
+    # The segments are the part without its holes: two seams, each with as many pairs of holes.
+    holes = part.surface.volume - sum(segment.volume for segment in segments)
+    radius = small.dowel / 2 + small.clearance
+    each = np.pi * radius**2 * 8 * small.dowel
+    assert round(holes / each) in (2, 4, 6)
+    # Holes of two samples across are polygons.
+    assert holes / each == pytest.approx(round(holes / each), rel=0.1)
+    assert any("Join the 3 segments" in note for note in made.notes)
+
+
+def test_segments_have_no_point_in_common_and_leave_none_out():
+    bar = vs.Part(shape=vs.Box(size=(60 * mm, 8 * mm, 6 * mm)), material="ecoflex-00-30")
+    design = vs.Design(name="bar", voxel_size=2 * mm, parts=[bar])
+    made = make(design, printer=PRINTER.replace(volume=(30 * mm, 32 * mm, 30 * mm)))
+    (part,), (segments,) = made.casts[0].mold.parts, made.casts[0].segments
+    low, high = part.surface.bounds
+    points = np.random.default_rng(2).uniform(low, high, (4000, 3))
+
+    def within(surface):
+        return igl.fast_winding_number(surface.vertices, surface.triangles, points) > 0.5
+
+    count = np.sum([within(segment) for segment in segments], axis=0)
+    whole = within(part.surface)
+    assert (count[~whole] == 0).all()
+    assert count.max() == 1
+    # Holes for dowels are the difference: less than one point in twenty.
+    assert 0.95 < (count[whole] == 1).mean() < 1.0
+
+
+def test_molds_are_larger_by_the_shrinkage_of_the_silicone(made):
+    plain = make(chambered(), printer=PRINTER, shrinkage=0.0)
+    larger = make(chambered(), printer=PRINTER, shrinkage=0.02)
+    for name in ("body-low-lower", "body-low-upper", "body-high-lower"):
+        by_two = larger.surfaces()[name][0]
+        assert by_two == pytest.approx(plain.surfaces()[name][0] / 0.98, rel=1e-12)
+        # Its maker states 0.1 % for Ecoflex 00-30.
+        assert made.surfaces()[name][0] == pytest.approx(by_two * 0.98 / 0.999, rel=1e-12)
+    assert larger.surfaces()["plate-1"][0] == pytest.approx(made.surfaces()["plate-1"][0])
+    with pytest.raises(DesignError, match="shrinkage"):
+        make(chambered(), shrinkage=0.2)
+
+
+def test_a_draft_makes_a_disk_a_cone():
+    radius, height = 10 * mm, 8 * mm
+    disk = vs.Part(shape=vs.Cylinder(radius=radius, height=height), material="ecoflex-00-30")
+    design = vs.Design(name="disk", voxel_size=2 * mm, parts=[disk])
+    made = make(design, printer=PRINTER.replace(draft=np.radians(3)))
+    assert made.problems == ()
+    (cast,) = made.casts
+    wider = radius + np.tan(np.radians(3)) * height
+    cone = np.pi * height / 3 * (radius**2 + radius * wider + wider**2)
+    assert cast.mold.thicker == pytest.approx(wider - radius, rel=0.05)  # to a sample
+    # A polygon within a circle of 20 samples around lacks 0.4 % of it.
+    assert cast.volume == pytest.approx(cone, rel=0.004)
+    assert cast.poured == pytest.approx(cone, rel=0.005)
+    assert any("draft of 3 deg" in note for note in made.notes)
+
+
+def test_a_draft_that_fills_a_slot_is_refused():
+    slot = vs.Box(size=(20 * mm, 20 * mm, 14 * mm)) - vs.Box(
+        size=(20 * mm, 2 * mm, 12 * mm), corner=(0, 9 * mm, 2 * mm)
+    )
+    part = vs.Part(shape=slot, material="ecoflex-00-30")
+    design = vs.Design(name="slot", voxel_size=1 * mm, parts=[part])
+    assert make(design, printer=PRINTER).problems == ()
+    problems = make(design, printer=PRINTER.replace(draft=np.radians(10))).problems
+    assert problems
+    assert "less draft" in " ".join(each.hint for each in problems)
+
+
+def test_a_mold_of_another_volume_than_its_shapes_is_refused(made):
+    cast = made.casts[0]
+    assert making._proved(cast, PRINTER) == []
+    volume, noise = cast.counted
+    assert volume == pytest.approx(cast.volume, abs=4 * noise)
+    assert 4 * noise < 0.005 * volume
+    (problem,) = making._proved(replace(cast, counted=(1.02 * volume, noise)), PRINTER)
+    assert "enclose 2.0" in problem.what
+    assert "less than its shapes" in problem.what
 
 
 @pytest.mark.long

@@ -70,7 +70,7 @@ def test_the_sheet_says_all_steps_and_masses(design_file, tmp_path):
 
 
 def test_molds_with_problems_are_not_written(design_file, tmp_path):
-    small = Printer(volume=(10 * mm, 10 * mm, 10 * mm))
+    small = Printer(volume=(6 * mm, 6 * mm, 6 * mm))
     made = make(vs.load(design_file), printer=small)
     with pytest.raises(DesignError, match="larger than the printer"):
         write_fabrication(made, tmp_path / "none")
@@ -81,9 +81,9 @@ def test_a_bad_limit_and_an_unknown_way_are_named(design_file):
     wrong = CliRunner().invoke(app, ["make", str(design_file), "--printer", "walls=1 mm"])
     assert wrong.exit_code == 3
     assert "walls" in wrong.output
-    room = ["--printer", "volume=9 mm, 9 mm, 9 mm"]
+    room = ["--printer", "volume=6 mm, 6 mm, 6 mm"]
     large = CliRunner().invoke(app, ["make", str(design_file), *room])
-    assert (large.exit_code, "larger than the printer's 9 mm" in large.output) == (3, True)
+    assert (large.exit_code, "larger than the printer's 6 x 6 x 6 mm" in large.output) == (3, True)
     other = CliRunner().invoke(app, ["make", str(design_file), "--body", "tail"])
     assert (other.exit_code, "'tail' is not known" in other.output) == (3, True)
     unknown = CliRunner().invoke(app, ["make", str(design_file), "--way", "forged"])
