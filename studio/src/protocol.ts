@@ -1690,6 +1690,42 @@ export interface ExportedEvent {
   name: string;
 }
 
+/** A solid to be cast: volumes in m³, masses in kg with the waste in A and B, times in s. */
+export interface Casting {
+  name: string;
+  material: string;
+  volume: number;
+  mass: number;
+  a: number;
+  b: number;
+  deviation: number;
+  trapped_air: number;
+  pot_life: number | null;
+  cure: number | null;
+}
+
+/** A proof of molds that fails. */
+export interface MoldProblem {
+  where: string;
+  what: string;
+  hint: string;
+}
+
+/** Molds of the document `rev`; without problems with their sheet, and the archive at `url`. */
+export interface MoldsEvent {
+  t: "molds";
+  rev: number;
+  way: string;
+  why: string;
+  castings: Casting[];
+  files: string[];
+  notes: string[];
+  problems: MoldProblem[];
+  sheet: string;
+  url: string;
+  name: string;
+}
+
 /** A file that was written. */
 export interface SavedEvent {
   t: "saved";
@@ -1847,6 +1883,7 @@ export type AnyEvent =
   | ComparedEvent
   | MeasuredEvent
   | ExportedEvent
+  | MoldsEvent
   | SavedEvent
   | FileExistsEvent
   | TakenEvent

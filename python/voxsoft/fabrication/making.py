@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Final
@@ -17,6 +17,7 @@ from voxsoft.fabrication.body import Body, Component
 from voxsoft.fabrication.fields import Floats, Frame
 from voxsoft.fabrication.inlets import Inlet, bored, inlets_of
 from voxsoft.fabrication.mold import Mold, mold_of
+from voxsoft.fabrication.patterns import Pattern, patterns_of
 from voxsoft.fabrication.planning import WAYS, Casting, Plan, Way, plan
 from voxsoft.fabrication.plates import plates_of
 from voxsoft.fabrication.printer import Printer
@@ -126,6 +127,8 @@ class Fabrication:
         Parts that are printed and stay.
     inlets
         Holes for air tubes.
+    patterns
+        Outlines of layers that lie in a plane, by the names of their files.
     described, poured
         Volume of all castings, traced from samples of the design and without inlets, and of the
         space in their molds [m³].
@@ -142,6 +145,7 @@ class Fabrication:
     casts: tuple[Cast, ...]
     printed: tuple[Printed, ...]
     inlets: tuple[Inlet, ...]
+    patterns: Mapping[str, Pattern]
     described: float
     poured: float
     problems: tuple[ErrorDetail, ...]
@@ -286,6 +290,7 @@ def make(
         if reason is not None:
             problems.append(ErrorDetail(one.name, reason, "a finer resolution of the printer"))
     described = sum(each.volume for each in casts)
+    patterns = {names.of(each.name): each for each in patterns_of(design)}
     return Fabrication(
         design=design,
         printer=printer,
@@ -293,10 +298,11 @@ def make(
         casts=tuple(casts),
         printed=tuple(printed),
         inlets=tuple(inlets),
+        patterns=patterns,
         described=described,
         poured=sum(each.poured for each in casts),
         problems=tuple(problems),
-        notes=(*_notes(body, plans, inlets), *_changes(casts, printer)),
+        notes=(*_notes(body, plans, inlets, patterns), *_changes(casts, printer)),
     )
 
 
@@ -455,7 +461,9 @@ def _is_molded(inlet: Inlet, body: Body, plans: list[Plan]) -> bool:
     return not left.any()
 
 
-def _notes(body: Body, plans: list[Plan], inlets: list[Inlet]) -> list[str]:
+def _notes(
+    body: Body, plans: list[Plan], inlets: list[Inlet], patterns: Mapping[str, Pattern]
+) -> list[str]:
     """Return the steps that no mold does."""
     design, notes = body.design, []
     for inlet in inlets:
@@ -466,11 +474,21 @@ def _notes(body: Body, plans: list[Plan], inlets: list[Inlet]) -> list[str]:
     for number, layer in enumerate(design.layers, 1):
         name = layer.name or f"layer {number}"
         thick = format_quantity(layer.thickness, "length")
+        file = next((file for file, each in patterns.items() if each.name == name), None)
+        cut = "" if file is None else f", cut by {file}.svg"
         notes.append(
-            f"Lay {name}, {thick} thick, into the mold before pouring, flat on its side there."
+            f"Lay {name}, {thick} thick{cut}, into the mold before pouring, flat on its side there."
         )
-    if any(part.fibers for part in design.parts):
-        notes.append("Wind the thread on the first layer of the wall before the second is poured.")
+    for part in design.parts:
+        for fiber in part.fibers:
+            along = f"({', '.join(f'{each:.3g}' for each in fiber.unit)})"
+            if fiber.angle is None:
+                notes.append(f"Lay thread along {along} into the wall before it is poured full.")
+            else:
+                notes.append(
+                    f"Wind thread at {np.degrees(fiber.angle):.3g} deg to the axis {along} on the "
+                    "first layer of the wall, before the second is poured."
+                )
     for number, tendon in enumerate(design.tendons, 1):
         name = tendon.name or f"tendon {number}"
         notes.append(f"Span a tube for {name} through the mold before pouring.")

@@ -14,6 +14,7 @@ import numpy as np
 
 from voxsoft.errors import DesignError, details_as_data
 from voxsoft.fabrication import Cast, Fabrication
+from voxsoft.fabrication.patterns import Pattern
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath, save
 from voxsoft.files.surfaces import write_surfaces
@@ -83,6 +84,10 @@ def fabrication_summary(made: Fabrication, suffix: str = ".3mf") -> dict[str, An
             {"chamber": each.chamber, "at": list(each.at), "diameter": 2.0 * each.radius}
             for each in made.inlets
         ],
+        "patterns": [
+            {"file": f"{name}.svg", "axes": each.axes, "size": list(each.size), "area": each.area}
+            for name, each in made.patterns.items()
+        ],
         "notes": list(made.notes),
         "problems": details_as_data(made.problems),
     }
@@ -97,7 +102,8 @@ def write_fabrication(made: Fabrication, folder: FilePath, *, stl: bool = False)
         Result of :func:`voxsoft.fabrication.make`.
     folder
         Folder; it is made, and files in it are replaced. It then holds a file for each part,
-        ``sheet.html``, ``make.json`` and ``design.toml``.
+        an ``.svg`` in true size for each flat layer, ``sheet.html``, ``make.json`` and
+        ``design.toml``.
     stl
         True for parts as ``.stl`` in mm instead of ``.3mf``.
 
@@ -126,11 +132,37 @@ def write_fabrication(made: Fabrication, folder: FilePath, *, stl: bool = False)
     suffix = ".stl" if stl else ".3mf"
     for name, surface in made.surfaces().items():
         write_surfaces(target / f"{name}{suffix}", {name: surface})
+    for name, pattern in made.patterns.items():
+        write_atomically(target / f"{name}.svg", pattern_as_svg(pattern))
     summary = fabrication_summary(made, suffix)
     write_atomically(target / "make.json", json.dumps(summary, indent=2) + "\n")
     save(made.design, target / "design.toml")
     write_atomically(target / "sheet.html", "\n".join(_sheet(made, suffix)) + "\n")
     return target
+
+
+def pattern_as_svg(pattern: Pattern) -> str:
+    """Return the outline of a layer as SVG in true size, its second axis up.
+
+    Examples
+    --------
+    >>> square = np.array([[0, 0], [0.01, 0], [0.01, 0.01], [0, 0.01], [0, 0]])
+    >>> print(pattern_as_svg(Pattern("felt", "xy", (square,), (0.01, 0.01), 1e-4)), end="")
+    <svg xmlns="http://www.w3.org/2000/svg" width="10mm" height="10mm" viewBox="0 0 10 10">
+    <title>felt</title>
+    <path fill="none" stroke="black" stroke-width="0.1" d="M0 10L10 10L10 0L0 0Z"/>
+    </svg>
+    """
+    wide, tall = (1e3 * each for each in pattern.size)
+    lines = []
+    for outline in pattern.outlines:
+        points = [f"{1e3 * x:.6g} {tall - 1e3 * y + 0.0:.6g}" for x, y in outline[:-1]]
+        lines.append(f"M{'L'.join(points)}Z")
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide:.6g}mm" height="{tall:.6g}mm" '
+        f'viewBox="0 0 {wide:.6g} {tall:.6g}">\n<title>{escape(pattern.name)}</title>\n'
+        f'<path fill="none" stroke="black" stroke-width="0.1" d="{"".join(lines)}"/>\n</svg>\n'
+    )
 
 
 def _volume(vertices: np.ndarray, triangles: np.ndarray) -> float:

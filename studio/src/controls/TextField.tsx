@@ -7,6 +7,8 @@ export interface TextFieldProps {
   problem?: string | undefined;
   /** Shown in gray behind the value, such as the result of a formula. */
   aside?: string | undefined;
+  /** Shown in gray while the field is empty. */
+  placeholder?: string;
   /** Names to offer while typing. */
   offers?: readonly string[];
   changed?: boolean;
@@ -58,6 +60,7 @@ export function TextField(props: TextFieldProps) {
         autoComplete="off"
         spellCheck={false}
         disabled={props.disabled}
+        placeholder={props.placeholder}
         list={props.offers ? `${id}-offers` : undefined}
         title={note ?? props.title}
         value={draft ?? props.value}

@@ -1,4 +1,4 @@
-// The five modes are layouts of the same panes around the same view; the model stays loaded.
+// The modes are layouts of the same panes around the same view; the model stays loaded.
 import type { DockviewApi, SerializedDockview } from "dockview-react";
 import { paneById } from "../panes/registry";
 import type { Mode } from "../store/page";
@@ -46,6 +46,13 @@ const LAYOUTS: Readonly<Record<Mode, Layout>> = {
     bottom: [["trials", "log"]],
     right: [["history"], ["scatter", "pareto"], ["parallel"]],
     leftShare: 0.22,
+  },
+  make: {
+    left: [["make"]],
+    main: ["view", "sheet"],
+    bottom: [],
+    right: [["body", "export", "log"]],
+    leftShare: 0.27,
   },
   runs: {
     left: [],

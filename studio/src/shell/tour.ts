@@ -32,6 +32,11 @@ export const STEPS: readonly Step[] = [
     text: "Choose parameters, goals and a budget; click any point of a plot to open that design. It goes on when the page is closed, and Runs keeps all of it. Export gives STL, VTU, CSV, pictures, or a live page that needs no VoxSoft.",
     mode: "optimize",
   },
+  {
+    title: "Cast it",
+    text: "Make writes printed molds, cores and plates for the robot, with a sheet: grams of both components, pot life, each step with a picture, and the proofs that the molds come apart and hold no air.",
+    mode: "make",
+  },
 ];
 
 const KEY = "voxsoft.tour";

@@ -4,7 +4,7 @@ import { create } from "zustand";
 import type { OpenCommand } from "../protocol";
 import { finishTyping } from "./typing";
 
-export const MODES = ["design", "simulate", "calibrate", "optimize", "runs"] as const;
+export const MODES = ["design", "simulate", "calibrate", "optimize", "make", "runs"] as const;
 export type Mode = (typeof MODES)[number];
 
 export const MODE_TITLES: Readonly<Record<Mode, string>> = {
@@ -12,6 +12,7 @@ export const MODE_TITLES: Readonly<Record<Mode, string>> = {
   simulate: "Simulate",
   calibrate: "Calibrate",
   optimize: "Optimize",
+  make: "Make",
   runs: "Runs",
 };
 

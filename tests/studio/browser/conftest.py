@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
+from auditing import AXE
 from hands import Hand
 from waiting import until
 
@@ -154,6 +155,12 @@ def served(tmp_path_factory):
 
 
 @pytest.fixture
+def axe():
+    if not AXE.is_file():
+        pytest.skip("axe-core is not installed: npm ci in studio/")
+
+
+@pytest.fixture
 def own_server(tmp_path):
     """A server that a test may kill."""
     server = serve(tmp_path)
@@ -217,9 +224,13 @@ def open_tab(chromium):
         context.set_default_timeout(PATIENCE * 1000)
         contexts.append(context)
         if not tour:
-            context.add_init_script("localStorage.setItem('voxsoft.tour', '{\"seen\":true}')")
+            context.add_init_script(
+                "window === top && localStorage.setItem('voxsoft.tour', '{\"seen\":true}')"
+            )
         if not symbols:  # words that can be clicked must not lie where a test presses
-            context.add_init_script("localStorage.setItem('voxsoft.view', '{\"symbols\":false}')")
+            context.add_init_script(
+                "window === top && localStorage.setItem('voxsoft.view', '{\"symbols\":false}')"
+            )
         page = context.new_page()
         tab = Tab(page)
         page.on("console", lambda m: tab.errors.append(m.text) if m.type == "error" else None)

@@ -4,57 +4,21 @@ axe-core comes with the page's development dependencies (`npm ci` in studio/); w
 without Chromium, these tests are skipped. It sees names, roles, contrast and structure.
 """
 
-from pathlib import Path
-
 import pytest
+from auditing import Audit
 from fingers import open_atlas, study_fingers
 
 pytestmark = pytest.mark.browser
 
-AXE = Path(__file__).parents[3] / "studio/node_modules/axe-core/axe.min.js"
-MODES = ("design", "simulate", "calibrate", "optimize", "runs")
+MODES = ("design", "simulate", "calibrate", "optimize", "make", "runs")
 KEYS = {"Control+k": "palette", "?": "shortcuts", "Control+Shift+S": "save-sheet"}
 SCHEMES = ("dark", "light")
-
-#: Serious or critical findings of axe, as lines that name the rule and the element.
-FOUND = """async () => {
-  const run = await axe.run(document, { resultTypes: ["violations"] });
-  return run.violations
-    .filter((one) => ["serious", "critical"].includes(one.impact))
-    .flatMap((one) => one.nodes.map((node) =>
-      `${one.impact} ${one.id}: ${node.target.join(" ")} ${node.html.slice(0, 160)} ` +
-      (node.any[0]?.message ?? node.all[0]?.message ?? node.none[0]?.message ?? "")));
-}"""
 
 #: Panes are loaded when they are first shown.
 LOADED = """(() => {
   const panes = [...document.querySelectorAll(".pane-host")];
   return panes.length > 0 && panes.every((one) => one.childElementCount > 0);
 })()"""
-
-
-class Audit:
-    """Collects the findings of one page after the other."""
-
-    def __init__(self, tab):
-        self.tab, self.found = tab, {}
-
-    def look(self, where):
-        page = self.tab.page
-        if not page.evaluate("typeof axe === 'object'"):
-            page.evaluate(AXE.read_text(encoding="utf-8"))
-        page.mouse.move(2, 400)
-        for line in page.evaluate(FOUND):
-            self.found.setdefault(line, where)
-
-    def report(self):
-        return "\n".join(f"{where}: {line}" for line, where in self.found.items())
-
-
-@pytest.fixture
-def axe():
-    if not AXE.is_file():
-        pytest.skip("axe-core is not installed: npm ci in studio/")
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

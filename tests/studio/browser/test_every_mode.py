@@ -18,7 +18,7 @@ JOB = 120_000
 # Seconds until a mode is whole, where software draws a picture of 8 million pixels.
 PATIENCE = 60.0
 
-MODES = ("design", "simulate", "calibrate", "optimize", "runs")
+MODES = ("design", "simulate", "calibrate", "optimize", "make", "runs")
 
 MEASURED = "s (mm),dz (mm)\n10,-0.3\n25,-1.7\n40,-4.0\n"
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -29,6 +28,7 @@ from voxsoft.simulation.runs.state import result_at
 from voxsoft.simulation.setup.places import on_the_surface
 from voxsoft.studio.bodies.body import StudioBody
 from voxsoft.studio.bodies.objects import poses_in, surroundings_of
+from voxsoft.studio.outputs.archive import archive
 from voxsoft.studio.outputs.html import export_page, page_of_body
 from voxsoft.studio.protocol import events
 from voxsoft.studio.protocol.events import GrabState
@@ -164,7 +164,7 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         _write_mesh(shown, target, form, options)
     elif form is not None and form.kind == "series":
         lost = write_source(_within(target), shown)
-        target = _archive(_within(target).parent, target.with_suffix(".zip"))
+        target = archive(_within(target).parent, target.with_suffix(".zip"))
     elif form is not None:
         lost = write_source(target, shown)
     elif format == "run":
@@ -199,7 +199,7 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
     """
     target = folder / f"{source.name}.{format}"
     if format == "run":
-        return Written(_archive(source, target.with_suffix(".zip")))
+        return Written(archive(source, target.with_suffix(".zip")))
     if format == "molds":
         design = files.load(source / "design.toml")
         return Written(_write_molds(design, folder / f"{source.name}-molds"))
@@ -214,7 +214,7 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
     written = _within(target) if several else target
     lost = files.export(source, written, deformed=deformed, unit=unit, voxels=voxels)
     if several:
-        target = _archive(written.parent, target.with_suffix(".zip"))
+        target = archive(written.parent, target.with_suffix(".zip"))
     return Written(target, lost)
 
 
@@ -252,7 +252,7 @@ def _table(shown: Shown) -> str:
 def _write_run(shown: Shown, target: Path) -> None:
     folder = target.with_suffix("")
     files.write_run(shown.measured(), folder)
-    _archive(folder, target)
+    archive(folder, target)
 
 
 def _write_molds(design: Design, folder: Path) -> Path:
@@ -267,20 +267,12 @@ def _write_molds(design: Design, folder: Path) -> Path:
     from voxsoft.files.fabrication import write_fabrication
 
     write_fabrication(make(design), folder)
-    return _archive(folder, folder.with_suffix(".zip"))
+    return archive(folder, folder.with_suffix(".zip"))
 
 
 def _within(target: Path) -> Path:
     """Return the path of a file with others beside it, in a folder of their own."""
     return make_folder(target.with_name(f"{target.stem}-series")) / target.name
-
-
-def _archive(folder: Path, target: Path) -> Path:
-    try:
-        shutil.make_archive(str(target.with_suffix("")), "zip", folder.parent, folder.name)
-    except (OSError, ValueError) as error:
-        raise FileError(str(folder), f"cannot be archived: {error}") from None
-    return target
 
 
 def _draw(shown: Shown, target: Path, scale: object) -> None:

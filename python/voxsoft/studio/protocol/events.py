@@ -1070,6 +1070,44 @@ class Exported(Event):
     name: str
 
 
+class Casting(Entry):
+    """A solid to be cast: volumes in m³, masses in kg with the waste in A and B, times in s."""
+
+    name: str
+    material: str
+    volume: float
+    mass: float
+    a: float
+    b: float
+    deviation: float
+    trapped_air: float
+    pot_life: float | None
+    cure: float | None
+
+
+class MoldProblem(Entry):
+    """A proof of molds that fails."""
+
+    where: str
+    what: str
+    hint: str
+
+
+class Molds(Event):
+    """Molds of the document `rev`; without problems with their sheet, and the archive at `url`."""
+
+    rev: int
+    way: str
+    why: str
+    castings: list[Casting]
+    files: list[str]
+    notes: list[str]
+    problems: list[MoldProblem]
+    sheet: str
+    url: str
+    name: str
+
+
 class Saved(Event):
     """A file that was written."""
 
@@ -1173,6 +1211,7 @@ AnyEvent = (
     | Compared
     | Measured
     | Exported
+    | Molds
     | Saved
     | FileExists
     | Taken

@@ -71,6 +71,7 @@ def make_app(session: Session, token: str, port: int) -> Guard:
         Route("/thumbnail/{run:path}", pages.thumbnail),
         Route("/upload", pages.upload, methods=["POST"]),
         Route("/export", pages.export, methods=["POST"]),
+        Route("/molds", pages.molds, methods=["POST"]),
         WebSocketRoute("/ws", pages.websocket),
     ]
 
@@ -204,9 +205,7 @@ class _Pages:
 
     async def export(self, request: Request) -> Response:
         try:
-            asked = await request.json()
-            if not isinstance(asked, dict):
-                raise ValueError("expected an object")
+            asked = await _asked(request)
             options = asked.get("options") or {}
             if not isinstance(options, dict):
                 raise ValueError("options: expected an object")
@@ -216,6 +215,16 @@ class _Pages:
         except (ValueError, UnicodeError, RecursionError) as error:
             return _problem(400, "export", str(error))
         return JSONResponse({"format": found.format, "url": found.url, "name": found.name})
+
+    async def molds(self, request: Request) -> Response:
+        """Answer with the molds of the document; making them takes seconds."""
+        try:
+            made = await self._aside(self._session.molds, await _asked(request))
+        except VoxSoftError as error:
+            return _problem(422, error.where, error.what, error.hint)
+        except (ValueError, UnicodeError, RecursionError) as error:
+            return _problem(400, "molds", str(error))
+        return Response(encode(made), media_type="application/json")
 
     async def websocket(self, socket: WebSocket) -> None:
         await socket.accept()
@@ -316,6 +325,13 @@ async def _body_within(request: Request, limit: int, name: str) -> bytes:
             raise _TooLargeError(name, what, hint)
         parts.append(part)
     return b"".join(parts)
+
+
+async def _asked(request: Request) -> dict[str, Any]:
+    asked = await request.json()
+    if not isinstance(asked, dict):
+        raise ValueError("expected an object")
+    return asked
 
 
 async def _receive(socket: WebSocket) -> str | bytes:

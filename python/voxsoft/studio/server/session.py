@@ -706,6 +706,26 @@ class Session:
             self.tabs.publish(events.Log(level="warning", text=text))
         return self.offer(written.file, format)
 
+    def molds(self, asked: dict[str, Any]) -> events.Molds:
+        """Make the molds of the document, as the page asks for them.
+
+        Raises
+        ------
+        VoxSoftError
+            The document is no design yet, a wrong limit, or a body that cannot be sampled.
+        """
+        from voxsoft.studio.outputs.molds import make_molds, told
+
+        with self._lock:
+            _, design = self._good(self.document)
+            name, rev = Path(self.document.name).stem, self.document.rev
+        folder = make_folder(self.own / "exports" / uuid.uuid4().hex[:12])
+        made = make_molds(design, asked, folder / f"{name}-molds")
+        if made.archive is None:
+            return told(made, rev, "", "")
+        offered = self.offer(made.archive, "molds")
+        return told(made, rev, offered.url, offered.name)
+
     def _shown(self) -> Shown:
         """The state on the screen now."""
         with self._lock:

@@ -1,0 +1,207 @@
+// Molds for casting the robot: the way, the printer, and the numbers to pour by.
+import { Button, Empty, Section, Select } from "../../controls/Choice";
+import { Table } from "../../controls/Table";
+import { TextField } from "../../controls/TextField";
+import { formatNumber } from "../../controls/units";
+import type { MoldsEvent } from "../../protocol";
+import { useStudio } from "../../store/studio";
+import { makeMolds, type PrinterLimits, useMaking, wish } from "./made";
+import { WAYS } from "./ways";
+import "./make.css";
+
+const LIMITS: readonly { key: keyof PrinterLimits; label: string; title: string }[] = [
+  { key: "wall", label: "Thinnest wall", title: "Thinnest wall that the printer prints" },
+  { key: "volume", label: "Room", title: "Largest part along x, y, z; larger ones are divided" },
+  { key: "tube", label: "Air tube", title: "Outer diameter of the air tubes" },
+  { key: "draft", label: "Draft", title: "Angle by which upright walls lean; silicone needs none" },
+];
+
+export default function MakePane() {
+  const document = useStudio((state) => state.document);
+  const { wishes, busy, made, of } = useMaking();
+  if (!document) {
+    return (
+      <Empty title="No design open">
+        <p>Open a design: its molds are made here.</p>
+      </Empty>
+    );
+  }
+  const key = document.path ?? document.name;
+  const bodies = bodyNames(document.source);
+  const current = made !== null && of === key ? made : null;
+  const past = current !== null && current.rev !== document.rev;
+  return (
+    <div className="pane" data-testid="make-pane">
+      <Section title="Molds">
+        {bodies.length > 0 && (
+          <Select
+            label="Body"
+            value={wishes.body}
+            options={[
+              { value: "", label: "choose…", disabled: true },
+              ...bodies.map((name) => ({ value: name, label: name })),
+            ]}
+            onChange={(body) => wish({ body })}
+          />
+        )}
+        <Select
+          label="Way"
+          title="How the robot is made"
+          value={wishes.way}
+          options={[
+            { value: "", label: "the first that the shape allows" },
+            ...Object.entries(WAYS).map(([value, label]) => ({ value, label })),
+          ]}
+          onChange={(way) => wish({ way })}
+        />
+        {LIMITS.map(({ key: name, label, title }) => (
+          <TextField
+            key={name}
+            label={label}
+            title={title}
+            right
+            value={wishes.printer[name]}
+            onCommit={(text) => {
+              wish({ printer: { ...wishes.printer, [name]: text.trim() } });
+              return null;
+            }}
+          />
+        ))}
+        <TextField
+          label="Shrinkage"
+          placeholder="of each silicone"
+          title="Shrinkage of all castings, such as 0.2 %; empty for that of each silicone"
+          right
+          value={wishes.shrinkage}
+          onCommit={(text) => {
+            wish({ shrinkage: text.trim() });
+            return null;
+          }}
+        />
+        <div className="row">
+          <Button
+            kind="primary"
+            testId="make-molds"
+            disabled={busy || !document.valid || (bodies.length > 0 && wishes.body === "")}
+            onClick={() => void makeMolds(key)}
+          >
+            {busy ? "Making…" : current ? "Make again" : "Make molds"}
+          </Button>
+          {!document.valid && (
+            <span className="field-note">fix the errors of the design first</span>
+          )}
+        </div>
+      </Section>
+      {current && <Made made={current} past={past} />}
+    </div>
+  );
+}
+
+function bodyNames(source: unknown): string[] {
+  const { bodies } = (source ?? {}) as { bodies?: readonly { name?: unknown }[] };
+  return (bodies ?? []).map((one) => String(one.name ?? ""));
+}
+
+function Made(props: { made: MoldsEvent; past: boolean }) {
+  const { made } = props;
+  const a = made.castings.reduce((sum, one) => sum + one.a, 0);
+  const b = made.castings.reduce((sum, one) => sum + one.b, 0);
+  return (
+    <div className={props.past ? "made past" : "made"} data-testid="made">
+      {props.past && (
+        <p className="warn" role="status">
+          These molds are of the design before its last change.
+        </p>
+      )}
+      <Section title={WAYS[made.way] ?? made.way}>
+        {made.why && <p className="muted">{made.why}</p>}
+        {made.problems.length > 0 && (
+          <ul className="mold-problems" data-testid="mold-problems">
+            {made.problems.map((one) => (
+              <li key={`${one.where} ${one.what}`}>
+                <strong>{one.where}</strong> {one.what}
+                {one.hint && <span className="muted">. Try: {one.hint}</span>}
+              </li>
+            ))}
+          </ul>
+        )}
+        {made.url && (
+          <div className="row">
+            <a
+              className="button primary"
+              href={made.url}
+              download={made.name}
+              data-testid="molds-zip"
+            >
+              Parts (3MF) and sheet
+            </a>
+            <span className="muted">
+              {made.files.length} {made.files.length === 1 ? "part" : "parts"} to print
+            </span>
+          </div>
+        )}
+      </Section>
+      {made.castings.length > 0 && (
+        <Section title="Castings">
+          <Table
+            label="Castings"
+            testId="castings"
+            rows={made.castings}
+            rowKey={(row) => row.name}
+            columns={[
+              { key: "name", title: "Casting", cell: (row) => row.name },
+              {
+                key: "volume",
+                title: "Volume, mL",
+                right: true,
+                cell: (row) => formatNumber(row.volume * 1e6, 4),
+              },
+              {
+                key: "deviation",
+                title: "Off, mm",
+                right: true,
+                cell: (row) => formatNumber(row.deviation * 1e3, 2),
+              },
+              {
+                key: "air",
+                title: "Air, mm³",
+                right: true,
+                cell: (row) => formatNumber(row.trapped_air * 1e9, 2),
+              },
+            ]}
+          />
+          <p data-testid="mix">
+            Mix <strong>{formatNumber(a * 1e3, 3)} g</strong> of A
+            {b > 0 && (
+              <>
+                {" "}
+                and <strong>{formatNumber(b * 1e3, 3)} g</strong> of B
+              </>
+            )}
+            , with 15 % of waste.
+          </p>
+          {[...new Set(made.castings.map((one) => times(one)))].map((text) => (
+            <p key={text} className="muted">
+              {text}
+            </p>
+          ))}
+        </Section>
+      )}
+      {made.notes.length > 0 && (
+        <Section title="By hand">
+          <ul className="mold-notes">
+            {made.notes.map((note) => (
+              <li key={note}>{note}</li>
+            ))}
+          </ul>
+        </Section>
+      )}
+    </div>
+  );
+}
+
+function times(one: MoldsEvent["castings"][number]): string {
+  if (one.pot_life === null || one.cure === null) return `${one.material}: see its bulletin.`;
+  const pot = formatNumber(one.pot_life / 60, 3);
+  return `${one.material}: pours for ${pot} min, cures in ${formatNumber(one.cure / 3600, 3)} h.`;
+}

@@ -1,0 +1,92 @@
+// Molds that were made last, and the wishes for the next ones. Kept while the page is there.
+import { create } from "zustand";
+import type { ErrorEvent, MoldsEvent } from "../../protocol";
+import { showPane } from "../../shell/actions";
+import { usePage } from "../../store/page";
+import { toast } from "../../store/studio";
+import { flushText } from "../../store/typing";
+
+/** Limits of the printer that the pane asks for, as text with units. */
+export interface PrinterLimits {
+  readonly wall: string;
+  readonly tube: string;
+  readonly draft: string;
+  readonly volume: string;
+}
+
+export interface Wishes {
+  /** Way to take; empty for the first that the shape allows. */
+  readonly way: string;
+  /** Body of a design with several. */
+  readonly body: string;
+  readonly shrinkage: string;
+  readonly printer: PrinterLimits;
+}
+
+interface Making {
+  wishes: Wishes;
+  /** True while the server makes molds. */
+  busy: boolean;
+  made: MoldsEvent | null;
+  /** Name of the document of which they were made. */
+  of: string;
+}
+
+export const useMaking = create<Making>(() => ({
+  wishes: {
+    way: "",
+    body: "",
+    shrinkage: "",
+    printer: { wall: "0.8 mm", tube: "3 mm", draft: "0 deg", volume: "220 mm, 220 mm, 220 mm" },
+  },
+  busy: false,
+  made: null,
+  of: "",
+}));
+
+export function wish(change: Partial<Wishes>): void {
+  useMaking.setState(({ wishes }) => ({ wishes: { ...wishes, ...change } }));
+}
+
+/** Request to the server. */
+export function request(wishes: Wishes): Record<string, unknown> {
+  const { volume, ...limits } = wishes.printer;
+  const sides = volume.split(",").map((side) => side.trim());
+  return { ...wishes, printer: { ...limits, volume: sides } };
+}
+
+/** Make molds of the document as it stands; a press while they are made does nothing. */
+export async function makeMolds(of: string): Promise<void> {
+  if (useMaking.getState().busy) return;
+  flushText();
+  useMaking.setState({ busy: true });
+  try {
+    const reply = await fetch("/molds", {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify(request(useMaking.getState().wishes)),
+    });
+    const said: unknown = await reply.json().catch(() => null);
+    if (!reply.ok) {
+      const problem = said as Partial<ErrorEvent> | null;
+      const what = problem?.what ?? `Molds could not be made (${reply.status})`;
+      toast({
+        level: "error",
+        what: problem?.where ? `${problem.where}: ${what}` : what,
+        hint: problem?.hint ?? "",
+      });
+      return;
+    }
+    const made = said as MoldsEvent;
+    useMaking.setState({ made, of });
+    if (made.sheet && usePage.getState().mode === "make") showPane("sheet");
+  } catch {
+    toast({
+      level: "error",
+      what: "Molds could not be made",
+      hint: "VoxSoft does not answer; try again when it does.",
+    });
+  } finally {
+    useMaking.setState({ busy: false });
+  }
+}
