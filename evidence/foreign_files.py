@@ -1,8 +1,8 @@
-"""Files that other programs write: volume, unit and parts as those programs tell, and as we read.
+"""Files that other programs write: volume, unit and parts by those programs, and as we read.
 
 ``python evidence/foreign_files.py [--json]``. Each file is written by the library of its format,
 in several units, orders, encodings and arrangements, and handed to ``voxsoft check`` as a stranger
-would. A row is the volume that its library tells, in mL, with the ratio of ours to it; rows after
+would. A row is the volume by its library, in mL, with the ratio of ours to it; rows after
 it are the numbers of parts, where there are several. The volume of images is that of their labeled
 voxels. A hundred files more, of Abaqus, Gmsh and VTK, lie in ``tests/data/files`` with their table.
 """
@@ -48,7 +48,7 @@ UNITS = {
 
 @dataclass(frozen=True)
 class File:
-    """File of another program, and what that program tells of it: mL, parts, and flags for us."""
+    """File of another program, and what that program reports: mL, parts, and flags for us."""
 
     path: Path
     volume: float
@@ -238,16 +238,16 @@ def cells(folder: Path) -> Iterator[File]:
 
 
 def read(file: File) -> tuple[float, int]:
-    """Volume [mL] and number of parts that ``voxsoft check`` tells."""
+    """Volume [mL] and number of parts that ``voxsoft check`` reports."""
     command = [sys.executable, "-m", "voxsoft", "check", str(file.path), "--json", *file.flags]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     try:
-        told = json.loads(done.stdout)
-        parts = told["volumes"]["parts"]
+        reported = json.loads(done.stdout)
+        parts = reported["volumes"]["parts"]
         volume = sum(each["described"] for each in parts.values())
     except (ValueError, KeyError):
         raise SystemExit(f"{file.path.name}: {done.stdout}{done.stderr}") from None
-    return volume * 1e6, max(len(told["file"]["parts"]), 1)
+    return volume * 1e6, max(len(reported["file"]["parts"]), 1)
 
 
 def main() -> None:

@@ -21,8 +21,10 @@ from voxsoft.design.contact import ContactPair
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
 from voxsoft.design.line import Pump, Valve
+from voxsoft.design.molds import Molds
 from voxsoft.design.object import Object
 from voxsoft.design.part import Part
+from voxsoft.design.printer import Printer
 from voxsoft.design.profile import Profile
 from voxsoft.design.refinement import Refinement
 from voxsoft.design.region import Spot
@@ -152,6 +154,8 @@ SPECIAL[Dielectric, "permittivity"] = (2.8, 5)
 SPECIAL[ShapeMemory, "heating"] = (("340 K", "350 K"), [340.0, 350])
 SPECIAL[ShapeMemory, "cooling"] = (("330 K", "320 K"), [340.0, 300])
 SPECIAL[ShapeMemory, "transformed"] = (0.25, 1)
+SPECIAL[Molds, "shrinkage"] = (0.002, "0.2 %", 0.1 / 3)
+SPECIAL[Printer, "draft"] = ("1 deg", 0.1 / 3)
 SPECIAL[Body, "design"] = (INNER, Design.from_document(INNER))
 SPECIAL[Body, "set"] = ({"r": "12 mm"}, {"r": 0.1 / 3}, {"r": "= p_length"}, {"many": 3, "r": 0.02})
 #: Names of bodies that there are: test_roundtrip_of_places_of_bodies has these. Names of regions of

@@ -24,7 +24,8 @@ def make(
         str | None,
         typer.Option(
             "--way",
-            help="cast, core, halves, lost-core or printed; default: the first that is possible.",
+            help="cast, core, halves, lost-core or printed; default: that of the design's molds, "
+            "else the first that is possible.",
         ),
     ] = None,
     body: Annotated[
@@ -45,7 +46,9 @@ def make(
     shrinkage: Annotated[
         str | None,
         typer.Option(
-            "--shrinkage", help="Shrinkage of all castings, '0.2 %'; default: the silicone's own."
+            "--shrinkage",
+            help="Shrinkage of all castings, '0.2 %'; default: that of the design's "
+            "molds, else of the silicone.",
         ),
     ] = None,
     stl: Annotated[bool, typer.Option("--stl", help="Parts as STL in mm, not as 3MF.")] = False,
@@ -74,6 +77,7 @@ def make(
         loaded = files.load(design, assignments=sets or [])
         if body is not None:
             loaded = one_body(loaded, body)
+        printers = Printer() if loaded.molds is None else loaded.molds.printer
         wanted = next((each for each in WAYS if each == way), None)
         with ProgressBar("molds", 1) as bar:
 
@@ -84,7 +88,7 @@ def make(
             made = make_molds(
                 loaded,
                 way=wanted,
-                printer=Printer(**limits),
+                printer=printers.replace(**limits),
                 shrinkage=None if shrinkage is None else parse(shrinkage, "number"),
                 progress=report,
             )

@@ -25,6 +25,7 @@ from voxsoft.design.load import (
     Traction,
 )
 from voxsoft.design.model import Design
+from voxsoft.design.molds import Molds
 from voxsoft.design.object import Object
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
@@ -75,6 +76,7 @@ __all__ = [
     "Liquid",
     "MagneticField",
     "MassSupply",
+    "Molds",
     "Motion",
     "Object",
     "Objective",

@@ -49,6 +49,7 @@ from voxsoft.design.file_mesh import FileMesh, mesh_problems, with_element_size
 from voxsoft.design.history import History, with_named
 from voxsoft.design.layer import Layer
 from voxsoft.design.load import AnyLoad, Floor
+from voxsoft.design.molds import Molds
 from voxsoft.design.object import Object
 from voxsoft.design.operands import MaterialName, Name, ParameterName
 from voxsoft.design.parameter import Parameter
@@ -136,6 +137,8 @@ class Design(Record):
         Named places to measure at.
     objectives, constraints
         Goals of a study of the design.
+    molds
+        Options for its molds.
     solver
         Choices about the solution.
 
@@ -193,6 +196,7 @@ class Design(Record):
     probes: Table[Name, Probe] = Field(default_factory=FrozenDict)
     objectives: Table[Name, Objective] = Field(default_factory=FrozenDict)
     constraints: Table[Name, Constraint] = Field(default_factory=FrozenDict)
+    molds: Molds | None = None
     solver: Solver = Solver()
 
     _source: Document = PrivateAttr(default_factory=dict)

@@ -10,9 +10,9 @@
 
 from __future__ import annotations
 
+from voxsoft.design.molds import WAYS, Way
+from voxsoft.design.printer import Printer
 from voxsoft.fabrication.making import Cast, Fabrication, Printed, make
-from voxsoft.fabrication.planning import WAYS, Way
-from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.selection import one_body
 
 __all__ = ["WAYS", "Cast", "Fabrication", "Printed", "Printer", "Way", "make", "one_body"]

@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.design.printer import Printer
 from voxsoft.fabrication.fields import Frustum
-from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid
 
 Bools = NDArray[np.bool_]

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
+from voxsoft.design.printer import Printer
 from voxsoft.fabrication.body import Body
 from voxsoft.fabrication.clamped import clamped
 from voxsoft.fabrication.fields import Common, Field, Floats, Outside, Parts
-from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid
 
 Bools = NDArray[np.bool_]

@@ -11,16 +11,18 @@ import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design
-from voxsoft.errors import DesignError, ErrorDetail
+from voxsoft.design.molds import WAYS, Molds, Way
+from voxsoft.design.printer import Printer
+from voxsoft.errors import ErrorDetail
 from voxsoft.fabrication import proof
 from voxsoft.fabrication.body import Body, Component
 from voxsoft.fabrication.fields import Floats, Frame
+from voxsoft.fabrication.handwork import steps_by_hand
 from voxsoft.fabrication.inlets import Inlet, bored, inlets_of
 from voxsoft.fabrication.mold import Mold, mold_of
 from voxsoft.fabrication.patterns import Pattern, patterns_of
-from voxsoft.fabrication.planning import WAYS, Casting, Plan, Way, plan
+from voxsoft.fabrication.planning import Casting, Plan, plan
 from voxsoft.fabrication.plates import plates_of
-from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Surface, counted_volume, surface_of
 from voxsoft.fabrication.splitting import fits, segments_of
 from voxsoft.materials.casting import CastingData, casting_data
@@ -31,8 +33,6 @@ DEVIATION: Final = 0.2e-3
 VOLUME: Final = 0.005
 #: Silicone that stays in cups, pour holes and on tools, as a part of the casting.
 WASTE: Final = 0.15
-#: Shrinkage that no casting has.
-_MOST_SHRINKAGE: Final = 0.1
 #: Frame of the design.
 _DESIGN: Final = Frame.along(2, 1)
 
@@ -205,15 +205,8 @@ def make(
     ----------
     design
         The design, of one body.
-    way
-        Way to take: ``"cast"`` in one mold, ``"core"`` drawn out through an opening, ``"halves"``
-        cast apart and bonded, ``"lost-core"`` of wax or soluble print, ``"printed"`` directly;
-        default: the first of these that the shape allows.
-    printer
-        The printer; default: a nozzle of 0.4 mm and 220 mm of room.
-    shrinkage
-        Part of its length that a casting loses as it cures, 0 to below 0.1, for which molds are
-        larger; default: the largest that the maker of each silicone states.
+    way, printer, shrinkage
+        Options in place of those of the design's :class:`~voxsoft.design.molds.Molds`.
     progress
         Called with the number of finished molds and that of all.
 
@@ -232,10 +225,9 @@ def make(
     >>> made.way, [part.name for part in made.casts[0].mold.parts], made.problems
     ('cast', ['part-1-lower'], ())
     """
-    printer = printer or Printer()
-    if shrinkage is not None and not 0.0 <= shrinkage < _MOST_SHRINKAGE:
-        what = f"is {shrinkage:g}; expected 0 to {_MOST_SHRINKAGE:g}"
-        raise DesignError("shrinkage", what, "silicones shrink by about 0.1 %: 0.001")
+    options = design.molds or Molds()
+    way, printer = way or options.way, printer or options.printer
+    shrinkage = options.shrinkage if shrinkage is None else Molds(shrinkage=shrinkage).shrinkage
     names = _Names()
     body = Body.of(design, printer.resolution)
     plans: list[Plan] = []
@@ -302,7 +294,7 @@ def make(
         described=described,
         poured=sum(each.poured for each in casts),
         problems=tuple(problems),
-        notes=(*_notes(body, plans, inlets, patterns), *_changes(casts, printer)),
+        notes=(*steps_by_hand(body, plans, inlets, patterns), *_changes(casts, printer)),
     )
 
 
@@ -446,53 +438,6 @@ def _proved(cast: Cast, printer: Printer) -> list[ErrorDetail]:
 def _place(at: Floats, frame: Frame) -> str:
     """Return a point [m] of a frame in words, in the frame of the design."""
     return f"({', '.join(f'{1e3 * each + 0.0:.3g}' for each in frame.world(at))}) mm"
-
-
-def _is_molded(inlet: Inlet, body: Body, plans: list[Plan]) -> bool:
-    """Return True if pins of cores, or prints, make an inlet all through its wall."""
-    share = (np.arange(int(np.ceil(inlet.length / body.grid.step))) + 0.5) * body.grid.step
-    points = np.tile(np.array(inlet.at), (len(share), 1))
-    points[:, inlet.axis] -= inlet.sign * share
-    wall = body.grid.nearest(points)
-    left = np.zeros(len(points), dtype=bool)
-    for each in plans:
-        if each.way != "printed" and (each.cut is None or each.cut.axis != inlet.axis):
-            left |= each.component.values[wall] < 0.0
-    return not left.any()
-
-
-def _notes(
-    body: Body, plans: list[Plan], inlets: list[Inlet], patterns: Mapping[str, Pattern]
-) -> list[str]:
-    """Return the steps that no mold does."""
-    design, notes = body.design, []
-    for inlet in inlets:
-        at = ", ".join(f"{1e3 * each + 0.0:.3g}" for each in inlet.at)
-        wide = f"{2e3 * inlet.radius:.2g} mm"
-        if not _is_molded(inlet, body, plans):
-            notes.append(f"Punch the inlet of {inlet.chamber}: {wide} wide, at ({at}) mm.")
-    for number, layer in enumerate(design.layers, 1):
-        name = layer.name or f"layer {number}"
-        thick = format_quantity(layer.thickness, "length")
-        file = next((file for file, each in patterns.items() if each.name == name), None)
-        cut = "" if file is None else f", cut by {file}.svg"
-        notes.append(
-            f"Lay {name}, {thick} thick{cut}, into the mold before pouring, flat on its side there."
-        )
-    for part in design.parts:
-        for fiber in part.fibers:
-            along = f"({', '.join(f'{each:.3g}' for each in fiber.unit)})"
-            if fiber.angle is None:
-                notes.append(f"Lay thread along {along} into the wall before it is poured full.")
-            else:
-                notes.append(
-                    f"Wind thread at {np.degrees(fiber.angle):.3g} deg to the axis {along} on the "
-                    "first layer of the wall, before the second is poured."
-                )
-    for number, tendon in enumerate(design.tendons, 1):
-        name = tendon.name or f"tendon {number}"
-        notes.append(f"Span a tube for {name} through the mold before pouring.")
-    return notes
 
 
 def _changes(casts: Sequence[Cast], printer: Printer) -> list[str]:

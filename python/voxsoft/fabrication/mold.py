@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.design.printer import Printer
 from voxsoft.fabrication.air import Opening, openings_of, trapped_air
 from voxsoft.fabrication.drafting import Drafted, drafted
 from voxsoft.fabrication.draw import ABOVE, BELOW, BESIDE, WITHIN, Draw, draw_along
 from voxsoft.fabrication.fields import Box, Common, Field, Floats, Frame, Frustum, Joined, Outside
-from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid, Sampled, Surface, surface_of
 
 #: Height of a pin, in its radii.

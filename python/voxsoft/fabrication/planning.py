@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final, Literal, get_args
+from typing import Final
 
 import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design
+from voxsoft.design.molds import Way
+from voxsoft.design.printer import Printer
 from voxsoft.fabrication.body import Body, Component, Filled
 from voxsoft.fabrication.clamped import clamped
 from voxsoft.fabrication.cutting import Cut, best_cut, least_caught
@@ -23,12 +25,8 @@ from voxsoft.fabrication.fields import (
     Turned,
 )
 from voxsoft.fabrication.inlets import Inlet, bored, inlets_of
-from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid, Sampled, extents
 
-#: Ways, the simplest first.
-Way = Literal["cast", "core", "halves", "lost-core", "printed"]
-WAYS: Final[tuple[Way, ...]] = get_args(Way)
 #: Mean upright step along the outline, in samples, up to which a parting plane follows it.
 _LEVEL: Final = 1.0
 #: Reasons why a component is printed, by the way that was wanted.

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from voxsoft.design.discretization.cut_cells import built_parts
+from voxsoft.design.printer import Printer
 from voxsoft.fabrication.body import Body, Filled
 from voxsoft.fabrication.clamped import clamped
 from voxsoft.fabrication.fields import (
@@ -22,7 +23,6 @@ from voxsoft.fabrication.fields import (
     Turned,
 )
 from voxsoft.fabrication.inlets import Inlet
-from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid, Surface, surface_of
 
 Face = tuple[int, int, float]

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
+from voxsoft.design.printer import Printer
 from voxsoft.fabrication.fields import Box, Common, Field, Floats
 from voxsoft.fabrication.inlets import bored
-from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid, Surface, surface_of
 
 Bools = NDArray[np.bool_]

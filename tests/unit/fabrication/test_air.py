@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
+from voxsoft.design.printer import Printer
 from voxsoft.fabrication.air import openings_of, trapped_air
-from voxsoft.fabrication.printer import Printer
 from voxsoft.fabrication.sampled import Grid
 
 

@@ -89,3 +89,28 @@ def test_a_bad_limit_and_an_unknown_way_are_named(design_file):
     unknown = CliRunner().invoke(app, ["make", str(design_file), "--way", "forged"])
     assert unknown.exit_code == 2
     assert "expected cast, core, halves" in unknown.output
+
+
+def test_options_stand_in_the_design_and_the_command_comes_before_them(design_file, tmp_path):
+    text = design_file.read_text()
+    design_file = tmp_path / "cup.toml"
+    asked = '[molds]\nway = "printed"\nprinter = { wall = "1 mm", tube = "4 mm" }\n'
+    design_file.write_text(f"{text}\n{asked}")
+    plain = vs.load(design_file)
+    made = make(plain)
+    assert made.way == "printed"
+    assert (made.printer.wall, made.printer.tube) == (1 * mm, 4 * mm)
+    assert make(plain, printer=Printer(), way="core").printer.tube == 3 * mm
+    # No answer depends on them.
+    design_file.write_text(text)
+    assert plain.hash == vs.load(design_file).hash
+    design_file.write_text(f"{text}\n{asked}")
+    out = tmp_path / "out"
+    options = ["--printer", "tube=2 mm", "--out", str(out), "--json"]
+    done = CliRunner().invoke(app, ["make", str(design_file), *options])
+    assert done.exit_code == 0, done.output
+    assert json.loads((out / "make.json").read_text())["way"] == "printed"
+    design_file.write_text(f'{text}\n[molds]\nshrinkage = "20 %"\n')
+    wrong = CliRunner().invoke(app, ["make", str(design_file)])
+    assert wrong.exit_code == 3
+    assert "molds.shrinkage" in wrong.output

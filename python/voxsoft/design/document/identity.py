@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 # Words about the design, ways to vary it, and goals of a study: the answer of a
 # simulation depends on none of them. Probes stay in, because results are recorded at them.
 NOT_PHYSICS: Final = frozenset(
-    {"schema", "name", "description", "parameters", "objectives", "constraints"}
+    {"schema", "name", "description", "parameters", "objectives", "constraints", "molds"}
 )
 
 # Remarks about the constants of a material, beside them.

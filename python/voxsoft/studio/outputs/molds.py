@@ -33,8 +33,8 @@ def make_molds(design: Design, asked: Mapping[str, Any], folder: Path) -> Molds:
     design
         The design.
     asked
-        ``way``, ``body`` and ``shrinkage`` as on the command line, empty for the usual ones, and
-        ``printer``: a table of limits, by name.
+        ``way``, ``body`` and ``shrinkage`` as on the command line, empty for those of the design,
+        and ``printer``: a table of limits, by name.
     folder
         Folder, which is made; the archive lies beside it.
 
@@ -46,10 +46,12 @@ def make_molds(design: Design, asked: Mapping[str, Any], folder: Path) -> Molds:
     if body := asked.get("body"):
         design = one_body(design, str(body))
     shrinkage = asked.get("shrinkage")
+    printer = Printer() if design.molds is None else design.molds.printer
+    limits = {key: value for key, value in (asked.get("printer") or {}).items() if value}
     made = make(
         design,
         way=next((way for way in WAYS if way == asked.get("way")), None),
-        printer=Printer(**(asked.get("printer") or {})),
+        printer=printer.replace(**limits),
         shrinkage=parse(str(shrinkage), "number") if shrinkage else None,
     )
     if made.problems:
@@ -59,7 +61,7 @@ def make_molds(design: Design, asked: Mapping[str, Any], folder: Path) -> Molds:
     return Molds(made, archive(folder, folder.with_suffix(".zip")), sheet)
 
 
-def told(molds: Molds, rev: int, url: str, name: str) -> events.Molds:
+def reported(molds: Molds, rev: int, url: str, name: str) -> events.Molds:
     """Return molds as the page shows them.
 
     Parameters

@@ -714,7 +714,7 @@ class Session:
         VoxSoftError
             The document is no design yet, a wrong limit, or a body that cannot be sampled.
         """
-        from voxsoft.studio.outputs.molds import make_molds, told
+        from voxsoft.studio.outputs.molds import make_molds, reported
 
         with self._lock:
             _, design = self._good(self.document)
@@ -722,9 +722,9 @@ class Session:
         folder = make_folder(self.own / "exports" / uuid.uuid4().hex[:12])
         made = make_molds(design, asked, folder / f"{name}-molds")
         if made.archive is None:
-            return told(made, rev, "", "")
+            return reported(made, rev, "", "")
         offered = self.offer(made.archive, "molds")
-        return told(made, rev, offered.url, offered.name)
+        return reported(made, rev, offered.url, offered.name)
 
     def _shown(self) -> Shown:
         """The state on the screen now."""

@@ -1,24 +1,49 @@
 // Molds for casting the robot: the way, the printer, and the numbers to pour by.
 import { Button, Empty, Section, Select } from "../../controls/Choice";
+import { formatKind } from "../../controls/kinds";
 import { Table } from "../../controls/Table";
 import { TextField } from "../../controls/TextField";
 import { formatNumber } from "../../controls/units";
 import type { MoldsEvent } from "../../protocol";
 import { useStudio } from "../../store/studio";
-import { makeMolds, type PrinterLimits, useMaking, wish } from "./made";
+import type { Schema } from "../design/fields/schema";
+import { choose, makeMolds, type PrinterLimits, useMaking } from "./made";
 import { WAYS } from "./ways";
 import "./make.css";
 
-const LIMITS: readonly { key: keyof PrinterLimits; label: string; title: string }[] = [
-  { key: "wall", label: "Thinnest wall", title: "Thinnest wall that the printer prints" },
-  { key: "volume", label: "Room", title: "Largest part along x, y, z; larger ones are divided" },
-  { key: "tube", label: "Air tube", title: "Outer diameter of the air tubes" },
-  { key: "draft", label: "Draft", title: "Angle by which upright walls lean; silicone needs none" },
+interface Limit {
+  readonly key: keyof PrinterLimits;
+  readonly label: string;
+  readonly title: string;
+  readonly kind: string;
+}
+
+const LIMITS: readonly Limit[] = [
+  {
+    key: "wall",
+    label: "Thinnest wall",
+    title: "Thinnest wall that the printer prints",
+    kind: "length",
+  },
+  {
+    key: "volume",
+    label: "Room",
+    title: "Largest part along x, y, z; larger ones are divided",
+    kind: "length",
+  },
+  { key: "tube", label: "Air tube", title: "Outer diameter of the air tubes", kind: "length" },
+  {
+    key: "draft",
+    label: "Draft",
+    title: "Angle by which upright walls lean; silicone needs none",
+    kind: "angle",
+  },
 ];
 
 export default function MakePane() {
   const document = useStudio((state) => state.document);
-  const { wishes, busy, made, of } = useMaking();
+  const usual = useUsual();
+  const { options, busy, made, of } = useMaking();
   if (!document) {
     return (
       <Empty title="No design open">
@@ -36,23 +61,23 @@ export default function MakePane() {
         {bodies.length > 0 && (
           <Select
             label="Body"
-            value={wishes.body}
+            value={options.body}
             options={[
               { value: "", label: "choose…", disabled: true },
               ...bodies.map((name) => ({ value: name, label: name })),
             ]}
-            onChange={(body) => wish({ body })}
+            onChange={(body) => choose({ body })}
           />
         )}
         <Select
           label="Way"
           title="How the robot is made"
-          value={wishes.way}
+          value={options.way}
           options={[
-            { value: "", label: "the first that the shape allows" },
+            { value: "", label: usual.way },
             ...Object.entries(WAYS).map(([value, label]) => ({ value, label })),
           ]}
-          onChange={(way) => wish({ way })}
+          onChange={(way) => choose({ way })}
         />
         {LIMITS.map(({ key: name, label, title }) => (
           <TextField
@@ -60,21 +85,22 @@ export default function MakePane() {
             label={label}
             title={title}
             right
-            value={wishes.printer[name]}
+            placeholder={usual.limits[name]}
+            value={options.printer[name]}
             onCommit={(text) => {
-              wish({ printer: { ...wishes.printer, [name]: text.trim() } });
+              choose({ printer: { ...options.printer, [name]: text.trim() } });
               return null;
             }}
           />
         ))}
         <TextField
           label="Shrinkage"
-          placeholder="of each silicone"
+          placeholder={usual.shrinkage}
           title="Shrinkage of all castings, such as 0.2 %; empty for that of each silicone"
           right
-          value={wishes.shrinkage}
+          value={options.shrinkage}
           onCommit={(text) => {
-            wish({ shrinkage: text.trim() });
+            choose({ shrinkage: text.trim() });
             return null;
           }}
         />
@@ -82,7 +108,7 @@ export default function MakePane() {
           <Button
             kind="primary"
             testId="make-molds"
-            disabled={busy || !document.valid || (bodies.length > 0 && wishes.body === "")}
+            disabled={busy || !document.valid || (bodies.length > 0 && options.body === "")}
             onClick={() => void makeMolds(key)}
           >
             {busy ? "Making…" : current ? "Make again" : "Make molds"}
@@ -95,6 +121,32 @@ export default function MakePane() {
       {current && <Made made={current} past={past} />}
     </div>
   );
+}
+
+/** Values where a field is empty, in words: those of the design, else those of the schema. */
+function useUsual() {
+  const hello = useStudio((state) => state.hello);
+  const molds = useStudio((state) => state.document?.design?.molds) as Asked | undefined;
+  const schema = hello?.design_schema as Schema | undefined;
+  const properties = schema?.$defs?.Printer?.properties ?? {};
+  const shown = ({ key, kind }: Limit): string => {
+    const value: unknown = molds?.printer?.[key] ?? properties[key]?.default;
+    const numbers = Array.isArray(value) ? value : [value];
+    return numbers.map((one) => formatKind(Number(one), kind)).join(", ");
+  };
+  const limits = Object.fromEntries(LIMITS.map((limit) => [limit.key, shown(limit)]));
+  return {
+    limits: limits as Readonly<Record<keyof PrinterLimits, string>>,
+    way: molds?.way ? (WAYS[molds.way] ?? molds.way) : "the first that the shape allows",
+    shrinkage: molds?.shrinkage == null ? "of each silicone" : `${molds.shrinkage * 100} %`,
+  };
+}
+
+/** Options of the design, resolved. */
+interface Asked {
+  readonly way?: string;
+  readonly shrinkage?: number;
+  readonly printer?: Readonly<Record<string, unknown>>;
 }
 
 function bodyNames(source: unknown): string[] {

@@ -1,4 +1,4 @@
-// Molds that were made last, and the wishes for the next ones. Kept while the page is there.
+// Molds that were made last, and the options for the next ones. Kept while the page is there.
 import { create } from "zustand";
 import type { ErrorEvent, MoldsEvent } from "../../protocol";
 import { showPane } from "../../shell/actions";
@@ -6,7 +6,7 @@ import { usePage } from "../../store/page";
 import { toast } from "../../store/studio";
 import { flushText } from "../../store/typing";
 
-/** Limits of the printer that the pane asks for, as text with units. */
+/** Limits of the printer that the pane asks for, as text with units; empty for those of the design. */
 export interface PrinterLimits {
   readonly wall: string;
   readonly tube: string;
@@ -14,7 +14,7 @@ export interface PrinterLimits {
   readonly volume: string;
 }
 
-export interface Wishes {
+export interface MoldOptions {
   /** Way to take; empty for the first that the shape allows. */
   readonly way: string;
   /** Body of a design with several. */
@@ -24,7 +24,7 @@ export interface Wishes {
 }
 
 interface Making {
-  wishes: Wishes;
+  options: MoldOptions;
   /** True while the server makes molds. */
   busy: boolean;
   made: MoldsEvent | null;
@@ -33,26 +33,26 @@ interface Making {
 }
 
 export const useMaking = create<Making>(() => ({
-  wishes: {
+  options: {
     way: "",
     body: "",
     shrinkage: "",
-    printer: { wall: "0.8 mm", tube: "3 mm", draft: "0 deg", volume: "220 mm, 220 mm, 220 mm" },
+    printer: { wall: "", tube: "", draft: "", volume: "" },
   },
   busy: false,
   made: null,
   of: "",
 }));
 
-export function wish(change: Partial<Wishes>): void {
-  useMaking.setState(({ wishes }) => ({ wishes: { ...wishes, ...change } }));
+export function choose(change: Partial<MoldOptions>): void {
+  useMaking.setState(({ options }) => ({ options: { ...options, ...change } }));
 }
 
 /** Request to the server. */
-export function request(wishes: Wishes): Record<string, unknown> {
-  const { volume, ...limits } = wishes.printer;
-  const sides = volume.split(",").map((side) => side.trim());
-  return { ...wishes, printer: { ...limits, volume: sides } };
+export function request(options: MoldOptions): Record<string, unknown> {
+  const { volume, ...limits } = options.printer;
+  const sides = volume === "" ? null : volume.split(",").map((side) => side.trim());
+  return { ...options, printer: { ...limits, volume: sides } };
 }
 
 /** Make molds of the document as it stands; a press while they are made does nothing. */
@@ -64,7 +64,7 @@ export async function makeMolds(of: string): Promise<void> {
     const reply = await fetch("/molds", {
       method: "POST",
       headers: { "Content-Type": "application/json" },
-      body: JSON.stringify(request(useMaking.getState().wishes)),
+      body: JSON.stringify(request(useMaking.getState().options)),
     });
     const said: unknown = await reply.json().catch(() => null);
     if (!reply.ok) {
