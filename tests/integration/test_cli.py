@@ -231,7 +231,7 @@ def test_calibration_by_gradients_finds_the_modulus_of_a_beam():
     assert load_card_file(Path("g", "made.toml")).material.young() == pytest.approx(30e3, rel=5e-3)
 
 
-@pytest.mark.parametrize("name", ["a.vtu", "a.msh", "a.inp", "a.stl", "a.obj", "a.npy", "a.toml"])
+@pytest.mark.parametrize("name", ["a.vtu", "a.msh", "a.stl", "a.obj", "a.npy", "a.toml"])
 def test_export_of_a_design(name):
     assert call("export", CYLINDER, name).exit_code == 0
     path = Path(name)
@@ -246,6 +246,21 @@ def test_export_of_a_design(name):
         # Surfaces have the volume of the voxels, 0.5 % more than that of the shapes.
         rel = 0.01 if path.suffix in (".stl", ".obj") else 1e-6
         assert np.ptp(points[:, 2]) == pytest.approx(height, rel=rel)
+
+
+def test_export_of_a_computation_tells_all_that_it_holds():
+    refused = call("export", CYLINDER, "a.inp")
+    assert refused.exit_code == 3
+    assert 'no "lattice" material' in refused.output
+    assert call("mesh", CYLINDER, "--out", "mesh.inp").exit_code == 0
+    assert np.ptp(meshio.read("mesh.inp").points[:, 2]) == pytest.approx(0.035)
+    asked = ["export", CYLINDER, "a.inp", "--unit", "mm", "--element", "C3D8I"]
+    found = call(*asked, "--set", "parts.0.material=ecoflex-00-30")
+    assert found.exit_code == 0, found.output
+    assert "wrote a.inp, in mm" in found.output
+    assert "holds: loads[0]: pressure in all cavities" in found.output
+    assert "lost: fill: is binary here" in found.output
+    assert "*ELEMENT, TYPE=C3D8I" in Path("a.inp").read_text(encoding="ascii")
 
 
 def test_export_of_a_run():

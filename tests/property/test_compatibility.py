@@ -265,7 +265,8 @@ def on_confirmation(feature, folder):
 
 def on_mesh_file(feature, folder):
     vs.save(design_with(feature), folder / "a.toml")
-    found = CliRunner().invoke(app, ["export", str(folder / "a.toml"), str(folder / "a.inp")])
+    asked = ["mesh", str(folder / "a.toml"), "--out", str(folder / "a.inp")]
+    found = CliRunner().invoke(app, asked)
     assert found.exit_code == 0, found.output
 
 

@@ -30,7 +30,7 @@ def mesh(
 
     with errors_in_words(json=json):
         if out is not None:
-            files.export(design, out, sets or [])
+            files.export(design, out, sets or [], mesh_alone=True)
         figures = _figures(mesh_of(files.load(design, assignments=sets or [])))
         if json:
             print_json(figures | {"file": None if out is None else str(out)})

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from voxsoft.design import History
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.setup.contact import Touching
 from voxsoft.simulation.setup.distance import Surface, overlap_of
@@ -41,6 +42,8 @@ class RigidTool:
         Displacement in m, (3,).
     friction
         Friction coefficient with the body.
+    full, history
+        Displacement in m without its history, (3,), and the factor on it over time.
     """
 
     name: str
@@ -48,6 +51,8 @@ class RigidTool:
     triangles: NDArray[np.uint32] = field(repr=False)
     way: Floats
     friction: float
+    full: Floats
+    history: History | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,13 +83,14 @@ def tools_of(touching: Touching) -> tuple[RigidTool, ...]:
     pairs = zip(touching.design.objects, touching.surfaces, strict=True)
     for index, (each, surface) in enumerate(pairs):
         friction = float(touching.friction[0, 1 + index])
-        way = np.zeros(3)
+        full, history = np.zeros(3), None
         if each.way is not None:
             history = each.way.history
-            factor = 1.0 if history is None else history.factors[-1]
-            way = factor * np.asarray(each.way.displacement)
+            full = np.asarray(each.way.displacement, dtype=np.float64)
+        way = full if history is None else history.factors[-1] * full
         if not np.isnan(friction):
-            found.append(RigidTool(each.name, surface.vertices, surface.triangles, way, friction))
+            shape = surface.vertices, surface.triangles
+            found.append(RigidTool(each.name, *shape, way, friction, full, history))
     return tuple(found)
 
 

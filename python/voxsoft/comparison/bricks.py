@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from voxsoft.cavity import MeshCavity
 from voxsoft.comparison.brick_contact import BrickContact, facing_walls, tools_of
+from voxsoft.comparison.brick_loads import BrickLoad, BrickMotion, FacePressure, prescribed
 from voxsoft.design import Clamp
 from voxsoft.errors import SimulationError
 from voxsoft.materials import Material
@@ -73,14 +74,6 @@ _HALVES: Final = np.concatenate(
 
 
 @dataclass(frozen=True, eq=False)
-class FacePressure:
-    """Pressure in Pa that follows some faces of bricks: rows (brick, face)."""
-
-    faces: Ints
-    value: float
-
-
-@dataclass(frozen=True, eq=False)
 class BrickModel:
     """Mechanical problem on bricks, as an outside code takes it.
 
@@ -110,6 +103,9 @@ class BrickModel:
         Bricks along each edge of a voxel.
     contact
         Surfaces in contact, if there are any.
+    loads, motions
+        Each load and clamp of the design with its history, of which `gravity`, `forces`,
+        `pressures`, `fixed` and `values` are the last state.
     """
 
     nodes: Floats = field(repr=False)
@@ -126,6 +122,8 @@ class BrickModel:
     edge: float
     split: int
     contact: BrickContact | None = field(default=None, repr=False)
+    loads: tuple[BrickLoad, ...] = field(default=(), repr=False)
+    motions: tuple[BrickMotion, ...] = field(default=(), repr=False)
 
     @classmethod
     def of(cls, setup: Setup, *, split: int = 1, nodes: NodeCount = 20) -> Self:
@@ -188,8 +186,8 @@ class BrickModel:
         return np.full(len(self.bricks), self.edge**3)
 
     @cached_property
-    def weights(self) -> Floats:
-        """Weight at each node in N, consistent with the shape functions, (n, 3)."""
+    def masses(self) -> Floats:
+        """Mass at each node in kg, consistent with the shape functions, (n,)."""
         shares = {
             8: np.full(8, 1 / 8),
             20: np.repeat([-1 / 8, 1 / 6], [8, 12]),
@@ -198,30 +196,55 @@ class BrickModel:
         density = np.array([material.density for material in self.materials])[self.parts]
         mass = np.zeros(len(self.nodes))
         np.add.at(mass, self.bricks, (density * self.volumes)[:, None] * shares)
-        return np.outer(mass, self.gravity)
+        return mass
+
+    @cached_property
+    def weights(self) -> Floats:
+        """Weight at each node in N, (n, 3)."""
+        return np.outer(self.masses, self.gravity)
 
     def _with_clamps(self, setup: Setup, spread: _Spread) -> Self:
         fixed, values = self.fixed.copy(), self.values.copy()
-        nodes: list[Ints] = []
+        motions: list[BrickMotion] = []
         for clamp, vertices in zip(setup.design.clamps, setup.clamped, strict=True):
-            moved = np.zeros_like(setup.mesh.vertices)
-            moved[vertices] = prescribed(clamp, setup.mesh.vertices[vertices])
             held = spread.where_all(vertices)
-            nodes.append(held)
-            for axis in clamp.axes:
-                column = "xyz".index(axis)
+            columns = tuple("xyz".index(axis) for axis in clamp.axes)
+
+            def spread_out(factor: float | None, clamp: Clamp = clamp, held: Ints = held) -> Floats:
+                moved = prescribed(clamp, setup.mesh.vertices, factor)
+                return np.column_stack([spread.interpolate(row, held) for row in moved.T])
+
+            last = spread_out(None)
+            for column in columns:
                 fixed[held, column] = True
-                values[held, column] = spread.interpolate(moved[:, column], held)
-        return replace(self, fixed=fixed, values=values, clamp_nodes=tuple(nodes))
+                values[held, column] = last[:, column]
+            motion = clamp.motion
+            history = None if motion is None else motion.history
+            turns = motion is not None and motion.rotation is not None
+            full = last if history is None else spread_out(1.0)
+            motions.append(BrickMotion(len(motions), held, columns, full, history, turns))
+        nodes = tuple(each.nodes for each in motions)
+        return replace(self, fixed=fixed, values=values, clamp_nodes=nodes, motions=tuple(motions))
 
     def _with_loads(self, setup: Setup, grid: _Lattice, spread: _Spread) -> Self:
-        taken = _BrickLoads(setup.mesh, self, grid, spread)
+        loads: list[BrickLoad] = []
+        forces, gravity = self.forces.copy(), self.gravity.copy()
+        pressures: list[FacePressure] = []
         for load in setup.loads:
-            taken.factor = load.reading.final_factor
+            taken = _BrickLoads(setup.mesh, self, grid, spread)
             for action in load.actions:
                 action.give_to(taken)
-        pressures = tuple(taken.pressures)
-        return replace(self, forces=taken.dead, gravity=taken.gravity, pressures=pressures)
+            factor = load.reading.final_factor
+            gravity += factor * taken.gravity
+            forces += factor * taken.dead
+            pressures += [replace(each, value=factor * each.value) for each in taken.pressures]
+            own = tuple(taken.pressures)
+            loads.append(
+                BrickLoad(len(loads), load.reading.history, taken.gravity, taken.dead, own)
+            )
+        return replace(
+            self, forces=forces, gravity=gravity, pressures=tuple(pressures), loads=tuple(loads)
+        )
 
     def _with_contact(self, setup: Setup, grid: _Lattice) -> Self:
         if setup.touching is None:
@@ -265,22 +288,6 @@ def _face_nodes() -> Ints:
 
 
 _FACE_NODES: Final = _face_nodes()
-
-
-def prescribed(clamp: Clamp, points: Floats) -> Floats:
-    """Displacement in m that a clamp gives to points in m at its end, (n, 3)."""
-    moved = np.zeros_like(points)
-    motion = clamp.motion
-    if motion is None:
-        return moved
-    factor = 1.0 if motion.history is None else motion.history.factors[-1]
-    if motion.rotation is not None:
-        axis = np.asarray(motion.rotation.axis) / np.linalg.norm(motion.rotation.axis)
-        arms = points - np.asarray(motion.rotation.center)
-        angle = factor * motion.rotation.angle
-        along = np.outer(arms @ axis, axis)
-        moved += (np.cos(angle) - 1) * (arms - along) + np.sin(angle) * np.cross(axis, arms)
-    return moved + factor * np.asarray(motion.displacement)
 
 
 @dataclass(frozen=True, eq=False)
@@ -369,32 +376,31 @@ class _BrickLoads(LoadReceiver):
     def __init__(self, mesh: Mesh, bricks: BrickModel, grid: _Lattice, spread: _Spread) -> None:
         super().__init__(mesh)
         self._bricks, self._grid, self._spread = bricks, grid, spread
-        self.factor = 1.0
-        self.gravity = bricks.gravity.copy()
-        self.dead = bricks.forces.copy()
+        self.gravity = np.zeros(3)
+        self.dead = np.zeros_like(bricks.nodes)
         self.pressures: list[FacePressure] = []
 
     def acceleration(self, acceleration: Floats) -> None:
-        self.gravity += self.factor * acceleration
+        self.gravity += acceleration
 
     def pressure(
         self, triangles: NDArray[np.int32], value: float, cavity: MeshCavity | None
     ) -> None:
         faces = self._grid.faces_under(triangles, self._bricks.split)
-        self.pressures.append(FacePressure(faces, self.factor * value))
+        self.pressures.append(FacePressure(faces, value))
 
     def forces(self, vertices: NDArray[np.uint32], forces: Floats) -> None:
-        np.add.at(self.dead, self._bricks.vertex_nodes[vertices], self.factor * forces)
+        np.add.at(self.dead, self._bricks.vertex_nodes[vertices], forces)
 
     def shared_force(self, vertices: NDArray[np.uint32], total: Floats) -> None:
-        self.dead += self.factor * self._spread.share(vertices, total)
+        self.dead += self._spread.share(vertices, total)
 
     def traction(self, triangles: NDArray[np.int32], stress: Floats) -> None:
         bricks = self._bricks
         nodes = bricks.face_nodes(self._grid.faces_under(triangles, bricks.split))
         area = np.zeros(len(bricks.nodes))
         np.add.at(area, nodes, np.tile(bricks.edge**2 * bricks.face_shares, (len(nodes), 1)))
-        self.dead += self.factor * np.outer(area, stress)
+        self.dead += np.outer(area, stress)
 
 
 def split_faces(faces: Ints, split: int) -> Ints:

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 
 from voxsoft.comparison.brick_contact import RigidTool
 from voxsoft.comparison.bricks import BrickModel
-from voxsoft.comparison.calculix_units import YOUNG, DeckUnits
+from voxsoft.comparison.calculix_names import DeckNames
+from voxsoft.comparison.calculix_units import DeckUnits, softest_young
 
-#: Penalty stiffness, where the edge of a brick is 1.
-_SLOPE: Final = 1000.0 * YOUNG
+#: Penalty stiffness, in Young's moduli of the softest part for each edge of a brick.
+_SLOPE: Final = 1000.0
 #: Depth of the shell of an object behind its surface, as a part of a triangle's size.
 _DEPTH: Final = 0.3
 
@@ -31,19 +32,14 @@ def wall_names(index: int) -> tuple[str, str]:
     return f"WALL{index}A", f"WALL{index}B"
 
 
-def tool_name(index: int) -> str:
-    """Name of an object: its nodes, elements and surface."""
-    return f"TOOL{index}"
-
-
-def tool_lines(model: BrickModel, units: DeckUnits) -> Iterator[str]:
+def tool_lines(model: BrickModel, units: DeckUnits, names: DeckNames) -> Iterator[str]:
     """Write nodes and elements of rigid objects: a tetrahedron behind each triangle.
 
     All nodes are prescribed, so that their stiffness does not count.
     """
     node, element = len(model.nodes), len(model.bricks)
-    for index, tool in enumerate(_tools(model)):
-        name = tool_name(index)
+    young = softest_young(model) / units.stress
+    for name, tool in zip(names.tools, _tools(model), strict=True):
         nodes, tets = shell_of(tool)
         yield f"*NODE, NSET={name}"
         for number, (x, y, z) in enumerate((nodes / units.length).tolist(), start=node + 1):
@@ -53,7 +49,7 @@ def tool_lines(model: BrickModel, units: DeckUnits) -> Iterator[str]:
             yield ",".join(map(str, [number, *tet]))
         yield f"*SURFACE, NAME={name}"
         yield from (f"{element + number + 1}, S1" for number in range(len(tets)))
-        yield f"*MATERIAL, NAME={name}\n*ELASTIC\n{YOUNG:.12g}, 0.3"
+        yield f"*MATERIAL, NAME={name}\n*ELASTIC\n{young:.12g}, 0.3"
         yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
         node, element = node + len(nodes), element + len(tets)
 
@@ -73,38 +69,38 @@ def shell_of(tool: RigidTool) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     return np.concatenate([tool.vertices, inner]), tets
 
 
-def contact_lines(model: BrickModel) -> Iterator[str]:
+def contact_lines(model: BrickModel, units: DeckUnits, names: DeckNames) -> Iterator[str]:
     """Write surfaces of the body and pairs; nothing where nothing touches."""
     contact = model.contact
     if contact is None:
         return
+    slope = _SLOPE * softest_young(model) / model.edge / units.slope
     yield from _surface(_BODY, contact.outer)
     for index, walls in enumerate(contact.walls):
         for name, faces in zip(wall_names(index), walls, strict=True):
             yield from _surface(name, faces)
     pairs = [(*wall_names(index), contact.friction) for index in range(len(contact.walls))]
-    pairs += [(_BODY, tool_name(i), tool.friction) for i, tool in enumerate(contact.tools)]
+    pairs += [
+        (_BODY, name, tool.friction) for name, tool in zip(names.tools, contact.tools, strict=True)
+    ]
     for number, friction in enumerate(sorted({each for _, _, each in pairs})):
         name = f"FRICTION{number}"
         yield f"*SURFACE INTERACTION, NAME={name}"
-        yield f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{_SLOPE:.12g}"
+        yield f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{slope:.12g}"
         if friction > 0.0:
-            yield f"*FRICTION\n{friction:.12g}, {_SLOPE / 25:.12g}"
+            yield f"*FRICTION\n{friction:.12g}, {slope / 25:.12g}"
         for slave, master, own in pairs:
             if own == friction:
                 yield f"*CONTACT PAIR, INTERACTION={name}, TYPE=SURFACE TO SURFACE"
                 yield f"{slave}, {master}"
 
 
-def printed_contact(model: BrickModel, units: DeckUnits) -> Iterator[str]:
-    """Write the motion of the objects, and the request for forces between all pairs."""
+def printed_contact(model: BrickModel, names: DeckNames) -> Iterator[str]:
+    """Write the request for the forces that hold the objects, and between all walls."""
     if model.contact is None:
         return
-    for index, tool in enumerate(model.contact.tools):
-        yield "*BOUNDARY"
-        for axis, way in enumerate(tool.way.tolist(), start=1):
-            yield f"{tool_name(index)}, {axis}, {axis}, {way / units.length:.12g}"
-        yield f"*NODE PRINT, NSET={tool_name(index)}, TOTALS=ONLY\nRF"
+    for name in names.tools:
+        yield f"*NODE PRINT, NSET={name}, TOTALS=ONLY\nRF"
     for index in range(len(model.contact.walls)):
         slave, master = wall_names(index)
         yield f"*CONTACT PRINT, SLAVE={slave}, MASTER={master}\nCF"

@@ -19,12 +19,12 @@ from voxsoft.comparison.defaults import (
     DEFAULT_TIME_LIMIT,
     Outside,
 )
+from voxsoft.comparison.full_voxels import with_full_voxels
 from voxsoft.comparison.other_voxels import on_voxels
 from voxsoft.comparison.outside import OutsideAnswer
 from voxsoft.comparison.quantities import of_answer, of_result
 from voxsoft.comparison.scikit_fem import run_scikit_fem, scikit_fem_version
 from voxsoft.design import Design, Solver, require_design
-from voxsoft.design.discretization.discretize import mesh_of
 from voxsoft.errors import MissingPackageError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Diagnostic, Result, Setup, simulate
@@ -115,7 +115,7 @@ def compare(
     if list(splits) != sorted(set(splits)) or not splits or splits[0] < 1:
         raise SimulationError("splits", "do not rise from 1", "write 1,2 or 1,2,3")
     code = _outside(outside)
-    design, unlike = _with_full_voxels(design) if code else (design, ())
+    design, unlike = with_full_voxels(design) if code else (design, ())
     plain = design.replace(solver=Solver())
     refine = design.solver.refine
     base = Setup.of(plain, allow_loose=False, refine=refine)
@@ -136,24 +136,6 @@ def compare(
     cautions = (*cautions_of(design, base.mesh), *cautions_of_contact(base))
     warnings = (*_unused(design), *unlike, *cautions)
     return Comparison(design, tuple(runs), tuple(solvers)[-1], code or "", judged, note, warnings)
-
-
-def _with_full_voxels(design: Design) -> tuple[Design, tuple[Diagnostic, ...]]:
-    """Return a design with the voxels that outside codes know, and a warning where it has others.
-
-    A `fill` that the design names stays.
-    """
-    whole = design.replace(
-        fill=design.fill or "binary",
-        bodies=[
-            body if body.design is not None else body.replace(fill=body.fill or "binary")
-            for body in design.bodies
-        ],
-    )
-    if mesh_of(design).fractions is None or mesh_of(whole).fractions is not None:
-        return design, ()
-    what = "is binary here, in all runs: outside codes are given full voxels, not cut ones"
-    return whole, (Diagnostic("warning", "fill", what, 'compare cut voxels with outside = "none"'),)
 
 
 def _unused(design: Design) -> Iterator[Diagnostic]:

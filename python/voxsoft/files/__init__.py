@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from voxsoft.files.calibrations import write_calibration
     from voxsoft.files.checks import check_design, check_mesh
     from voxsoft.files.comparison_report import write_comparison
+    from voxsoft.files.computations import write_computation
     from voxsoft.files.designs import load, save
     from voxsoft.files.exports import export, unit_of, write_scene, write_series
     from voxsoft.files.family_file import write_family
@@ -31,6 +32,7 @@ __all__ = [
     "unit_of",
     "write_calibration",
     "write_comparison",
+    "write_computation",
     "write_confirmation",
     "write_family",
     "write_mesh",
@@ -56,6 +58,7 @@ _HOMES = {
     "write_calibration": "voxsoft.files.calibrations",
     "write_confirmation": "voxsoft.files.study_folder",
     "write_comparison": "voxsoft.files.comparison_report",
+    "write_computation": "voxsoft.files.computations",
     "write_family": "voxsoft.files.family_file",
     "write_mesh": "voxsoft.files.meshes",
     "write_path": "voxsoft.files.path_table",

@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.comparison.bricks import BrickModel
-from voxsoft.comparison.calculix_contact import tool_name, wall_names
-from voxsoft.comparison.calculix_deck import HELD, VERTICES, Element, calculix_deck
+from voxsoft.comparison.calculix_contact import wall_names
+from voxsoft.comparison.calculix_deck import Element, calculix_deck
+from voxsoft.comparison.calculix_names import HELD, VERTICES, DeckNames
 from voxsoft.comparison.calculix_output import Printed, read_printed, read_totals
 from voxsoft.comparison.calculix_units import DeckUnits
 from voxsoft.comparison.outside import OutsideAnswer, support_forces
@@ -158,8 +159,9 @@ def _answer(
 def _contacts(model: BrickModel, totals: Totals, at: float, units: DeckUnits) -> dict[str, Floats]:
     """Return the force of each object on the body in N: the force that holds the object."""
     tools = model.contact.tools if model.contact is not None else ()
+    names = DeckNames.numbered(model).tools
     return {
-        tool.name: totals[tool_name(index), at] * units.force for index, tool in enumerate(tools)
+        tool.name: totals[name, at] * units.force for tool, name in zip(tools, names, strict=True)
     }
 
 

@@ -84,6 +84,9 @@ def export(
     deformed: bool = False,
     unit: str | None = None,
     voxels: bool = False,
+    mesh_alone: bool = False,
+    element: str | None = None,
+    split: int = 1,
 ) -> tuple[ErrorDetail, ...]:
     """Write a design or a result in the format that the target's suffix names.
 
@@ -93,7 +96,8 @@ def export(
         A design file, or a run folder.
     target
         Path of the file, whose suffix chooses among :data:`voxsoft.formats.registry.WRITTEN`: a
-        mesh ``.vtu`` ``.msh`` ``.inp``, the smooth surfaces of its parts ``.stl`` ``.obj``
+        mesh ``.vtu`` ``.msh``, the whole computation for CalculiX and Abaqus ``.inp``
+        (:func:`voxsoft.files.write_computation`), smooth surfaces of its parts ``.stl`` ``.obj``
         ``.3mf`` ``.glb`` (:func:`voxsoft.files.shapes.shape_of`), the voxels as a NumPy array
         of part numbers ``.npy``, the robot for MuJoCo ``.xml`` or as USD ``.usda`` ``.usdc``
         ``.usdz``, the resolved design ``.toml``, and of a run folder the displacements of the
@@ -101,18 +105,25 @@ def export(
     assignments
         Changes ``key=value`` of a design file.
     deformed
-        True to write the shape under load; needs a run folder and a mesh or surface format.
+        True to write the shape under load; needs a run folder and a mesh or surface format. A
+        ``.inp`` is then the mesh alone.
     unit
-        Unit of the numbers in ``.stl`` and ``.obj``; default: mm, as most programs read them.
-        ``.3mf`` is in mm; every other mesh is in m.
+        Unit of the numbers in ``.stl`` and ``.obj``; default: mm, as most programs read them. Of a
+        computation in ``.inp`` ``"m"`` (default), ``"mm"`` or ``"um"``. ``.3mf`` is in mm; every
+        other mesh is in m.
     voxels
         True for surfaces of the faces of voxels.
+    mesh_alone
+        True for the tetrahedra alone in ``.inp``, which then takes every design.
+    element, split
+        Element and bricks along a voxel of a computation, as of
+        :func:`voxsoft.files.write_computation`.
 
     Returns
     -------
     tuple of ErrorDetail
-        Entries of the design that a file for another simulator does not hold, or holds in another
-        form; empty for other formats, which hold the same of each design.
+        Entries of the design that a computation or a file for another simulator does not hold, or
+        holds in another form; empty for other formats, which hold the same of each design.
 
     Raises
     ------
@@ -134,7 +145,13 @@ def export(
     """
     origin, goal = Path(source), Path(target)
     suffix = goal.suffix.lower()
-    _check(origin, goal, list(assignments), deformed, unit)
+    form = WRITTEN.get(suffix)
+    computes = form is not None and form.computation is not None and not (deformed or mesh_alone)
+    _check(origin, goal, list(assignments), deformed, unit, computes)
+    if (element is not None or split != 1) and not computes:
+        known = ", ".join(s for s, form in WRITTEN.items() if form.computation is not None)
+        hint = f"leave --element and --split out; they are for {known} of a design"
+        raise FileError(str(goal), "holds no computation", hint)
     if voxels and WRITTEN[suffix].kind != "surface":
         known = ", ".join(s for s, form in WRITTEN.items() if form.kind == "surface")
         raise FileError(
@@ -144,6 +161,8 @@ def export(
     if WRITTEN[suffix].kind == "surface":
         write_surfaces(goal, _surfaces(origin, design, deformed, voxels), unit)
         return ()
+    if computes:
+        return write_computed(goal, design, unit=unit, element=element, split=split)
     if WRITTEN[suffix].has_shape:
         _write_body(goal, _body(origin, design), deformed)
         return ()
@@ -155,6 +174,24 @@ def write_source(target: Path, source: Source) -> tuple[ErrorDetail, ...]:
     form = WRITTEN[target.suffix.lower()]
     assert form.writer is not None
     return tuple(function(form.writer)(target, source) or ())
+
+
+def write_computed(
+    target: Path,
+    design: Design,
+    *,
+    unit: str | None = None,
+    element: str | None = None,
+    split: int = 1,
+) -> tuple[ErrorDetail, ...]:
+    """Write the computation of a design by the writer for its suffix; see :func:`export`."""
+    form = WRITTEN[target.suffix.lower()]
+    assert form.computation is not None
+    write = function(form.computation)
+    lost: tuple[ErrorDetail, ...] = write(
+        target, design, unit=unit or form.length, element=element, split=split
+    ).lost
+    return lost
 
 
 @dataclass(frozen=True)
@@ -300,7 +337,12 @@ def unit_of(target: FilePath, unit: str | None = None) -> str:
 
 
 def _check(
-    origin: Path, goal: Path, assignments: list[str], deformed: bool, unit: str | None
+    origin: Path,
+    goal: Path,
+    assignments: list[str],
+    deformed: bool,
+    unit: str | None,
+    computes: bool,
 ) -> None:
     """Refuse invalid combinations before anything is computed."""
     suffix, is_run = goal.suffix.lower(), origin.is_dir()
@@ -324,7 +366,11 @@ def _check(
         raise FileError(str(goal), f"{suffix} cannot hold a deformed shape in place", hint)
     if unit is not None:
         parse(f"1 {unit}", "length", where="unit")
-        if form.unit is not None and (not form.has_shape or unit != form.length):
+        if computes:
+            if unit not in form.units:
+                what = f"is written in {', '.join(form.units)}, not in {unit}"
+                raise FileError(str(goal), what, "write one of them, --unit mm")
+        elif form.unit is not None and (not form.has_shape or unit != form.length):
             free = [s for s, other in WRITTEN.items() if other.unit is None]
             hint = f"leave --unit out; it is for {' and '.join(free)}"
             raise FileError(str(goal), f"{suffix} {form.unit}", hint)

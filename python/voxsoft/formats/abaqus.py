@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 from itertools import chain, takewhile
 from pathlib import Path
@@ -24,11 +24,17 @@ from voxsoft.formats.abaqus_elements import kind_of
 from voxsoft.formats.abaqus_scope import Scope
 from voxsoft.formats.contents import CellBlock, Contents
 from voxsoft.formats.placing import Placing, local_system
-from voxsoft.formats.region_names import names_in, unit_in
+from voxsoft.formats.region_names import names_in, objects_in, unit_in
 
 #: First and last line of our own files, by which a file cut between two lines is recognized.
 BEGIN: Final = "** VoxSoft mesh"
 END: Final = "** end of VoxSoft mesh"
+#: First and last line of our own files of whole computations.
+BEGIN_COMPUTATION: Final = "** VoxSoft computation"
+END_COMPUTATION: Final = "** end of VoxSoft computation"
+_ENDS: Final = {BEGIN: END, BEGIN_COMPUTATION: END_COMPUTATION}
+#: Sets of our own files that are no regions and no parts.
+_OWN: Final = frozenset({"ALL-NODES", "ALL-ELEMENTS"})
 
 #: Cards that make nodes, elements or positions by rules that are not read here.
 _MAKERS: Final = {
@@ -50,14 +56,17 @@ def read(path: Path) -> Contents:
         For cards that cannot be followed, and missing labels, with file and line.
     """
     head = list(_head(path))
-    is_ours = head[:1] == [BEGIN]
-    if is_ours and not path.read_bytes().rstrip().endswith(END.encode()):
+    end = _ENDS.get(head[0]) if head else None
+    is_ours = end is not None
+    if end is not None and not path.read_bytes().rstrip().endswith(end.encode()):
         raise FileError(str(path), "is cut short: its last line is missing", "write it again")
     model = _Model(path)
+    if end == END_COMPUTATION:
+        model.is_computation, model.objects = True, {name.upper() for name in objects_in(head)}
     for card in cards_of(path):
         model.take(card)
     names = names_in(head)
-    contents = model.contents(names, {"ALL-NODES", "ALL-ELEMENTS"} if is_ours else set())
+    contents = model.contents(names, _OWN if is_ours else frozenset())
     # Older files of ours do not name their unit, which is m.
     return replace(contents, unit=unit_in(head) or (1.0 if is_ours else None))
 
@@ -73,6 +82,8 @@ class _Model:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self.is_computation = False
+        self.objects: set[str] = set()
         self.root = Scope("")
         self.scope = self.root
         self.parts: dict[str, Scope] = {}
@@ -84,6 +95,8 @@ class _Model:
 
     def take(self, card: Card) -> None:
         """Add a card to the model."""
+        if self.objects & {card.get(kind).upper() for kind in ("NSET", "ELSET")}:
+            return  # a rigid object beside the body of one of our own files
         match card.name:
             case "PART":
                 self.scope = self._new(self.parts, card)
@@ -105,7 +118,7 @@ class _Model:
                 what = f"*{name} makes or moves nodes or elements by a rule that is not read"
                 hint = "write the deck with all nodes and elements listed"
                 raise FileError(card.where, what, hint)
-            case "SURFACE":
+            case "SURFACE" if not self.is_computation:
                 self.surfaces.append(card.get("NAME"))
             case name if name not in _FRAMES:
                 self.passed[name] += 1
@@ -190,7 +203,7 @@ class _Model:
                 members += [int(each) if each.isdigit() else each for each in row if each]
         self.scope.extend(kind, name, [f"{owner}{each}" for each in members] if owner else members)
 
-    def contents(self, names: dict[str, str], own: set[str]) -> Contents:
+    def contents(self, names: dict[str, str], own: Collection[str]) -> Contents:
         """Return the whole model, with each instance at its position."""
         placed = list(self.instances.values())
         if placed:
@@ -213,6 +226,8 @@ class _Model:
             first_cell += len(scope.cell_of)
         sets = {kind: self._sets(kind, scopes) for kind in ("node", "element")}
         sections = tuple(self._section_names(scopes, sets["element"]))
+        if self.is_computation:  # its other sets are faces under pressure
+            sets["element"] = {name: sets["element"][name] for name in sections}
         if self.passed:
             listed = ", ".join(f"*{name}" for name in self.passed)
             self.notes.append(f"Cards that are no geometry are passed over: {listed}")

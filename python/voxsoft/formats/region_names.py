@@ -18,6 +18,7 @@ _LONGEST: Final = 60  # Abaqus takes 80
 #: Labels of the sets that the writers make themselves, in any case.
 _RESERVED: Final = re.compile(r"(?:part|cavity)-\d+(?:-s\d)?|all-(?:nodes|elements)", re.IGNORECASE)
 _COMMENT: Final = re.compile(r'REGION ([A-Za-z][\w-]*) = (".*")', re.ASCII)
+_OBJECT: Final = re.compile(r"OBJECT ([A-Za-z][\w-]*)$", re.ASCII)
 _UNIT: Final = re.compile(r"UNIT = ([A-Za-z]+)", re.ASCII)
 #: Comment with the unit of our own files.
 UNIT_COMMENT: Final = "UNIT = m"
@@ -86,6 +87,17 @@ def names_in(lines: Iterable[str]) -> dict[str, str]:
     """
     found = (_COMMENT.search(line) for line in lines)
     return {match[1]: str(json.loads(match[2])) for match in found if match}
+
+
+def objects_in(lines: Iterable[str]) -> list[str]:
+    """Read the sets of rigid objects from comments of our own computations.
+
+    Examples
+    --------
+    >>> objects_in(["** OBJECT object_plate"])
+    ['object_plate']
+    """
+    return [match[1] for match in filter(None, map(_OBJECT.search, lines))]
 
 
 def unit_in(lines: Iterable[str]) -> float | None:

@@ -58,6 +58,11 @@ class Format:
         Contents beside the geometry that a written file keeps.
     purpose
         Use of a written file, as a sentence.
+    computation
+        Function that writes the whole computation of a design, as ``"module:function"``; None where
+        a file holds a shape alone.
+    units
+        Units of length of such a file.
     unit
         Reason why an export takes no unit, after the suffix; None where it takes one.
     length
@@ -72,6 +77,8 @@ class Format:
     writer: str | None = None
     holds: frozenset[Holding] = frozenset()
     purpose: str = ""
+    computation: str | None = None
+    units: tuple[str, ...] = ()
     unit: str | None = "is always in m"
     length: str = "m"
 
@@ -163,6 +170,9 @@ FORMATS: Final = (
         writer="voxsoft.files.abaqus:write",
         holds=frozenset({"parts", "regions", "cavities"}),
         purpose="To solve the same body in Abaqus or CalculiX and check this result.",
+        computation="voxsoft.files.computations:write",
+        units=("m", "mm", "um"),
+        unit="is in m; of the computation of a design `--unit` may be m, mm or um",
     ),
     Format(
         (".mesh",),

@@ -16,7 +16,7 @@ from voxsoft import files
 from voxsoft.design import Design
 from voxsoft.errors import ErrorDetail, FileError
 from voxsoft.files.atomic import write_atomically
-from voxsoft.files.exports import write_source
+from voxsoft.files.exports import write_computed, write_source
 from voxsoft.files.run_folder import make_folder
 from voxsoft.files.scenes.scene import Scene, SceneState
 from voxsoft.files.series import Series
@@ -139,7 +139,8 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         ``deformed``: whether a mesh or surface has the shape under load; ``unit`` of the numbers
         in STL and OBJ files, ``"mm"`` by default; ``voxels``: whether a surface is that of the
         voxels; ``resolved``: whether a design file holds
-        values in place of formulas; ``scale`` of a picture.
+        values in place of formulas; ``scale`` of a picture; of a computation ``mesh_alone``, and
+        its ``unit``, ``element`` and ``split``.
     folder
         Folder of the files.
 
@@ -160,6 +161,9 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
     form = WRITTEN.get(f".{format}")
     if form is not None and form.kind == "design" and not options.get("resolved", False):
         write_atomically(target, shown.text)
+    elif form is not None and form.computation is not None and not _is_mesh_alone(options):
+        whole = shown.body.under(shown.factors).design
+        lost = write_computed(target, whole, **_of_computation(options))
     elif form is not None and form.has_shape:
         _write_mesh(shown, target, form, options)
     elif form is not None and form.kind == "series":
@@ -207,15 +211,39 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
         export_page(source, target)
         return Written(target)
     form = WRITTEN.get(f".{format}")
-    unit = str(options.get("unit", "mm")) if form is not None and form.unit is None else None
-    deformed = bool(options.get("deformed", False))
-    voxels = bool(options.get("voxels", False))
+    given: dict[str, Any] = {}
+    if form is not None and form.unit is None:
+        given["unit"] = str(options.get("unit", "mm"))
+    if form is not None and form.computation is not None and not _is_mesh_alone(options):
+        given = _of_computation(options)
+    given |= {key: bool(options.get(key, False)) for key in ("deformed", "voxels", "mesh_alone")}
     several = form is not None and form.kind == "series"
     written = _within(target) if several else target
-    lost = files.export(source, written, deformed=deformed, unit=unit, voxels=voxels)
+    lost = files.export(source, written, **given)
     if several:
         target = archive(written.parent, target.with_suffix(".zip"))
     return Written(target, lost)
+
+
+def _is_mesh_alone(options: dict[str, Any]) -> bool:
+    """Return True where a file is asked for that holds the shape and no computation."""
+    return bool(options.get("mesh_alone", False) or options.get("deformed", False))
+
+
+def _of_computation(options: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of a computation, of the types that it takes.
+
+    Raises
+    ------
+    FileError
+        One of another type.
+    """
+    kinds = {"unit": str, "element": str, "split": int}
+    found = {key: options[key] for key in kinds if options.get(key) is not None}
+    for key, value in found.items():
+        if type(value) is not kinds[key]:
+            raise FileError(key, f"{value!r} is no {kinds[key].__name__}")
+    return found
 
 
 def _write_mesh(shown: Shown, target: Path, form: Format, options: dict[str, Any]) -> None:
