@@ -112,6 +112,24 @@ def test_objects_touch_in_a_file_as_in_a_comparison(tmp_path):
 
 
 @pytest.mark.long
+def test_a_layer_bends_a_bar_in_a_file_as_in_ours(tmp_path):
+    """A film of 40 times the stiffness of the bar below it, on a bar that is drawn."""
+    film = vs.Layer(region=vs.Region(z=(0, 0)), young=20e6, thickness=0.2 * mm, name="film")
+    pull = vs.Traction(region=END, value=(5 * kPa, 0, 0))
+    parts = [vs.Part(shape=vs.Box(size=(40 * mm, 10 * mm, 10 * mm)), material=SOFT)]
+    design = bar(parts=parts, layers=[film], loads=[pull], voxel_size=2.5 * mm)
+    deck = Deck.of(design, unit="um")
+    assert [each.where for each in deck.lost] == ["layers[0]"]
+    found, expected = deck.displacements(run(deck, tmp_path)), compared(deck)
+    size = np.linalg.norm(expected["tip"])
+    np.testing.assert_allclose(found["tip"], expected["tip"], atol=1e-6 * size)
+    bar_of = vs.error_bars(vs.simulate(design, error="off")).probes["tip"][2]
+    free = vs.simulate(design.replace(layers=[]), error="off").probes["tip"]
+    assert found["tip"][2] < -1 * mm < -100 * abs(free[2])  # the film alone bends it
+    assert abs(found["tip"][2] - bar_of.estimate) <= bar_of.error
+
+
+@pytest.mark.long
 def test_a_motion_over_time_is_that_of_our_steps(tmp_path):
     """Two accelerations and a force, each with a history of its own."""
     rise = History(time=(0, 0.05, 0.1), factor=(0, 1, 0.3))

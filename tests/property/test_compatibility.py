@@ -155,6 +155,9 @@ SAMPLES = {
     "tendons": {"tendons": [TENDON], "loads": []},
     "springs and the like": {"springs": [SPRING]},
     "supplies": CHAMBER,
+    "layers that seal": {
+        "layers": [{"region": {"z": [0, 0]}, "young": "5 MPa", "thickness": "0.1 mm", "seal": True}]
+    },
     "layers": {"layers": [{"region": {"z": [0, 0]}, "young": "5 MPa", "thickness": "0.1 mm"}]},
     "fibers": {"parts": [soft(fibers=[FIBER])]},
     "wound fibers": {

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from voxsoft.cavity import MeshCavity
 from voxsoft.comparison.brick_contact import BrickContact, facing_walls, tools_of
+from voxsoft.comparison.brick_layers import BrickLayer
 from voxsoft.comparison.brick_loads import BrickLoad, BrickMotion, FacePressure, prescribed
 from voxsoft.design import Clamp
 from voxsoft.errors import SimulationError
@@ -103,6 +104,8 @@ class BrickModel:
         Bricks along each edge of a voxel.
     contact
         Surfaces in contact, if there are any.
+    layers
+        Membranes on faces.
     loads, motions
         Each load and clamp of the design with its history, of which `gravity`, `forces`,
         `pressures`, `fixed` and `values` are the last state.
@@ -122,6 +125,7 @@ class BrickModel:
     edge: float
     split: int
     contact: BrickContact | None = field(default=None, repr=False)
+    layers: tuple[BrickLayer, ...] = field(default=(), repr=False)
     loads: tuple[BrickLoad, ...] = field(default=(), repr=False)
     motions: tuple[BrickMotion, ...] = field(default=(), repr=False)
 
@@ -142,7 +146,7 @@ class BrickModel:
         ------
         SimulationError
             A mesh that is not made of full voxels, or a feature unknown to outside codes: a floor,
-            layers, springs, fibers, activations, objects that are free or turn, bonds.
+            layers that seal, springs, fibers, activations, objects that are free or turn, bonds.
 
         Examples
         --------
@@ -178,7 +182,7 @@ class BrickModel:
         )
         spread = _Spread(grid, places, split)
         loaded = model._with_clamps(setup, spread)._with_loads(setup, grid, spread)
-        return loaded._with_contact(setup, grid)
+        return loaded._with_layers(setup, grid)._with_contact(setup, grid)
 
     @cached_property
     def volumes(self) -> Floats:
@@ -196,6 +200,10 @@ class BrickModel:
         density = np.array([material.density for material in self.materials])[self.parts]
         mass = np.zeros(len(self.nodes))
         np.add.at(mass, self.bricks, (density * self.volumes)[:, None] * shares)
+        for layer in self.layers:
+            nodes = self.face_nodes(layer.faces)
+            one = layer.density * layer.thickness * self.edge**2
+            np.add.at(mass, nodes, np.tile(one * self.face_shares, (len(nodes), 1)))
         return mass
 
     @cached_property
@@ -245,6 +253,14 @@ class BrickModel:
         return replace(
             self, forces=forces, gravity=gravity, pressures=tuple(pressures), loads=tuple(loads)
         )
+
+    def _with_layers(self, setup: Setup, grid: _Lattice) -> Self:
+        found = zip(setup.design.layers, setup.layers, strict=True)
+        layers = [
+            BrickLayer.of(number, layer, grid.faces_under(triangles.bonded, self.split))
+            for number, (layer, triangles) in enumerate(found)
+        ]
+        return replace(self, layers=tuple(layers))
 
     def _with_contact(self, setup: Setup, grid: _Lattice) -> Self:
         if setup.touching is None:

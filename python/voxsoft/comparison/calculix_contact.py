@@ -37,7 +37,8 @@ def tool_lines(model: BrickModel, units: DeckUnits, names: DeckNames) -> Iterato
 
     All nodes are prescribed, so that their stiffness does not count.
     """
-    node, element = len(model.nodes), len(model.bricks)
+    node = len(model.nodes)
+    element = len(model.bricks) + sum(len(layer.faces) for layer in model.layers)
     young = softest_young(model) / units.stress
     for name, tool in zip(names.tools, _tools(model), strict=True):
         nodes, tets = shell_of(tool)

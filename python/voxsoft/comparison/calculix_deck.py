@@ -157,6 +157,7 @@ class _Lines:
             yield from member_lines("NSET", VERTICES, model.vertex_nodes)
             held = np.flatnonzero(model.fixed.any(axis=1))
             yield from member_lines("NSET", HELD, held)
+        yield from self._layers()
         yield from pressure_sets(self.groups)
         yield from tool_lines(model, units, names)
         yield from contact_lines(model, units, names)
@@ -178,6 +179,24 @@ class _Lines:
                     yield f"*DAMPING, ALPHA={self.motion.damping:.12g}"
                 written.add(name)
             yield f"*SOLID SECTION, ELSET={part}, MATERIAL={name}"
+
+    def _layers(self) -> Iterator[str]:
+        """Write layers as membranes; their elements follow the bricks."""
+        model, units = self.model, self.units
+        first = len(model.bricks) + 1
+        kind = "M3D4" if model.bricks.shape[1] == 8 else "M3D8"
+        for name, layer in zip(self.names.layers, model.layers, strict=True):
+            yield f"*ELEMENT, TYPE={kind}, ELSET={name}"
+            nodes = (model.face_nodes(layer.faces) + 1).tolist()
+            yield from (
+                ",".join(map(str, [number, *row])) for number, row in enumerate(nodes, start=first)
+            )
+            first += len(nodes)
+            yield f"*MATERIAL, NAME={name}"
+            yield f"*ELASTIC\n{layer.young / units.stress:.12g}, {layer.poisson:.12g}"
+            yield f"*DENSITY\n{layer.density / units.density:.12g}"
+            yield f"*MEMBRANE SECTION, ELSET={name}, MATERIAL={name}"
+            yield f"{layer.thickness / units.length:.12g}"
 
     def step(self) -> Iterator[str]:
         """Write the step: its increments, motions, loads and printed numbers."""

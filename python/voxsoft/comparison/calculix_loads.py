@@ -161,7 +161,7 @@ def final_lines(
         yield "*BOUNDARY"
         for axis, way in enumerate(tool.way.tolist(), start=1):
             yield f"{name}, {axis}, {axis}, {way / units.length:.12g}"
-    yield from _gravity(model.gravity, units)
+    yield from _gravity(model.gravity, units, names)
     for group in groups:
         value = sum(model.pressures[member].value for member in group.members)
         yield from _pressure(group, value, units)
@@ -188,7 +188,7 @@ def timed_lines(
             pulls[course] = pulls.get(course, np.zeros(3)) + load.gravity
     # One acceleration is known to a body; those with other courses are forces on its nodes.
     (first, pull), *others = pulls.items() or [(_ALWAYS, np.zeros(3))]
-    yield from _gravity(pull, units, f", AMPLITUDE={amplitudes.name_of(first)}")
+    yield from _gravity(pull, units, names, f", AMPLITUDE={amplitudes.name_of(first)}")
     pressures = [
         Acting(pressure.value, course)
         for load, course in zip(model.loads, courses, strict=True)
@@ -238,13 +238,14 @@ def _timed_motions(
 
 
 def _gravity(
-    acceleration: NDArray[np.float64], units: DeckUnits, amplitude: str = ""
+    acceleration: NDArray[np.float64], units: DeckUnits, names: DeckNames, amplitude: str = ""
 ) -> Iterator[str]:
     pull = float(np.linalg.norm(acceleration))
     if pull:
         x, y, z = acceleration / pull
         yield f"*DLOAD{amplitude}"
-        yield f"{ALL_ELEMENTS}, GRAV, {pull / units.length:.12g}, {x:.12g}, {y:.12g}, {z:.12g}"
+        for name in (ALL_ELEMENTS, *names.layers):
+            yield f"{name}, GRAV, {pull / units.length:.12g}, {x:.12g}, {y:.12g}, {z:.12g}"
 
 
 def _pressure(

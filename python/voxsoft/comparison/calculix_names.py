@@ -39,6 +39,8 @@ class DeckNames:
         Material of each part; parts of one material share its name.
     tools
         Nodes, elements and surface of each object.
+    layers
+        Elements and material of each layer.
     places
         Nodes of each clamp and probe, and of the regions of a file, by the name of their set.
     clamps
@@ -54,6 +56,7 @@ class DeckNames:
     parts: tuple[str, ...]
     materials: tuple[str, ...]
     tools: tuple[str, ...] = ()
+    layers: tuple[str, ...] = ()
     places: Mapping[str, Ints] = field(default_factory=lambda: MappingProxyType({}), repr=False)
     clamps: tuple[str, ...] = ()
     probes: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}), repr=False)
@@ -68,6 +71,7 @@ class DeckNames:
             tuple(f"PART{number}" for number in range(len(model.materials))),
             tuple(f"MATERIAL{number}" for number in range(len(model.materials))),
             tuple(f"TOOL{number}" for number in range(len(tools))),
+            tuple(f"LAYER{layer.number}" for layer in model.layers),
         )
 
     @classmethod
@@ -90,12 +94,13 @@ class DeckNames:
             f"{title} {titles[:place].count(title) + 1}" if title in titles[:place] else title
             for place, title in enumerate(titles)
         ]
-        sets = labels_of([*own, *(f"object_{tool}" for tool in tools)])
+        layers = [f"layer_{layer.name or number}" for number, layer in enumerate(design.layers)]
+        sets = labels_of([*own, *(f"object_{tool}" for tool in tools), *layers])
         rubber = [
             part.material if isinstance(part.material, str) else f"material of {title}"
             for part, title in zip(design.parts, own, strict=True)
         ]
-        materials = labels_of(dict.fromkeys(rubber))
+        materials = labels_of(dict.fromkeys([*layers, *rubber]))
         regions = named_regions(design, setup.mesh)
         places = labels_of(regions)
         clamps = clamp_regions(setup, model)
@@ -109,6 +114,7 @@ class DeckNames:
             tuple(sets[title] for title in own),
             tuple(materials[name] for name in rubber),
             tuple(sets[f"object_{tool}"] for tool in tools),
+            tuple(sets[layer] for layer in layers),
             nodes,
             tuple(places[name] for name in clamps if name in places),
             probes,

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.cavity import MeshCavity
+from voxsoft.comparison.deck_design import BEARS_COMPRESSION
 from voxsoft.design import Design
 from voxsoft.design.chamber import chosen_cavities, name_of_cavity
 from voxsoft.design.discretization.cut_cells import built_parts
@@ -86,6 +87,19 @@ def cautions_of_contact(setup: Setup) -> Iterator[Diagnostic]:
                 "voxels, with which it touches in outside codes and split voxels",
                 'compare with surface = "voxels", or several voxel sizes',
             )
+
+
+def cautions_of_layers(design: Design) -> Iterator[Diagnostic]:
+    """Warn of layers, which are membranes in outside codes and do not wrinkle.
+
+    Parameters
+    ----------
+    design
+        The compared design.
+    """
+    for index in range(len(design.layers)):
+        hint = "expect a difference where the layer is compressed"
+        yield Diagnostic("warning", f"layers[{index}]", BEARS_COMPRESSION, hint)
 
 
 def steps_of_wall(

@@ -128,7 +128,7 @@ class Deck:
         except SimulationError as error:
             raise _with_mesh_alone(error) from None
         lost = (*fitted.lost, *_blunt(model, unit))
-        held = tuple(_held(setup, model, kind, motion))
+        held = tuple(_held(setup, model, names, kind, motion))
         head = "\n".join(_head(setup, model, names, unit, held, lost))
         text = f"{head}\n{body}{END_COMPUTATION}\n"
         ascii_text = text.encode("ascii", "backslashreplace").decode("ascii")
@@ -203,7 +203,11 @@ def _with_mesh_alone(error: SimulationError) -> SimulationError:
 
 
 def _held(
-    setup: Setup, model: BrickModel, element: Element, motion: Motion | None
+    setup: Setup,
+    model: BrickModel,
+    names: DeckNames,
+    element: Element,
+    motion: Motion | None,
 ) -> Iterator[str]:
     """Tell all that a file holds, in sentences."""
     design = setup.design
@@ -212,6 +216,8 @@ def _held(
     yield f"{bricks}, {size} wide, from {counted(model.bricks.shape[0] // model.split**3, 'voxel')}"
     for part, material in zip(design.parts, model.materials, strict=True):
         yield f'part "{part.label}": {material.model}, density {material.density:g} kg/m^3'
+    for name, layer in zip(names.layers, model.layers, strict=True):
+        yield f"{name}: a membrane, {format_quantity(layer.thickness, 'length')} thick"
     for index, clamp in enumerate(design.clamps):
         moves = "held" if clamp.motion is None else "moved"
         yield f"clamps[{index}]: {clamp.axes} {moves}"

@@ -35,6 +35,10 @@ def _without_attachments(design: Design) -> Design:
     return design.replace(**dict.fromkeys(names, ()))
 
 
+def _without_seals(design: Design) -> Design:
+    return design.replace(layers=[layer.replace(seal=False) for layer in design.layers])
+
+
 def _without_fibers(design: Design) -> Design:
     return design.replace(parts=[part.replace(fibers=()) for part in design.parts])
 
@@ -85,7 +89,10 @@ _LOSSES: Final[Mapping[str, _Loss]] = MappingProxyType(
             "is not held: objects are given to outside codes, and no floor",
             _without(floor=None),
         ),
-        "layers": ("is not held: its stiffness is left out of the body", _without(layers=())),
+        "layers that seal": (
+            "is written without the openings that it spans, and chambers behind them are open",
+            _without_seals,
+        ),
         "springs and the like": ("is not held: the body is without it", _without_attachments),
         "tendons": ("is not held: nothing pulls there", _without(tendons=())),
         "supplies": (
@@ -173,8 +180,14 @@ class DeckDesign:
         return cls(own, tuple(kept), tuple(dict.fromkeys(lost)))
 
 
+#: Sentence on a layer in an outside code.
+BEARS_COMPRESSION: Final = "bears compression in outside codes, where it wrinkles in ours"
+
+
 def _of_settings(design: Design) -> Iterator[ErrorDetail]:
     """Find settings and properties that change an answer, and that a file does not hold."""
+    for index in range(len(design.layers)):
+        yield ErrorDetail(f"layers[{index}]", BEARS_COMPRESSION)
     solver = design.solver
     held = _HELD | ({"damping"} if solver.is_timed and isinstance(solver.damping, float) else set())
     for name in given_settings(solver):

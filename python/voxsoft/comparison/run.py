@@ -11,7 +11,7 @@ from typing import Any, Final, get_args
 from voxsoft.calibration import Experiment, Measurement
 from voxsoft.comparison.brick_contact import passed_through
 from voxsoft.comparison.bricks import BrickModel
-from voxsoft.comparison.cautions import cautions_of, cautions_of_contact
+from voxsoft.comparison.cautions import cautions_of, cautions_of_contact, cautions_of_layers
 from voxsoft.comparison.comparison import Comparison, Judged, Run
 from voxsoft.comparison.defaults import (
     DEFAULT_SOLVERS,
@@ -133,7 +133,9 @@ def compare(
         runs.append(_run(task, design.voxel_size, experiments))
     note = "" if code or outside == "none" else _NO_OUTSIDE
     judged = tuple(Judged.of(experiment) for experiment in experiments)
-    cautions = (*cautions_of(design, base.mesh), *cautions_of_contact(base))
+    cautions = [*cautions_of(design, base.mesh), *cautions_of_contact(base)]
+    if code:
+        cautions += cautions_of_layers(design)
     warnings = (*_unused(design), *unlike, *cautions)
     return Comparison(design, tuple(runs), tuple(solvers)[-1], code or "", judged, note, warnings)
 

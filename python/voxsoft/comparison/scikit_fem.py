@@ -63,9 +63,11 @@ def run_scikit_fem(model: BrickModel, *, time_limit: float = 600.0) -> OutsideAn
     OutsideCodeError
         It took longer than the limit.
     SimulationError
-        A material that is not hyperelastic, or contact.
+        A material that is not hyperelastic, layers, or contact.
     """
     release = scikit_fem_version()
+    if model.layers:
+        raise SimulationError("layers", *REASONS["layers", "scikit-fem"])
     if model.contact is not None:
         raise SimulationError("contact", *REASONS["contact", "scikit-fem"])
     started = time.perf_counter()

@@ -237,7 +237,19 @@ _REFUSED: Final[tuple[tuple[str, tuple[str, ...], Reason], ...]] = (
     ("force field", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without it")),
     ("force field", ("symmetry",), Reason(_WITH_PLANES.what, "leave the planes out")),
     ("floor", ("outside codes",), Reason(_OUTSIDE.what, "clamp the foot instead")),
-    ("layers", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without them")),
+    (
+        "layers",
+        ("scikit-fem",),
+        Reason("are not known to {who}", "compare with CalculiX: apt install calculix-ccx"),
+    ),
+    (
+        "layers that seal",
+        ("outside codes",),
+        Reason(
+            "spans openings, and outside codes are given layers on faces of voxels",
+            "leave seal out, or close the chamber by a layer of voxels",
+        ),
+    ),
     ("springs and the like", ("outside codes",), _OUTSIDE),
     ("tendons", ("outside codes",), _OUTSIDE),
     ("activations", ("outside codes",), Reason(_OUTSIDE.what, "compare without them")),

@@ -94,6 +94,12 @@ def _fibers(design: Design) -> Iterator[str]:
     yield from (f"parts[{index}].fibers" for index, part in enumerate(design.parts) if part.fibers)
 
 
+def _sealing_layers(design: Design) -> Iterator[str]:
+    for index, layer in enumerate(design.layers):
+        if layer.seal:
+            yield f"layers[{index}].seal"
+
+
 def _wound(design: Design) -> Iterator[str]:
     for index, part in enumerate(design.parts):
         if any(fiber.is_wound for fiber in part.fibers):
@@ -215,6 +221,7 @@ FEATURES: Final[Mapping[str, _Places]] = MappingProxyType(
         "springs and the like": _attachments,
         "supplies": _supplies,
         "layers": _key("layers"),
+        "layers that seal": _sealing_layers,
         "fibers": _fibers,
         "wound fibers": _wound,
         "activations": _key("activations"),
@@ -248,6 +255,7 @@ IMPLIED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
         "bonds": ("contact",),
         "adhesion": ("contact",),
         "several bodies": ("contact",),
+        "layers that seal": ("layers",),
         "wound fibers": ("fibers",),
         "activations over time": ("activations",),
         "activations with a profile": ("activations",),

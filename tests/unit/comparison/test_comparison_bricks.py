@@ -8,6 +8,7 @@ import voxsoft as vs
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.calculix_deck import calculix_deck
 from voxsoft.comparison.calculix_output import read_printed
+from voxsoft.comparison.scikit_fem import run_scikit_fem
 from voxsoft.comparison.stretch_energy import stretch_derivatives, terms_of
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Setup
@@ -89,6 +90,29 @@ def test_prescribed_motion_is_interpolated():
     x, y, z = model.nodes[end].T
     expected = np.column_stack((0 * x, -z - y, y - z + 1 * mm))
     np.testing.assert_allclose(model.values[end], expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("split", [1, 2])
+@pytest.mark.parametrize("nodes", [8, 20])
+@pytest.mark.parametrize("level", [0.0, 5 * mm])
+def test_layers_cover_their_faces_with_their_weight(split, nodes, level):
+    film = vs.Layer(
+        region=vs.Region(z=(level, level)), young=50e6, thickness=0.1 * mm, density=2000.0
+    )
+    model = BrickModel.of(setup_of([vs.Gravity()], layers=[film]), split=split, nodes=nodes)
+    (layer,) = model.layers
+    corners = model.nodes[model.face_nodes(layer.faces)]
+    assert len(layer.faces) * model.edge**2 == pytest.approx(20 * mm * 10 * mm)
+    np.testing.assert_allclose(corners[..., 2], level, atol=1e-12)
+    mass = 1070 * 2e-6 + 2000 * 0.1 * mm * 2e-4
+    np.testing.assert_allclose(model.weights.sum(axis=0), [0, 0, -9.81 * mass], atol=1e-12)
+
+
+def test_the_code_with_scikit_fem_refuses_layers():
+    pytest.importorskip("skfem")
+    film = vs.Layer(region=vs.Region(z=(0, 0)), young=50e6, thickness=0.1 * mm)
+    with pytest.raises(SimulationError, match="layers: are not known to the code with scikit-fem"):
+        run_scikit_fem(BrickModel.of(setup_of([], layers=[film]), nodes=27))
 
 
 def test_a_floor_is_refused():

@@ -33,6 +33,7 @@ COMMON: Final = frozenset(
         "contact",
         "objects",
         "free objects",
+        "layers that seal",
         "several bodies",
         "wound fibers",
         "activations over time",
