@@ -112,6 +112,20 @@ def test_objects_touch_in_a_file_as_in_a_comparison(tmp_path):
 
 
 @pytest.mark.long
+def test_a_floor_carries_the_end_of_a_bar_in_a_file_as_in_ours(tmp_path):
+    parts = [vs.Part(shape=vs.Box(size=(40 * mm, 10 * mm, 10 * mm)), material=SOFT)]
+    design = bar(parts=parts, loads=[vs.Gravity()], floor=vs.Floor(z=-2 * mm))
+    deck = Deck.of(design, unit="um")
+    found, expected = deck.displacements(run(deck, tmp_path)), compared(deck)
+    np.testing.assert_allclose(found["tip"], expected["tip"], atol=1e-6 * 2 * mm)
+    ours = vs.simulate(design, error="off").probes["tip"][2]
+    free = vs.simulate(design.replace(floor=None), error="off").probes["tip"][2]
+    assert free < 2 * ours
+    # The lower edge of the end lies on the floor; its middle goes as far but for the strain there.
+    assert found["tip"][2] == pytest.approx(ours, rel=0.01)
+
+
+@pytest.mark.long
 def test_a_layer_bends_a_bar_in_a_file_as_in_ours(tmp_path):
     """A film of 40 times the stiffness of the bar below it, on a bar that is drawn."""
     film = vs.Layer(region=vs.Region(z=(0, 0)), young=20e6, thickness=0.2 * mm, name="film")

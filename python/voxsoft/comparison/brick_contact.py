@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from voxsoft.design import History
+from voxsoft.design.contact import FLOOR
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.setup.contact import Touching
 from voxsoft.simulation.setup.distance import Surface, overlap_of
@@ -77,8 +78,21 @@ class BrickContact:
     tools: tuple[RigidTool, ...]
 
 
+def floor_under(setup: Setup) -> tuple[RigidTool, ...]:
+    """Return the floor of a design without other contact, which has no friction; none without."""
+    if setup.design.floor is None:
+        return ()
+    surface = Touching(setup.design, setup.mesh).floor
+    assert surface is not None  # the design has one
+    return (_floor(surface, 0.0),)
+
+
+def _floor(surface: Surface, friction: float) -> RigidTool:
+    return RigidTool(FLOOR, surface.vertices, surface.triangles, np.zeros(3), friction, np.zeros(3))
+
+
 def tools_of(touching: Touching) -> tuple[RigidTool, ...]:
-    """List the objects that the body touches."""
+    """List the objects that the body touches, the floor as the last of them."""
     found = []
     pairs = zip(touching.design.objects, touching.surfaces, strict=True)
     for index, (each, surface) in enumerate(pairs):
@@ -91,6 +105,8 @@ def tools_of(touching: Touching) -> tuple[RigidTool, ...]:
         if not np.isnan(friction):
             shape = surface.vertices, surface.triangles
             found.append(RigidTool(each.name, *shape, way, friction, full, history))
+    if touching.floor is not None and not np.isnan(touching.friction[0, -1]):
+        found.append(_floor(touching.floor, float(touching.friction[0, -1])))
     return tuple(found)
 
 
@@ -181,6 +197,8 @@ def passed_through(setup: Setup, positions: Floats) -> str:
             return f"the body is {1e3 * found.depth:.2g} mm deep in itself"
     body = Surface(positions, setup.mesh.triangles.astype(np.uint32))
     for tool in tools_of(touching):
+        if tool.name == FLOOR:
+            continue  # a plane has no inside
         there = Surface(tool.vertices + tool.way, tool.triangles)
         depth = overlap_of(there, body, touching.voxel_size).depth
         if depth > allowed:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.cavity import MeshCavity
-from voxsoft.comparison.brick_contact import BrickContact, facing_walls, tools_of
+from voxsoft.comparison.brick_contact import BrickContact, facing_walls, floor_under, tools_of
 from voxsoft.comparison.brick_layers import BrickLayer
 from voxsoft.comparison.brick_loads import BrickLoad, BrickMotion, FacePressure, prescribed
 from voxsoft.design import Clamp
@@ -145,7 +145,7 @@ class BrickModel:
         Raises
         ------
         SimulationError
-            A mesh that is not made of full voxels, or a feature unknown to outside codes: a floor,
+            A mesh that is not made of full voxels, or a feature unknown to outside codes:
             layers that seal, springs, fibers, activations, objects that are free or turn, bonds.
 
         Examples
@@ -263,16 +263,18 @@ class BrickModel:
         return replace(self, layers=tuple(layers))
 
     def _with_contact(self, setup: Setup, grid: _Lattice) -> Self:
-        if setup.touching is None:
+        touching = setup.touching
+        tools = floor_under(setup) if touching is None else tools_of(touching)
+        if touching is None and not tools:
             return self
+        friction = np.nan if touching is None else float(touching.friction[0, 0])
         faces, walls = facing_walls(grid.cells)
-        friction = float(setup.touching.friction[0, 0])
         pairs = () if np.isnan(friction) else walls
         contact = BrickContact(
             outer=split_faces(faces, self.split),
             walls=tuple((split_faces(a, self.split), split_faces(b, self.split)) for a, b in pairs),
             friction=friction,
-            tools=tools_of(setup.touching),
+            tools=tools,
         )
         return replace(self, contact=contact)
 

@@ -35,11 +35,12 @@ def wall_names(index: int) -> tuple[str, str]:
 def tool_lines(model: BrickModel, units: DeckUnits, names: DeckNames) -> Iterator[str]:
     """Write nodes and elements of rigid objects: a tetrahedron behind each triangle.
 
-    All nodes are prescribed, so that their stiffness does not count.
+    All nodes are prescribed, so that their stiffness and density do not count.
     """
     node = len(model.nodes)
     element = len(model.bricks) + sum(len(layer.faces) for layer in model.layers)
     young = softest_young(model) / units.stress
+    density = model.materials[0].density / units.density
     for name, tool in zip(names.tools, _tools(model), strict=True):
         nodes, tets = shell_of(tool)
         yield f"*NODE, NSET={name}"
@@ -51,6 +52,7 @@ def tool_lines(model: BrickModel, units: DeckUnits, names: DeckNames) -> Iterato
         yield f"*SURFACE, NAME={name}"
         yield from (f"{element + number + 1}, S1" for number in range(len(tets)))
         yield f"*MATERIAL, NAME={name}\n*ELASTIC\n{young:.12g}, 0.3"
+        yield f"*DENSITY\n{density:.12g}"
         yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
         node, element = node + len(nodes), element + len(tets)
 

@@ -35,7 +35,7 @@ DEFAULT_ELEMENT: Final[Element] = "C3D20R"
 #: Comment above the account of all that a file holds.
 HOLDS: Final = "** HOLDS"
 #: Largest strain of a voxel whose force CalculiX takes for zero, before a file says so.
-_BLUNT: Final = 1e-6
+_BLUNT: Final = 1e-8
 #: Longest line of a comment.
 _WIDTH: Final = 110
 
@@ -187,8 +187,8 @@ def _blunt(model: BrickModel, unit: str) -> Iterator[ErrorDetail]:
     strain = STOP * SYSTEMS[unit].force / (softest_young(model) * model.edge**2)
     if strain > _BLUNT:
         what = (
-            f"CalculiX takes a residual of {STOP:g} in the unit of force for zero, which is the "
-            f"force of a strain of {strain:.1g} on a brick here"
+            f"CalculiX takes a residual of {STOP:g} N for zero, the force of a strain of "
+            f"{strain:.1g} on a brick, and stops earlier than in a comparison"
         )
         yield ErrorDetail("unit", what, "write --unit um, whose unit of force is a millionth of N")
 

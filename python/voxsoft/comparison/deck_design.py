@@ -85,10 +85,6 @@ _LOSSES: Final[Mapping[str, _Loss]] = MappingProxyType(
             "is not held: no acceleration is a formula there",
             _without_loads("force_field"),
         ),
-        "floor": (
-            "is not held: objects are given to outside codes, and no floor",
-            _without(floor=None),
-        ),
         "layers that seal": (
             "is written without the openings that it spans, and chambers behind them are open",
             _without_seals,
@@ -141,14 +137,15 @@ class DeckDesign:
         Raises
         ------
         SimulationError
-            A design of several bodies.
+            A design of several bodies, or of a loose one at rest.
 
         Examples
         --------
         >>> from voxsoft.design import families
-        >>> found = DeckDesign.of(families.beam().replace(floor={"z": "-1 m"}))
-        >>> found.design.floor, [each.where for each in found.lost]
-        (None, ['floor'])
+        >>> wet = families.beam().replace(loads=[{"kind": "immersion", "level": "1 m"}])
+        >>> found = DeckDesign.of(wet)
+        >>> found.design.loads, [each.where for each in found.lost]
+        ((), ['loads[0]'])
         """
         own = design.assembled.replace(objectives={}, constraints={})
         refused = dict.fromkeys(refused_features(own, "outside codes"))
@@ -158,6 +155,10 @@ class DeckDesign:
             if name not in _LOSSES and name != "cut voxels"
             for where in FEATURES[name](own)
         ]
+        if not own.clamps and not own.solver.is_timed:
+            hint = "clamp a part of it, or give the solver an end_time for its motion"
+            what = "hold nothing, and there is no equilibrium of a loose body in CalculiX"
+            wrong.append(ErrorDetail("clamps", what, hint))
         if wrong:
             raise USES["outside codes"].error.listing(wrong)
         kept = [number for number, load in enumerate(own.loads) if load.kind not in _LOADS]

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from voxsoft.comparison.bricks import CORNERS, FACES, BrickModel
 from voxsoft.comparison.outside import OutsideAnswer, rubber, support_forces
 from voxsoft.comparison.stretch_energy import Term, stretch_derivatives, terms_of
+from voxsoft.design.contact import FLOOR
 from voxsoft.errors import MissingPackageError, OutsideCodeError, SimulationError
 from voxsoft.simulation.compatibility import REASONS
 
@@ -63,11 +64,13 @@ def run_scikit_fem(model: BrickModel, *, time_limit: float = 600.0) -> OutsideAn
     OutsideCodeError
         It took longer than the limit.
     SimulationError
-        A material that is not hyperelastic, layers, or contact.
+        A material that is not hyperelastic, layers, contact, or a floor.
     """
     release = scikit_fem_version()
     if model.layers:
         raise SimulationError("layers", *REASONS["layers", "scikit-fem"])
+    if model.contact is not None and any(tool.name == FLOOR for tool in model.contact.tools):
+        raise SimulationError("floor", *REASONS["floor", "scikit-fem"])
     if model.contact is not None:
         raise SimulationError("contact", *REASONS["contact", "scikit-fem"])
     started = time.perf_counter()

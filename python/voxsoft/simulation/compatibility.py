@@ -236,7 +236,11 @@ _REFUSED: Final[tuple[tuple[str, tuple[str, ...], Reason], ...]] = (
     ("force field", ("explicit dynamics",), _IMPLICIT_STEPS),
     ("force field", ("outside codes",), Reason(_OUTSIDE.what, "compare the design without it")),
     ("force field", ("symmetry",), Reason(_WITH_PLANES.what, "leave the planes out")),
-    ("floor", ("outside codes",), Reason(_OUTSIDE.what, "clamp the foot instead")),
+    (
+        "floor",
+        ("scikit-fem",),
+        Reason("is not known to {who}", "compare with CalculiX: apt install calculix-ccx"),
+    ),
     (
         "layers",
         ("scikit-fem",),
@@ -346,9 +350,9 @@ def refusals(design: Design, use: str) -> Iterator[ErrorDetail]:
     Examples
     --------
     >>> from voxsoft.design import families
-    >>> heavy = families.beam().replace(floor={"z": "-1 m"})
-    >>> [str(each) for each in refusals(heavy, "outside codes")]
-    ['floor: cannot be given to an outside code. Try: clamp the foot instead']
+    >>> wet = families.beam().replace(loads=[{"kind": "immersion", "level": "1 m"}])
+    >>> [str(each) for each in refusals(wet, "outside codes")]
+    ['loads[0]: cannot be given to an outside code. Try: compare the design without it']
     """
     design, seen = design.assembled, set[str]()
     for feature in refused_features(design, use):

@@ -10,6 +10,7 @@ from voxsoft.comparison.calculix_deck import calculix_deck
 from voxsoft.comparison.calculix_output import read_printed
 from voxsoft.comparison.scikit_fem import run_scikit_fem
 from voxsoft.comparison.stretch_energy import stretch_derivatives, terms_of
+from voxsoft.design import Contact
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Setup
 from voxsoft.units import kPa, mm
@@ -115,10 +116,21 @@ def test_the_code_with_scikit_fem_refuses_layers():
         run_scikit_fem(BrickModel.of(setup_of([], layers=[film]), nodes=27))
 
 
-def test_a_floor_is_refused():
-    setup = setup_of([vs.Gravity()], floor=vs.Floor(z=-1))
-    with pytest.raises(SimulationError, match="floor"):
-        BrickModel.of(setup)
+@pytest.mark.parametrize("contact", [None, Contact(friction=0.4)])
+def test_a_floor_is_a_plane_below_the_body(contact):
+    setup = setup_of([vs.Gravity()], floor=vs.Floor(z=-0.01), contact=contact)
+    model = BrickModel.of(setup)
+    (floor,) = model.contact.tools
+    assert (floor.name, floor.friction) == ("floor", 0.0 if contact is None else 0.4)
+    a, b, c = floor.vertices[floor.triangles].transpose(1, 0, 2)
+    assert (np.cross(b - a, c - a)[:, 2] > 0.0).all()
+    np.testing.assert_allclose(floor.vertices[:, 2], -0.01)
+    low, high = floor.vertices.min(axis=0), floor.vertices.max(axis=0)
+    assert (low[:2] < model.nodes.min(axis=0)[:2]).all()
+    assert (high[:2] > model.nodes.max(axis=0)[:2]).all()
+    pytest.importorskip("skfem")
+    with pytest.raises(SimulationError, match="floor: is not known to the code with scikit-fem"):
+        run_scikit_fem(BrickModel.of(setup, nodes=27))
 
 
 def test_the_deck_refuses_bricks_of_another_element():

@@ -168,7 +168,6 @@ def test_a_motion_of_rubber_of_ogden_has_a_warning():
 
 def test_lost_entries_stand_in_the_file():
     design = bar(
-        floor=vs.Floor(z=-1),
         tendons=[
             {
                 "name": "rope",
@@ -182,12 +181,12 @@ def test_lost_entries_stand_in_the_file():
     )
     deck = Deck.of(design)
     places = [each.where for each in deck.lost]
-    assert {"floor", "tendons[0]", "loads[0]", "solver.control"} == set(places)
+    assert {"tendons[0]", "loads[0]", "solver.control"} == set(places)
     for where in places:
         assert f"** - {where}: is not held" in deck.text
     # Loads keep the numbers of the design.
     assert "load_1-P4, P4, 1000" in deck.text
-    assert not any("floor" in sentence for sentence in deck.held)
+    assert not any("rope" in sentence for sentence in deck.held)
 
 
 @pytest.mark.parametrize(
@@ -208,9 +207,14 @@ def test_options_that_are_not_there_are_refused(options):
         Deck.of(bar(), **options)
 
 
-def test_a_body_that_nothing_holds_is_refused():
-    with pytest.raises(DesignError, match="clamps"):
-        Deck.of(bar(clamps=[]))
+def test_a_loose_body_is_refused_at_rest():
+    with pytest.raises(SimulationError, match="clamps: hold nothing"):
+        Deck.of(bar(clamps=[], floor=vs.Floor()))
+    timed = Solver(method="dynamics", end_time=0.1)
+    assert "*DYNAMIC" in Deck.of(bar(clamps=[], floor=vs.Floor(), solver=timed)).text
+    nowhere = [vs.Clamp(region=vs.Region(x=(1, 1)))]
+    with pytest.raises(DesignError, match=r"clamps\[0\].region"):
+        Deck.of(bar(clamps=nowhere))
 
 
 def test_a_file_whose_unit_of_force_is_too_large_says_so():
