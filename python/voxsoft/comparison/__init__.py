@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from voxsoft.comparison.bars import error_bars
     from voxsoft.comparison.comparison import Comparison, Run
     from voxsoft.comparison.confirmation import Confirmation, confirm
+    from voxsoft.comparison.deck import Deck
     from voxsoft.comparison.error_bar import ErrorBar, ErrorBars
     from voxsoft.comparison.local_error import local_errors
     from voxsoft.comparison.path_bars import path_error_bars
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Comparison",
     "Confirmation",
+    "Deck",
     "ErrorBar",
     "ErrorBars",
     "Estimate",
@@ -39,6 +41,7 @@ __all__ = [
 _HOMES = {
     "Comparison": "voxsoft.comparison.comparison",
     "Confirmation": "voxsoft.comparison.confirmation",
+    "Deck": "voxsoft.comparison.deck",
     "ErrorBar": "voxsoft.comparison.error_bar",
     "ErrorBars": "voxsoft.comparison.error_bar",
     "Estimate": "voxsoft.comparison.richardson",

@@ -26,6 +26,9 @@ ALL_ELEMENTS: Final = "ALL-ELEMENTS"
 VERTICES: Final = "VERTICES"
 HELD: Final = "HELD"
 
+#: Weight of a node in the mean of a probe that is rounding.
+_NO_WEIGHT: Final = 1e-9
+
 
 @dataclass(frozen=True)
 class DeckNames:
@@ -109,7 +112,12 @@ class DeckNames:
             for name, vertices in regions.items()
         }
         probes = {name: places[f"probe_{name}"] for name in setup.places}
-        weights = {probes[name]: place.weights for name, place in setup.places.items()}
+        weights: dict[str, Floats] = {}
+        for name, place in setup.places.items():
+            # Of the corners around a point on the grid all but one have no weight.
+            kept = np.abs(place.weights) > _NO_WEIGHT
+            nodes[probes[name]] = model.vertex_nodes[place.vertices[kept]]
+            weights[probes[name]] = place.weights[kept]
         return cls(
             tuple(sets[title] for title in own),
             tuple(materials[name] for name in rubber),

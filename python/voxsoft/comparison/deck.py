@@ -159,16 +159,15 @@ class Deck:
         """
         blocks = read_printed(printed)
         found: dict[str, dict[float, Floats]] = {}
-        for name, place in self.setup.places.items():
-            label = self.names.probes[name]
-            nodes = self.names.places[label]
+        for name, label in self.names.probes.items():
+            nodes, weights = self.names.places[label], self.names.weights[label]
             rows = {}
             for block in blocks:
                 if block.name != label.upper() or block.quantity != "displacements":
                     continue
                 order = np.argsort(block.nodes)
                 values = block.values[order[np.searchsorted(block.nodes[order], nodes)]]
-                rows[block.time] = SYSTEMS[self.unit].length * (place.weights @ values)
+                rows[block.time] = SYSTEMS[self.unit].length * (weights @ values)
             found[name] = rows
         return found
 

@@ -14,7 +14,13 @@ import pytest
 from own_loop import run
 from pxr import Usd, UsdGeom
 
-from voxsoft.files import read_mesh
+import voxsoft as vs
+from voxsoft.comparison import Deck
+from voxsoft.design import families
+from voxsoft.errors import FileError
+from voxsoft.files import read_mesh, write_run
+from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.outputs.exports import Shown, export_run, export_shown
 
 
 def export(studio, format, **options):
@@ -57,6 +63,37 @@ def test_a_mesh_is_read_back(at_rest, tmp_path, format):
     if format == "vtu":
         moved = meshio.read(file).point_data["displacement"]
         assert moved[:, 2].max() == pytest.approx(0.013, abs=1e-3)
+
+
+def test_a_computation_of_the_lattice_is_refused_with_a_remedy(at_rest):
+    answer = export(at_rest, "inp")
+    assert answer.status_code == 422
+    assert 'no "lattice" material' in answer.json()["what"]
+    assert "voxsoft mesh" in answer.json()["hint"]
+
+
+def test_a_computation_has_the_loads_as_they_are_set(tmp_path):
+    body = StudioBody.of(families.beam(), rev=1, topology=1)
+    shown = Shown("beam", "", body, body.mesh.vertices, None, (), (), (), factors=(0.5,))
+    written = export_shown(shown, "inp", {"unit": "mm", "element": "C3D8I", "split": 2}, tmp_path)
+    assert [each.where for each in written.lost] == ["unit"]  # bricks of 2.5 mm, in N
+    text = written.file.read_text(encoding="ascii")
+    assert "*ELEMENT, TYPE=C3D8I" in text
+    assert "640 bricks" in text
+    assert "ALL-ELEMENTS, GRAV, 4905, 0, 0, -1\n" in text
+    with pytest.raises(FileError, match="split: 'two' is no int"):
+        export_shown(shown, "inp", {"split": "two"}, tmp_path)
+
+
+def test_a_computation_of_a_run_folder_is_that_of_its_design(tmp_path):
+    beam = families.beam(length="40 mm")
+    run_folder = write_run(vs.simulate(beam, error="off"), tmp_path / "run")
+    file = export_run(run_folder, "inp", {"unit": "um"}, tmp_path).file
+    # Weights of probes have last digits, which the folder rounds.
+    own = Deck.of(beam, unit="um").text.partition("*STEP")[2]
+    assert file.read_text(encoding="ascii").partition("*STEP")[2] == own
+    bent = export_run(run_folder, "inp", {"deformed": True}, tmp_path).file
+    assert "*ELEMENT, TYPE=C3D4" in bent.read_text(encoding="ascii")
 
 
 @pytest.mark.long

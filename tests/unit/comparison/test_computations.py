@@ -102,6 +102,13 @@ def test_sets_have_the_names_of_the_design():
     # The clamp holds middle nodes of edges too, and the probe has vertices alone.
     assert len(deck.names.places["clamp_wall"]) == 9 + 12
     assert len(deck.names.places["probe_tip"]) == 9
+    # A point on the grid is one node; one between its nodes has their weights at the beginning.
+    assert len(deck.names.places["probe_hohe"]) == 1
+    between = {"mid": vs.Probe(point=(12 * mm, 5 * mm, 5 * mm))}
+    text = Deck.of(bar(probes=between)).text
+    found = re.search(r"Weights of the nodes of probe_mid in their mean:\n\*\* - (.*)\n", text)
+    weights = [float(each.split(":")[1]) for each in found[1].split(",")]
+    assert sorted(weights) == pytest.approx([0.4, 0.6])
 
 
 def test_parts_of_one_name_and_material_stay_apart():
