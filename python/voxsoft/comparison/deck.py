@@ -24,6 +24,7 @@ from voxsoft.comparison.deck_design import DeckDesign
 from voxsoft.design import Design
 from voxsoft.errors import ErrorDetail, SimulationError
 from voxsoft.formats.abaqus import BEGIN_COMPUTATION, END_COMPUTATION
+from voxsoft.materials import Lattice
 from voxsoft.simulation import Setup
 from voxsoft.simulation.solving.dynamics import DEFAULT_TIME_STEP
 from voxsoft.units import format_quantity
@@ -126,7 +127,7 @@ class Deck:
             motion = _motion(setup.design)
             body = calculix_deck(model, kind, units=SYSTEMS[unit], names=names, motion=motion)
         except SimulationError as error:
-            raise _with_mesh_alone(error) from None
+            raise _with_remedies(error, design.assembled) from None
         lost = (*fitted.lost, *_blunt(model, unit))
         held = tuple(_held(setup, model, names, kind, motion))
         head = "\n".join(_head(setup, model, names, unit, held, lost))
@@ -192,13 +193,25 @@ def _blunt(model: BrickModel, unit: str) -> Iterator[ErrorDetail]:
         yield ErrorDetail("unit", what, "write --unit um, whose unit of force is a millionth of N")
 
 
-def _with_mesh_alone(error: SimulationError) -> SimulationError:
-    """Return an error with the way to a file without a computation."""
+def _with_remedies(error: SimulationError, design: Design) -> SimulationError:
+    """Return an error with the material to take for the lattice, and the way to a mesh alone."""
     alone = "write the mesh alone with voxsoft mesh --out"
+    rubber = {
+        f"parts[{index}].material": _like_lattice(index, material, design.voxel_size)
+        for index, part in enumerate(design.parts)
+        if isinstance(material := design.material_of(part), Lattice)
+    }
     return type(error).listing(
-        ErrorDetail(where, what, f"{hint}, or {alone}" if hint else alone)
+        ErrorDetail(where, what, ", or ".join(filter(None, (rubber.get(where, hint), alone))))
         for where, what, hint in error.problems
     )
+
+
+def _like_lattice(index: int, lattice: Lattice, voxel_size: float) -> str:
+    """Return the option that puts rubber of the same small stiffness in the place of a lattice."""
+    young = format_quantity(float(f"{lattice.young(voxel_size):.4g}"), "modulus")
+    constants = f'young = "{young}", poisson = {lattice.poisson(voxel_size):.3g}'
+    return f"--set 'parts.{index}.material = {{ model = \"neo-hookean\", {constants} }}'"
 
 
 def _held(

@@ -9,6 +9,7 @@ import voxsoft as vs
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.calculix_deck import calculix_deck
 from voxsoft.comparison.calculix_loads import Acting, Course
+from voxsoft.comparison.cautions import cautions_of_layers
 from voxsoft.comparison.deck import Deck
 from voxsoft.design import Contact, History, Immersion, Object, Solver
 from voxsoft.errors import DesignError, FileError, SimulationError
@@ -206,6 +207,31 @@ def test_lost_entries_stand_in_the_file():
 def test_a_material_that_is_not_there_is_refused_with_remedies(changes, where):
     with pytest.raises(SimulationError, match=rf'parts\[0\].material: .*"{where}".*voxsoft mesh'):
         Deck.of(bar(**changes))
+
+
+def test_the_remedy_for_the_lattice_is_rubber_of_its_stiffness():
+    lattice = vs.Lattice(edge=24 * kPa, bulk=60 * kPa)
+    with pytest.raises(SimulationError) as caught:
+        Deck.of(bar(materials={"soft": SOFT, "stiff": lattice}))
+    remedy = re.search(r"--set '(.*?)'", str(caught.value))[1]
+    found = bar(materials={"soft": SOFT, "stiff": lattice}).with_values(remedy)
+    rubber = found.material_of(found.parts[1])
+    assert rubber.young() == pytest.approx(lattice.young(5 * mm), rel=1e-3)  # four digits
+    assert rubber.poisson == pytest.approx(lattice.poisson(5 * mm), abs=1e-3)
+    assert "NAME=material_of_right\n*HYPERELASTIC, NEO HOOKE" in Deck.of(found).text
+
+
+def test_layers_that_bear_compression_are_a_warning_of_a_comparison():
+    film = vs.Layer(region=vs.Region(z=(0, 0)), young=50e6, thickness=0.1 * mm)
+    design = bar(layers=[film, film.replace(region=vs.Region(z=(10 * mm, 10 * mm)))])
+    assert [each.where for each in cautions_of_layers(design)] == ["layers[0]", "layers[1]"]
+    deck = Deck.of(design, element="C3D8")
+    assert [each.where for each in deck.lost] == ["layers[0]", "layers[1]"]
+    assert deck.text.count("*ELEMENT, TYPE=M3D4, ELSET=layer_") == 2
+    assert deck.text.count("*MEMBRANE SECTION, ELSET=layer_1, MATERIAL=layer_1\n0.0001\n") == 1
+    assert "layer_0, GRAV, 9.81, 0, 0, -1\n" in deck.text
+    # Elements are numbered on: 16 bricks, then 8 faces of each layer.
+    assert re.search(r"TYPE=M3D4, ELSET=layer_1\n(\d+),", deck.text)[1] == "25"
 
 
 @pytest.mark.parametrize("options", [{"unit": "inch"}, {"element": "C3D4"}, {"split": 9}])
