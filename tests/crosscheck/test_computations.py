@@ -166,3 +166,26 @@ def test_a_motion_over_time_is_that_of_our_steps(tmp_path):
     # Two voxels across: the bricks are some 4 % stiffer than ours at rest, so that the body
     # swings 2 % faster there, which is up to 2 π · 0.02 of its swing after one period.
     assert apart < 2 * np.pi * 0.02 * np.abs(ours).max()
+
+
+@pytest.mark.long
+def test_a_falling_block_lands_on_a_floor_in_a_file_as_in_ours(tmp_path):
+    block = vs.Box(size=(10 * mm, 10 * mm, 10 * mm))
+    design = bar(
+        parts=[vs.Part(shape=block, material=SOFT)],
+        clamps=[],
+        loads=[vs.Gravity()],
+        floor=vs.Floor(z=-1 * mm),
+        probes={"low": vs.Probe(z=(0, 0))},
+        solver=Solver(method="dynamics", end_time=0.03, time_step=1e-3),
+    )
+    course = Deck.of(design, unit="mm").courses(run(Deck.of(design, unit="mm"), tmp_path))["low"]
+    times = np.array(sorted(course))
+    moved = np.array([course[time][2] for time in times])
+    # It falls freely, from rest; the first step of 1 ms is the error of its time.
+    before = times < 0.013
+    freely = -9.81 / 2 * times[before] ** 2
+    np.testing.assert_allclose(moved[before], freely, atol=9.81 * 0.013 * 1e-3)
+    # It lands after sqrt(2 · 1 mm/g) = 14.3 ms, on the floor and not in it.
+    assert moved.min() == pytest.approx(-1 * mm, rel=0.01)
+    assert times[moved < -0.99 * mm].min() == pytest.approx(14.3e-3, abs=1e-3)

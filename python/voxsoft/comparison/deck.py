@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from voxsoft._shown import counted
 from voxsoft.comparison.bricks import BrickModel
-from voxsoft.comparison.calculix_deck import NODES_OF, Element, Motion, calculix_deck
+from voxsoft.comparison.calculix_deck import NODES_OF, Element, Motion, alpha_of, calculix_deck
 from voxsoft.comparison.calculix_names import DeckNames
 from voxsoft.comparison.calculix_output import read_printed
 from voxsoft.comparison.calculix_units import IN_WORDS, STOP, SYSTEMS, softest_young
@@ -246,7 +246,8 @@ def _held(
         yield "step: static, with large deflections, the whole load in even increments"
     else:
         end = format_quantity(motion.end_time, "time")
-        yield f"step: implicit dynamics to {end}, damping {motion.damping:g} 1/s"
+        rates = f"damping {motion.damping:g} 1/s, numerical damping alpha = {alpha_of(model):g}"
+        yield f"step: implicit dynamics to {end}, {rates}"
     yield f"printed: displacements of {counted(len(setup.places), 'probe')}, forces of the clamps"
 
 

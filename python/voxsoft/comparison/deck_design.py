@@ -202,6 +202,16 @@ def _of_settings(design: Design) -> Iterator[ErrorDetail]:
             yield ErrorDetail(where, "has branches that relax, which are not held: it is elastic")
     if not solver.is_timed:
         return
+    contact = design.contact
+    rubs = contact is not None and any(
+        friction for friction in (contact.friction, *(pair.friction for pair in contact.pairs))
+    )
+    if rubs and has_feature(design, "contact"):
+        yield ErrorDetail(
+            "contact.friction",
+            "may end a motion in CalculiX 2.20, where an impact with friction did not converge",
+            "leave friction out, or export it at rest",
+        )
     for index, part in enumerate(design.parts):
         if design.material_of(part).model == "ogden":
             yield ErrorDetail(

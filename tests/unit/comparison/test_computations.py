@@ -174,6 +174,17 @@ def test_a_motion_of_rubber_of_ogden_has_a_warning():
     assert "does not begin to move" in found.what
 
 
+def test_a_motion_with_friction_has_a_warning():
+    timed = Solver(method="dynamics", end_time=0.1)
+    for friction, solver, places in (
+        (0.3, timed, ["contact.friction"]),
+        (0.0, timed, []),
+        (0.3, Solver(), []),
+    ):
+        design = bar(objects=[PLATE], contact=Contact(friction=friction), solver=solver)
+        assert [each.where for each in Deck.of(design).lost] == places
+
+
 def test_lost_entries_stand_in_the_file():
     design = bar(
         tendons=[
@@ -244,7 +255,7 @@ def test_a_loose_body_is_refused_at_rest():
     with pytest.raises(SimulationError, match="clamps: hold nothing"):
         Deck.of(bar(clamps=[], floor=vs.Floor()))
     timed = Solver(method="dynamics", end_time=0.1)
-    assert "*DYNAMIC" in Deck.of(bar(clamps=[], floor=vs.Floor(), solver=timed)).text
+    assert "*DYNAMIC, ALPHA=-0.3" in Deck.of(bar(clamps=[], floor=vs.Floor(), solver=timed)).text
     nowhere = [vs.Clamp(region=vs.Region(x=(1, 1)))]
     with pytest.raises(DesignError, match=r"clamps\[0\].region"):
         Deck.of(bar(clamps=nowhere))
