@@ -114,7 +114,7 @@ class DeckNames:
         probes = {name: places[f"probe_{name}"] for name in setup.places}
         weights: dict[str, Floats] = {}
         for name, place in setup.places.items():
-            # Of the corners around a point on the grid all but one have no weight.
+            # A point on the grid has one corner with a weight.
             kept = np.abs(place.weights) > _NO_WEIGHT
             nodes[probes[name]] = model.vertex_nodes[place.vertices[kept]]
             weights[probes[name]] = place.weights[kept]
