@@ -14,8 +14,9 @@ from importlib import import_module
 from typing import Any, Final, Literal
 
 #: Subject of a file: volume cells, triangles, an array of voxels, a robot with its objects and
-#: drives for another program, the states of a path or a motion, a design, or a table.
-Kind = Literal["cells", "surface", "voxels", "scene", "series", "design", "table"]
+#: drives for another program, the states of a path or a motion, a design, a table, or the columns
+#: of an instrument.
+Kind = Literal["cells", "surface", "voxels", "scene", "series", "design", "table", "measured"]
 #: Heading of the files of each kind.
 HEADINGS: Final[dict[Kind, str]] = {
     "cells": "Mesh",
@@ -25,6 +26,7 @@ HEADINGS: Final[dict[Kind, str]] = {
     "series": "Series",
     "design": "Design",
     "table": "Table",
+    "measured": "Measured data",
 }
 #: Contents beside the geometry that a written file keeps.
 Holding = Literal["parts", "regions", "cavities", "values"]
@@ -44,7 +46,8 @@ class Format:
         Name of the format and of the programs that it is for.
     reader
         Function from a path to :class:`~voxsoft.formats.contents.Contents`, as
-        ``"module:function"``; None if the format is not read.
+        ``"module:function"``; None if the format is not read. Of ``measured`` it takes the path
+        and :class:`~voxsoft.instruments.options.Options`.
     taken
         Contents that the reader takes, for the documentation.
     writer
@@ -294,15 +297,54 @@ FORMATS: Final = (
         purpose="To keep, cite or send the design: this page of text rebuilds everything.",
         unit="says the unit of each number",
     ),
+    Format(
+        (".csv", ".txt", ".tsv", ".dat", ".log", ".tra"),
+        "measured",
+        "Tables and logs as text: testing machines, loggers, ImageJ, DeepLabCut, Kinovea",
+        reader="voxsoft.instruments.read:read_table",
+        taken="columns of numbers below any preamble; commas, semicolons or tabs between them, "
+        "decimal commas, separators of thousands; units in the header or below it; cells without "
+        "a number are gaps",
+    ),
+    Format(
+        (".tdms",),
+        "measured",
+        "TDMS of LabVIEW and DAQmx; `pip install 'voxsoft[measured]'`",
+        reader="voxsoft.instruments.tdms:read",
+        taken="scaled channels with their units, each at its own rate and start",
+    ),
+    Format(
+        (".c3d",),
+        "measured",
+        "C3D of motion capture; `pip install 'voxsoft[measured]'`",
+        reader="voxsoft.instruments.c3d:read",
+        taken="markers in their unit, hidden ones as gaps, and analog channels at their own rate; "
+        "a file with more frames than the 65,535 that it can count is refused",
+    ),
+    Format(
+        (".mat",),
+        "measured",
+        "MAT of MATLAB up to version 7",
+        reader="voxsoft.instruments.mat:read",
+        taken="vectors and columns of matrices, in structs too; whole numbers as floats; units "
+        "behind the names, or given",
+    ),
 )
 
 #: Formats that can be written, by each suffix.
 WRITTEN: Final = {
     suffix: form for form in FORMATS if form.writer is not None for suffix in form.suffixes
 }
-#: Formats that can be read, by suffix.
+#: Formats of meshes and surfaces that can be read, by suffix.
 READ: Final = {
-    suffix: form for form in FORMATS if form.reader is not None for suffix in form.suffixes
+    suffix: form
+    for form in FORMATS
+    if form.reader is not None and form.kind != "measured"
+    for suffix in form.suffixes
+}
+#: Formats of measured data, by suffix.
+MEASURED: Final = {
+    suffix: form for form in FORMATS if form.kind == "measured" for suffix in form.suffixes
 }
 
 

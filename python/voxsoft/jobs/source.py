@@ -128,11 +128,23 @@ class MeasuredTable(Record):
         FileError
             A missing, unreadable or too large file.
         MeasurementError
-            Text that is not UTF-8.
+            A file that is no text.
         """
-        from voxsoft.files.measurements import measurement_text
+        from voxsoft.instruments.read import table_text
 
-        return cls(name=Path(path).name, text=measurement_text(path), select=select)
+        return cls(name=Path(path).name, text=table_text(path), select=select)
+
+    def on_line(self, line: str) -> Self:
+        r"""Return the table with a comment that names the line of its arc positions.
+
+        Examples
+        --------
+        >>> table = MeasuredTable(name="t", text="arc_mm,dz_mm\n30,-5").on_line("centerline")
+        >>> table.read().line
+        'centerline'
+        """
+        # Below: lines keep their numbers in errors.
+        return self.replace(text=f"{self.text.rstrip()}\n# line: {line}\n")
 
     def read(self) -> Measurement:
         """Make the measurement.

@@ -1,0 +1,129 @@
+"""MAT files of MATLAB up to version 7, read by SciPy: vectors, columns of matrices, structs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.errors import FileError, MeasurementError
+from voxsoft.instruments.column import Column
+from voxsoft.instruments.heads import split_name
+from voxsoft.instruments.options import Options
+from voxsoft.instruments.texts import Found
+
+_TIMES: Final = ("time", "t", "zeit", "timestamp")
+#: First bytes of version 7.3, which is HDF5.
+_HDF5: Final = b"MATLAB 7.3"
+
+
+def arrays_of(path: Path) -> dict[str, Any]:
+    """Return the variables of a file by name.
+
+    Raises
+    ------
+    FileError
+        It is damaged, or of version 7.3.
+    """
+    from scipy.io import loadmat
+
+    with path.open("rb") as file:
+        if file.read(len(_HDF5)) == _HDF5:
+            what = "is a MAT file of version 7.3, which is HDF5"
+            raise FileError(str(path), what, "save it by save(name, '-v7') in MATLAB")
+    try:
+        found = loadmat(str(path), squeeze_me=True, struct_as_record=False)
+    # SciPy raises errors of many kinds for damaged files.
+    except Exception as error:
+        shown = str(error).partition("\n")[0][:200] or type(error).__name__
+        what = f"cannot be read as MAT: {shown}"
+        raise FileError(str(path), what, "save or copy it again") from error
+    return {name: value for name, value in found.items() if not name.startswith("__")}
+
+
+def read(path: Path, options: Options) -> Found:
+    """Read all vectors of numbers, rows or columns alike, and the columns of matrices.
+
+    MATLAB stores whole numbers in as few bits as they need: they are floats here, as there. Units
+    stand behind the names (``force_N``) or are given.
+
+    Raises
+    ------
+    FileError
+        It is damaged, or of version 7.3.
+    MeasurementError
+        Times of another length, or a unit that is not known.
+    """
+    notes: list[str] = []
+    vectors: list[tuple[str, NDArray[np.float64]]] = []
+    for name, value in _leaves(arrays_of(path), "", notes):
+        array = np.asarray(value)
+        if array.size == 0:
+            notes.append(f"{name} is empty, and is left out")
+        elif array.dtype.kind not in "fiub":
+            notes.append(f"{name} holds no numbers, and is left out")
+        elif array.size == 1:
+            notes.append(f"{name} = {float(array.ravel()[0]):g} is one number, and no column")
+        elif array.ndim == 1:
+            vectors.append((name, array.astype(np.float64)))
+        elif array.ndim == 2:
+            table = array.astype(np.float64)
+            if table.shape[0] < table.shape[1]:
+                table = table.T
+                notes.append(f"{name}: its rows are taken for columns, {array.shape}")
+            vectors += [(f"{name} {n + 1}", column) for n, column in enumerate(table.T)]
+        else:
+            notes.append(f"{name} has {array.ndim} axes, and is left out")
+    return Found(list(_columns(path.name, vectors, options, notes)), notes)
+
+
+def _columns(
+    where: str,
+    vectors: list[tuple[str, NDArray[np.float64]]],
+    options: Options,
+    notes: list[str],
+) -> Iterator[Column]:
+    named = [(*split_name(name), numbers) for name, numbers in vectors]
+    asked = None if options.time is None else options.time.casefold()
+    labels = [label.casefold().rpartition("/")[2] for label, _, _ in named]
+    due = (asked,) if asked is not None else _TIMES
+    clocks = [n for n, label in enumerate(labels) if label in due]
+    if asked is not None and not clocks:
+        came = ", ".join(label for label, _, _ in named)
+        raise MeasurementError(where, f'has no "{options.time}"', f"it has {came}")
+    clock = clocks[0] if clocks and options.rate is None else None
+    times = None
+    if clock is not None:
+        label, unit, numbers = named[clock]
+        seen = Column(label, options.unit_of(label, unit), numbers)
+        if seen.kind != "time":
+            hint = f'give units={{"{label}": "s"}}, or rate='
+            raise MeasurementError(f"{where}, {label}", "is a time without a unit of time", hint)
+        times = seen.values
+    for n, (label, unit, numbers) in enumerate(named):
+        if n == clock:
+            continue
+        own = times
+        if options.rate is not None:
+            own = np.arange(len(numbers)) / options.rate
+        elif times is not None and len(times) != len(numbers):
+            notes.append(f"{label} has {len(numbers)} rows, its times {len(times)}: no times")
+            own = None
+        yield Column(label, options.unit_of(label, unit), numbers, own)
+
+
+def _leaves(values: dict[str, Any], before: str, notes: list[str]) -> Iterator[tuple[str, Any]]:
+    """Yield arrays by name; fields of structs as ``"struct/field"``."""
+    for name, value in values.items():
+        whole = f"{before}{name}"
+        fields = getattr(value, "_fieldnames", None)
+        if fields is not None:
+            inner = {field: getattr(value, field) for field in fields}
+            yield from _leaves(inner, f"{whole}/", notes)
+        elif type(value).__name__ == "MatlabOpaque":
+            notes.append(f"{whole} is a table or an object, which MAT hides: save its columns")
+        else:
+            yield whole, value
