@@ -37,8 +37,8 @@ def times_of(name: str, column: Column) -> Floats:
 def step_of(name: str, column: Column) -> float:
     """Return the time of the step of a column in s; see :meth:`Measured.step`.
 
-    The two levels are the means of the rows before and after a split, that which leaves the least
-    squared scatter about both.
+    The two levels are the medians of the rows before and after a split, that which leaves the least
+    squared scatter about the means of both.
     """
     times, seen = times_of(name, column), np.isfinite(column.numbers)
     times, values = times[seen], column.numbers[seen]
@@ -50,7 +50,7 @@ def step_of(name: str, column: Column) -> float:
     # Sum of squares between the two sides, for a split before each row but the first.
     between = below**2 * (1.0 / count + 1.0 / (len(values) - count))
     split = int(np.argmax(between)) + 1
-    low, high = float(values[:split].mean()), float(values[split:].mean())
+    low, high = float(np.median(values[:split])), float(np.median(values[split:]))
     rest = np.concatenate([values[:split] - low, values[split:] - high])
     scatter = float(np.sqrt(rest @ rest / len(rest)))
     if abs(high - low) < _CLEAR * scatter or high == low:
@@ -102,8 +102,10 @@ def shift_between(name: str, first: Column, other_name: str, other: Column) -> t
     least = 1e-9 * (a @ a) * (b @ b)
     alike = np.where(spread > least, across / np.sqrt(np.maximum(spread, least)), 0.0)
     alike[overlap < 0.25 * min(len(a), len(b))] = 0.0
-    # The longer of two overlaps that are equally alike says more.
+    # The longer of two overlaps that are equally alike says more; then up to the nearest peak.
     best = int(np.argmax(alike * np.sqrt(overlap / overlap.max())))
+    while (near := max(0, best - 1) + int(np.argmax(alike[max(0, best - 1) : best + 2]))) != best:
+        best = near
     if not alike[best] >= _ALIKE:
         what = f"{first.name} and {other.name} of {other_name} are not alike at any shift"
         what += f": they correlate to {alike[best]:.2f} at best"

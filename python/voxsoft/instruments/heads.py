@@ -37,6 +37,10 @@ _RATIOS: Final = {
 _CELSIUS: Final = ("°c", "degc", "deg c", "celsius")
 _PIXELS: Final = ("px", "pixel", "pixels")
 _ZERO_CELSIUS: Final = 273.15
+_TIMES: Final = (
+    *("time", "test time", "elapsed time", "timestamp", "time stamp", "datetime", "date time"),
+    *("zeit", "prüfzeit", "date/time", "datum/zeit", "zeitstempel"),
+)
 
 
 class Unit(NamedTuple):
@@ -142,6 +146,17 @@ def split_name(cell: str, known: Collection[str] = ()) -> tuple[str, str]:
     label, joint, unit = head.replace(" ", "_").rpartition("_")
     meant = _label(label) in known or (not unit.isdigit() and unit_of(unit) is not None)
     return (_spaced(label), unit) if joint and label and meant else (_spaced(head), "")
+
+
+def is_time(label: str) -> bool:
+    """Return True for the name of a column of times; ``T`` is a temperature.
+
+    Examples
+    --------
+    >>> is_time("t"), is_time("T"), is_time("Test time")
+    (True, False, True)
+    """
+    return label == "t" or label.casefold() in _TIMES
 
 
 def units_row(rows: Sequence[TextRow], header: int, at: Sequence[int]) -> dict[int, str] | None:

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from voxsoft.errors import FileError, MeasurementError
 from voxsoft.instruments.column import Column
-from voxsoft.instruments.heads import split_name
+from voxsoft.instruments.heads import is_time, split_name
 from voxsoft.instruments.options import Options
 from voxsoft.instruments.texts import Found
 
-_TIMES: Final = ("time", "t", "zeit", "timestamp")
 #: First bytes of version 7.3, which is HDF5.
 _HDF5: Final = b"MATLAB 7.3"
 
@@ -88,9 +87,12 @@ def _columns(
 ) -> Iterator[Column]:
     named = [(*split_name(name), numbers) for name, numbers in vectors]
     asked = None if options.time is None else options.time.casefold()
-    labels = [label.casefold().rpartition("/")[2] for label, _, _ in named]
-    due = (asked,) if asked is not None else _TIMES
-    clocks = [n for n, label in enumerate(labels) if label in due]
+    labels = [label.rpartition("/")[2] for label, _, _ in named]
+    clocks = [
+        n
+        for n, label in enumerate(labels)
+        if (is_time(label) if asked is None else label.casefold() == asked)
+    ]
     if asked is not None and not clocks:
         came = ", ".join(label for label, _, _ in named)
         raise MeasurementError(where, f'has no "{options.time}"', f"it has {came}")

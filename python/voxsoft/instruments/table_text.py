@@ -41,9 +41,14 @@ class TextRow(NamedTuple):
         return self.cells[at] if at < len(self.cells) else ""
 
     @property
+    def filled(self) -> tuple[str, ...]:
+        """Cells that are not empty."""
+        return tuple(cell for cell in self.cells if cell)
+
+    @property
     def is_blank(self) -> bool:
         """True if all cells are empty."""
-        return not any(self.cells)
+        return not self.filled
 
 
 @dataclass(frozen=True)
@@ -99,9 +104,26 @@ class TextTable:
 
     def likely_header(self, is_unit: Callable[[str], bool]) -> int:
         """Return the index of the most likely header: the row above the numbers and their units."""
-        first = next((n for n, row in enumerate(self.rows) if all(map(is_number, row.cells))), 0)
-        above = [n for n in range(first) if not all(map(is_unit, self.rows[n].cells))]
+        numbers = next((n for n, row in enumerate(self.rows) if all(map(is_number, row.cells))), 0)
+        if not numbers:
+            return self._header_of_mixed(is_unit)
+        above = [n for n in range(numbers) if not all(map(is_unit, self.rows[n].cells))]
         return above[-1] if above else 0
+
+    def _header_of_mixed(self, is_unit: Callable[[str], bool]) -> int:
+        """Find the header where each line holds some text, such as a date or a state.
+
+        It has a name for about all cells of the last lines, no number, and some number below.
+        """
+        width = max((len(row.filled) for row in self.rows[-20:]), default=0)
+        for at, row in enumerate(self.rows[:PREAMBLE]):
+            below = [
+                each for each in self.rows[at + 1 : at + 3] if not all(map(is_unit, each.cells))
+            ]
+            named = len(row.filled) >= max(width - 1, 1) and not any(map(is_number, row.filled))
+            if named and below and any(map(is_number, below[0].filled)):
+                return at
+        return 0
 
     def check_lengths(self, header: int) -> None:
         """Refuse lines with filled cells beyond the header's: decimal commas between commas.

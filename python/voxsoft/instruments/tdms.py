@@ -9,11 +9,11 @@ import numpy as np
 
 from voxsoft.errors import FileError, MeasurementError, MissingPackageError
 from voxsoft.instruments.column import Column, Floats
+from voxsoft.instruments.heads import is_time
 from voxsoft.instruments.options import Options
 from voxsoft.instruments.texts import Found
 
 _UNITS: Final = ("unit_string", "NI_UnitDescription", "unit", "Unit")
-_TIMES: Final = ("time", "t", "timestamp", "zeit", "test time")
 
 
 def read(path: Path, options: Options) -> Found:
@@ -106,8 +106,8 @@ def _times_of_group(
     """Return the channel of the time of a group, and its times in s."""
     asked = None if options.time is None else options.time.casefold()
     for channel in channels:
-        label = channel["name"].casefold()
-        if label != asked and (asked is not None or label not in _TIMES):
+        named = is_time(channel["name"]) and channel["increment"] <= 0.0
+        if not (named if asked is None else channel["name"].casefold() == asked):
             continue
         values = channel["values"]
         if values.dtype.kind == "M":

@@ -10,14 +10,10 @@ import numpy as np
 
 from voxsoft.errors import MeasurementError
 from voxsoft.instruments.column import Column, Floats
-from voxsoft.instruments.heads import is_unit, split_name, unit_of, units_row
+from voxsoft.instruments.heads import is_time, is_unit, split_name, unit_of, units_row
 from voxsoft.instruments.options import Options
 from voxsoft.instruments.table_text import NumberForm, TextRow, TextTable
 
-_TIMES: Final = (
-    *("time", "t", "test time", "elapsed time", "timestamp", "time stamp", "datetime", "date time"),
-    *("zeit", "prüfzeit", "date/time", "datum/zeit", "zeitstempel"),
-)
 _NOTHING: Final = ("", "-", "--", "---", "nan", "n/a", "na", "null", "none", "inf", "-inf")
 _CLOCK: Final = re.compile(r"(?:(\d+):)?(\d{1,2}):(\d{1,2}(?:[.,]\d+)?)")
 #: Forms of dates that Python's ISO reader does not take; day before month, as a point tells.
@@ -108,7 +104,7 @@ def _clock(table: TextTable, named: dict[int, tuple[str, str]], options: Options
                 return index
         came = ", ".join(f'"{label}"' for label, _ in named.values())
         raise MeasurementError(table.name, f'has no column "{options.time}"', f"it has {came}")
-    found = [index for index, (label, _) in named.items() if label.casefold() in _TIMES]
+    found = [index for index, (label, _) in named.items() if is_time(label)]
     if len(found) > 1:
         came = " and ".join(f'"{named[index][0]}"' for index in found)
         raise MeasurementError(table.name, f"{came} are both times", "choose one: time=")
