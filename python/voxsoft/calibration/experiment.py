@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -39,7 +39,8 @@ class Experiment(Shown):
     ----------
     design
         Body as it was clamped and loaded in the laboratory. All its parts are of one material, the
-        one to be calibrated; its present constants do not matter.
+        one to be calibrated; its present constants do not matter. Values that the measurement
+        names (:attr:`Measurement.changes`) stand in place of its own.
     measurement
         Measured positions or displacements of its stations.
     line
@@ -73,6 +74,7 @@ class Experiment(Shown):
     line_is_assumed: bool = field(init=False, default=False)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "design", changed(self.design, self.measurement.changes))
         assumed = self.line is None and self.measurement.line is None
         object.__setattr__(self, "line_is_assumed", assumed)
         if self.line is None:
@@ -257,6 +259,17 @@ class Experiment(Shown):
                     f"{format_quantity(float(self.measurement.arcs.max()), 'length')}",
                     _unit_hint(reach, float(self.measurement.arcs.max())),
                 )
+
+
+def changed(design: Design, changes: Sequence[str]) -> Design:
+    """Return a design with other values, as ``--set`` takes them.
+
+    Raises
+    ------
+    DesignError
+        A key that leads nowhere, or a value that is none.
+    """
+    return design.with_values(*changes) if changes else design
 
 
 def _unit_hint(came: float, due: float) -> str:

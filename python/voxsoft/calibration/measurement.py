@@ -41,6 +41,8 @@ class Measurement(Shown):
     line
         Line of the body on which arc positions were marked, if it is known: ``lower-edge``,
         ``centerline`` or ``upper-edge``.
+    changes
+        Values of the design in this test, as ``--set`` takes them: ``("loads[0].value=12 kPa",)``.
 
     Raises
     ------
@@ -66,6 +68,7 @@ seen
     name: str = "measurement"
     source: str = ""
     line: LineName | None = None
+    changes: tuple[str, ...] = ()
 
     def __init__(
         self,
@@ -77,6 +80,7 @@ seen
         name: str = "measurement",
         source: str = "",
         line: LineName | None = None,
+        changes: tuple[str, ...] | list[str] = (),
     ) -> None:
         numbers = np.array(values, dtype=np.float64)
         numbers.setflags(write=False)
@@ -88,6 +92,7 @@ seen
             "name": name,
             "source": source,
             "line": line,
+            "changes": tuple(changes),
         }
         for field, value in fields.items():
             object.__setattr__(self, field, value)

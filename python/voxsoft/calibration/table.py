@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final, NamedTuple, get_args
 
 import numpy as np
@@ -20,6 +23,7 @@ ARCS: Final = ("arc position from clamp", "arc position", "arc length", "arc", "
 _LABELS: Final = ("probe", "material", "note")
 _KNOWN: Final = frozenset((*ARCS, *QUANTITIES, *_LABELS))
 _LINE: Final = "line:"
+_SET: Final = "set:"
 _ALLOWED: Final = (
     f"columns are probe or {ARC}_mm for the station, x_mm, y_mm, z_mm for positions relative to "
     "the clamp face, dx_mm, dy_mm, dz_mm for displacements (or in other units of length), "
@@ -44,7 +48,8 @@ def read_measurement(text: str, *, name: str = "table", select: str | None = Non
 
     Lines that start with ``#`` are comments; they name the source of the data and become the
     measurement's source. ``# line: centerline`` (or ``lower-edge``, ``upper-edge``) says on which
-    line of the body arc positions were marked. The header names the columns:
+    line of the body arc positions were marked; ``# set: loads[0].value=12 kPa`` says a value of the
+    design in this test. The header names the columns:
 
     - the station: ``probe`` (a probe of the design) or ``arc_position_from_clamp_m``, on the
       lower edge unless a calibration is given another line;
@@ -90,9 +95,42 @@ def read_measurement(text: str, *, name: str = "table", select: str | None = Non
         rows = rows[1:]
     _check_lengths(rows, len(table.rows[at].cells), name)
     chosen = _selected(rows, heads, select, name)
-    lines = [c for c in table.comments if c.lower().startswith(_LINE)]
-    source = " ".join(comment for comment in table.comments if comment not in lines)
-    return _measurement(table, chosen, heads, _line(lines, name), source)
+    lines, changes = (
+        [each for each in table.comments if each.lower().startswith(key)] for key in (_LINE, _SET)
+    )
+    source = " ".join(each for each in table.comments if each not in (*lines, *changes))
+    found = _measurement(table, chosen, heads, source)
+    return replace(
+        found,
+        line=_line(lines, name),
+        changes=tuple(each[len(_SET) :].strip() for each in changes),
+    )
+
+
+def table_of(measurement: Measurement) -> str:
+    """Write a measurement as a table that :func:`read_measurement` reads back as it is, but names.
+
+    Examples
+    --------
+    >>> seen = Measurement(quantities=["dz"], values=[[-0.005]], probes=["tip"], changes=["a=1 mm"])
+    >>> print(table_of(seen), end="")
+    # set: a=1 mm
+    probe,dz_m
+    tip,-0.005
+    """
+    comments = [measurement.source] if measurement.source else []
+    comments += [f"{_LINE} {measurement.line}"] if measurement.line else []
+    comments += [f"{_SET} {change}" for change in measurement.changes]
+    arcs = measurement.arcs
+    stations = list(map(repr, arcs.tolist())) if arcs is not None else measurement.probes
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(
+        ["probe" if arcs is None else f"{ARC}_m", *(f"{each}_m" for each in measurement.quantities)]
+    )
+    for station, row in zip(stations or (), measurement.values.tolist(), strict=True):
+        writer.writerow([station, *map(repr, row)])
+    return "".join(f"# {comment}\n" for comment in comments) + out.getvalue()
 
 
 def _line(comments: Sequence[str], name: str) -> LineName | None:
@@ -214,7 +252,6 @@ def _measurement(
     table: TextTable,
     rows: Sequence[TextRow],
     heads: Sequence[_Head],
-    line: LineName | None,
     source: str,
 ) -> Measurement:
     name = table.name
@@ -233,7 +270,6 @@ def _measurement(
             probes=None if arc else [row.cell(at["probe"].at) for row in rows],
             name=(rows[0].cell(material.at) if material else "") or name,
             source=source,
-            line=line,
         )
     except MeasurementError as error:
         raise MeasurementError(f"{name}, {error.where}", error.what, error.hint) from None

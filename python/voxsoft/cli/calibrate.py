@@ -68,7 +68,7 @@ def calibrate(
 
     with errors_in_words(json=json):
         loaded = files.load(design, assignments=sets or [])
-        tables = [MeasuredTable.of_file(path, material) for path in data]
+        tables = [table for path in data for table in MeasuredTable.of_file(path, material)]
         spec = CalibrateSpec(
             design=DesignSource.of_file(design, sets or []),
             data=_on_a_line(tables, line, asks=not json and sys.stdin.isatty()),

@@ -257,6 +257,14 @@ FORMATS: Final = (
         "environment and controllers are not read",
     ),
     Format(
+        (".mat",),
+        "voxels",
+        "Array of MATLAB up to version 7",
+        reader="voxsoft.formats.mat:read_voxels",
+        taken="as of `.npy`, from the one array with three axes; whole numbers stored as doubles "
+        "too. Its axes are x, y, z: images of MATLAB have y first",
+    ),
+    Format(
         (".xml",),
         "scene",
         "MJCF, for MuJoCo 4",

@@ -4,43 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.errors import FileError, MeasurementError
+from voxsoft.errors import MeasurementError
+from voxsoft.formats.mat import variables_of
 from voxsoft.instruments.column import Column
 from voxsoft.instruments.heads import is_time, split_name
 from voxsoft.instruments.options import Options
 from voxsoft.instruments.texts import Found
-
-#: First bytes of version 7.3, which is HDF5.
-_HDF5: Final = b"MATLAB 7.3"
-
-
-def arrays_of(path: Path) -> dict[str, Any]:
-    """Return the variables of a file by name.
-
-    Raises
-    ------
-    FileError
-        It is damaged, or of version 7.3.
-    """
-    from scipy.io import loadmat
-
-    with path.open("rb") as file:
-        if file.read(len(_HDF5)) == _HDF5:
-            what = "is a MAT file of version 7.3, which is HDF5"
-            raise FileError(str(path), what, "save it by save(name, '-v7') in MATLAB")
-    try:
-        found = loadmat(str(path), squeeze_me=True, struct_as_record=False)
-    # SciPy raises errors of many kinds for damaged files.
-    except Exception as error:
-        shown = str(error).partition("\n")[0][:200] or type(error).__name__
-        what = f"cannot be read as MAT: {shown}"
-        raise FileError(str(path), what, "save or copy it again") from error
-    return {name: value for name, value in found.items() if not name.startswith("__")}
 
 
 def read(path: Path, options: Options) -> Found:
@@ -58,7 +32,7 @@ def read(path: Path, options: Options) -> Found:
     """
     notes: list[str] = []
     vectors: list[tuple[str, NDArray[np.float64]]] = []
-    for name, value in _leaves(arrays_of(path), "", notes):
+    for name, value in _leaves(variables_of(path), "", notes):
         array = np.asarray(value)
         if array.size == 0:
             notes.append(f"{name} is empty, and is left out")

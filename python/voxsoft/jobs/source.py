@@ -120,19 +120,29 @@ class MeasuredTable(Record):
     select: str | None = None
 
     @classmethod
-    def of_file(cls, path: FilePath, select: str | None = None) -> Self:
-        """Read the file of a table.
+    def of_file(cls, path: FilePath, select: str | None = None) -> tuple[Self, ...]:
+        """Read the file of a table, or the tables of a test (TOML): one for each load.
 
         Raises
         ------
         FileError
             A missing, unreadable or too large file.
         MeasurementError
-            A file that is no text.
+            A file that is no text, or a test that cannot be used.
         """
-        from voxsoft.instruments.read import table_text
+        name = Path(path).name
+        if Path(path).suffix.lower() != ".toml":
+            from voxsoft.instruments.read import table_text
 
-        return cls(name=Path(path).name, text=table_text(path), select=select)
+            return (cls(name=name, text=table_text(path), select=select),)
+        from voxsoft.calibration import table_of
+        from voxsoft.files.measured_tests import load_measurements
+
+        found = load_measurements(path)
+        return tuple(
+            cls(name=f"{name}, {at} of {len(found)}", text=table_of(measurement))
+            for at, measurement in enumerate(found, start=1)
+        )
 
     def on_line(self, line: str) -> Self:
         r"""Return the table with a comment that names the line of its arc positions.
