@@ -26,7 +26,8 @@ for.
 MEASURED: Final = """
 ## Measured data
 
-Columns of instruments over time, by `voxsoft.measured`; `voxsoft material fit` takes them too.
+Columns of instruments over time, by `voxsoft.measured`; `voxsoft material fit` takes them, and
+`calibrate` and `compare` by a test ([which file goes where](../how-to/files.md)).
 
 | suffix | format | taken |
 |---|---|---|

@@ -86,7 +86,15 @@ class Profile:
     @property
     def sentence(self) -> str:
         """Interval of the parameter in words."""
-        low, high = (None if end is None else self._shown(end) for end in (self.low, self.high))
+        digits = 3
+        if self.low is not None and self.high is not None:
+            # As many as the two ends take to differ.
+            digits = next(
+                (n for n in range(3, 7) if self._shown(self.low, n) != self._shown(self.high, n)), 7
+            )
+        low, high = (
+            None if end is None else self._shown(end, digits) for end in (self.low, self.high)
+        )
         if low and high:
             within = f"between {low} and {high} (95 %)"
             return within if self.identifiable else f"{within}: too wide to count as identified"
@@ -96,8 +104,8 @@ class Profile:
             return f"only bounded from below, by {low} (95 %)"
         return "not identifiable: the data fit as well anywhere in the range"
 
-    def _shown(self, value: float) -> str:
-        return format_quantity(float(f"{value:.3g}"), self.kind)
+    def _shown(self, value: float, digits: int) -> str:
+        return format_quantity(float(f"{value:.{digits}g}"), self.kind)
 
 
 def profiles(misfit: Misfit, best: Evaluation) -> tuple[Profile, ...]:

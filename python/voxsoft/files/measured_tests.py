@@ -5,16 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import ClassVar, Final, Literal
 
-from pydantic import Field
+from pydantic import Field, ValidationError
 
 from voxsoft.calibration import LineName, Measurement, measurements_at
-from voxsoft.errors import DesignError, MeasurementError, VoxSoftError
+from voxsoft.errors import MeasurementError, VoxSoftError
 from voxsoft.files.designs import FilePath, read_document, read_text
 from voxsoft.files.marks import Picture, measurement_of_marks
 from voxsoft.instruments import Measured, measured
-from voxsoft.records import Record
+from voxsoft.records import Record, plain_error
 from voxsoft.records.table import Table
-from voxsoft.units import Time
+from voxsoft.units import FILE_CONTEXT, Time
 
 SCHEMA: Final = "voxsoft-test/1"
 
@@ -202,9 +202,9 @@ def load_measured_test(path: FilePath) -> MeasuredTest:
         hint = f'write schema = "{SCHEMA}" above [points] or [picture]'
         raise MeasurementError(name, f"is no test: it has {came}", hint)
     try:
-        return MeasuredTest.model_validate(document, context={"source": "file"})
-    except DesignError as error:
-        raise MeasurementError.listing(error.problems) from None
+        return MeasuredTest.model_validate(document, context=dict(FILE_CONTEXT))
+    except ValidationError as error:
+        raise plain_error(error, MeasuredTest, document) from None
 
 
 def load_measurements(path: FilePath, *, select: str | None = None) -> list[Measurement]:
