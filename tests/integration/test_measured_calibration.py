@@ -153,9 +153,10 @@ def moved():
 
 
 @pytest.fixture
-def folder(moved, tmp_path):
-    write_tdms(tmp_path / "cell.tdms", 1)
-    write_c3d(tmp_path / "camera.c3d", moved, 2)
+def folder(moved, tmp_path, request):
+    seed = getattr(request, "param", 1)
+    write_tdms(tmp_path / "cell.tdms", seed)
+    write_c3d(tmp_path / "camera.c3d", moved, seed + 1)
     (tmp_path / "strip.toml").write_text(STRIP % 400e3)
     (tmp_path / "test.toml").write_text(TEST)
     return tmp_path
@@ -178,7 +179,10 @@ def test_a_test_of_two_instruments_gives_the_displacements_under_each_force(fold
         assert vs.units.parse(value, "force") == pytest.approx(force, abs=5 * 2e-3 / np.sqrt(2000))
 
 
+# Noise of seed 20 puts the forces off alike: an interval of twelve independent numbers leaves the
+# truth out, as it does for 8 of 18 seeds; the one of the calibration leaves it out for 1 of 20.
 @pytest.mark.long
+@pytest.mark.parametrize("folder", [1, 20], indirect=True)
 def test_the_modulus_comes_back_within_its_interval(folder):
     design, test, out = (str(folder / name) for name in ("strip.toml", "test.toml", "fit"))
     called = ["calibrate", design, test, "--method", "gradient", "--out", out, "--json"]
@@ -186,7 +190,6 @@ def test_the_modulus_comes_back_within_its_interval(folder):
     assert outcome.exit_code == 0, outcome.output
     found = json.loads(outcome.stdout)
     interval = found["intervals"]["young"]
-    print(found["parameters"], interval["low"], interval["high"], found["mean_error"])
     assert interval["low"] <= YOUNG <= interval["high"]
     # An interval that holds everything would hold the truth as well.
     assert interval["high"] - interval["low"] < 0.05 * YOUNG

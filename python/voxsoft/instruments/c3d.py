@@ -20,7 +20,8 @@ _BLOCK: Final = 512
 def read(path: Path, options: Options) -> Found:
     """Read the markers, as columns of their coordinates, and the analog channels.
 
-    Frames in which a marker was hidden are gaps: those with a negative residual, or NaN. Times
+    Frames in which a marker was hidden are gaps: ezc3d reads those with a negative residual as NaN,
+    and other programs write 0, 0, 0. Times
     count from the first frame of the capture, whose number the file holds.
 
     Raises
@@ -41,7 +42,6 @@ def read(path: Path, options: Options) -> Found:
         file: Any = ezc3d.c3d(str(path))
         points = np.asarray(file["data"]["points"], dtype=np.float64)
         analogs = np.asarray(file["data"]["analogs"], dtype=np.float64)
-        residuals = np.asarray(file["data"]["meta_points"]["residuals"], dtype=np.float64)
         known: Any = file["parameters"]
         first = int(file["header"]["points"]["first_frame"])
     # ezc3d raises errors of many kinds for damaged files.
@@ -61,8 +61,7 @@ def read(path: Path, options: Options) -> Found:
     unit = (_texts(known, "POINT", "UNITS") or [""])[0].strip()
     for index, label in enumerate(labels):
         place = points[:3, index, :].copy()
-        hidden = residuals[0, index] < 0.0 if residuals.shape[1:] == points.shape[1:] else False
-        place[:, hidden | ~np.isfinite(place).all(axis=0)] = np.nan
+        place[:, ~np.isfinite(place).all(axis=0)] = np.nan
         zeros = (place == 0.0).all(axis=0)
         if zeros.any() and not zeros.all():
             place[:, zeros] = np.nan

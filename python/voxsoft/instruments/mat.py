@@ -31,7 +31,7 @@ def read(path: Path, options: Options) -> Found:
         Times of another length, or a unit that is not known.
     """
     notes: list[str] = []
-    vectors: list[tuple[str, NDArray[np.float64]]] = []
+    vectors: list[tuple[str, NDArray[Any]]] = []
     for name, value in _leaves(variables_of(path), "", notes):
         array = np.asarray(value)
         if array.size == 0:
@@ -41,9 +41,9 @@ def read(path: Path, options: Options) -> Found:
         elif array.size == 1:
             notes.append(f"{name} = {float(array.ravel()[0]):g} is one number, and no column")
         elif array.ndim == 1:
-            vectors.append((name, array.astype(np.float64)))
+            vectors.append((name, array))
         elif array.ndim == 2:
-            table = array.astype(np.float64)
+            table = array
             if table.shape[0] < table.shape[1]:
                 table = table.T
                 notes.append(f"{name}: its rows are taken for columns, {array.shape}")
@@ -55,7 +55,7 @@ def read(path: Path, options: Options) -> Found:
 
 def _columns(
     where: str,
-    vectors: list[tuple[str, NDArray[np.float64]]],
+    vectors: list[tuple[str, NDArray[Any]]],
     options: Options,
     notes: list[str],
 ) -> Iterator[Column]:
