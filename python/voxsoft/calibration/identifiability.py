@@ -65,8 +65,8 @@ class Profile:
     alike, so that true intervals are wider. The converse is safe: a parameter that is not
     identifiable here is not identifiable.
 
-    Where the loads of the experiments were measured (:attr:`Measurement.changes`), an error of a
-    load moves all numbers of its experiment together. Of more such experiments than parameters the
+    Measured loads (:attr:`Measurement.changes`) have errors of their own, each of which
+    moves all numbers of its experiment together. Of more such experiments than parameters the
     interval holds also that of :func:`spread_of_experiments`.
     """
 
@@ -88,7 +88,7 @@ class Profile:
         """Interval of the parameter in words."""
         digits = 3
         if self.low is not None and self.high is not None:
-            # As many as the two ends take to differ.
+            # Enough to tell the two ends apart.
             digits = next(
                 (n for n in range(3, 7) if self._shown(self.low, n) != self._shown(self.high, n)), 7
             )
@@ -139,7 +139,7 @@ def profiles(misfit: Misfit, best: Evaluation) -> tuple[Profile, ...]:
 def spread_of_experiments(
     residuals: Sequence[NDArray[np.float64]], slopes: Sequence[NDArray[np.float64]]
 ) -> NDArray[np.float64]:
-    r"""Return half of the 95 % intervals of parameters by what experiments say apart, (k,).
+    r"""Return half of the 95 % intervals of parameters by the scatter of experiments, (k,).
 
     It is the cluster-robust interval of least squares (Liang and Zeger 1986,
     doi:10.1093/biomet/73.1.13), with residuals :math:`r_g` and slopes :math:`J_g` of experiment

@@ -36,7 +36,7 @@ def measurements_at(
     Parameters
     ----------
     data
-        Points over time, with columns of what loaded the body over the same clock, if any; axes
+        Points over time, with columns of the loads over the same clock, if any; axes
         are those of the design.
     rest
         Interval without the load.

@@ -188,8 +188,9 @@ def _heads(table: TextTable, at: int) -> list[_Head]:
 def _of_a_picture(name: str) -> MeasurementError:
     what = "X and Y are places in a picture, as ImageJ measures them, and name no station"
     hint = (
-        f"add a column probe or {ARC}_mm, call X x_mm, measured from the clamp face, and Y dz_mm, "
-        "the displacement upward (a picture's Y points down)"
+        f'describe them in a test (TOML): picture = {{ file = "{name}", unit = "mm", stations = '
+        '["0 mm", "15 mm"] }, the first at the clamp face; or add a column probe, and call X x_mm, '
+        "from the clamp face, and Y dz_mm, upward (a picture's Y points down)"
     )
     return MeasurementError(f"{name}, header", what, hint)
 

@@ -20,7 +20,7 @@ SCHEMA: Final = "voxsoft-test/1"
 
 
 class Instrument(Record):
-    """File of an instrument, with what it does not say itself.
+    """File of an instrument, with facts that it does not hold itself.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class MeasuredTest(Record):
     picture
         marks on a photograph.
     channels
-        File of what loaded the body, if it is another one.
+        File of the loads, if it is another one.
     synchronize
         Moment that the two files share; default: they have one clock.
     rest, loaded

@@ -4,6 +4,8 @@ A format is one entry here. The readers of meshes and surfaces, :func:`voxsoft.f
 ``voxsoft export`` and its help, the studio's lists and ``docs/reference/formats.md`` follow it.
 Readers and writers are named by module and function and are imported at their first use, so that
 help and lists cost no import.
+
+Long because it holds an entry for each format.
 """
 
 from __future__ import annotations
@@ -401,6 +403,17 @@ FORMATS: Final = (
         parts="columns by name",
         trap="`1,500` may be 1.5 or 1500: refused where nothing decides; 50 MB at most",
         command="voxsoft material fit coupon.csv --area '18 mm^2' --length '33 mm'",
+    ),
+    Format(
+        (".kva",),
+        "measured",
+        "Tracks of Kinovea",
+        reader="voxsoft.instruments.tracked:read_kva",
+        taken="points of each track with their names, in the coordinates of Kinovea's calibration",
+        states="none: `unit=`, and `rate=` where times are frames",
+        parts="`track x`, `track y`",
+        trap="times in hundredths of a second are coarse: `rate=` replaces them; y may point down",
+        command="voxsoft calibrate beam.toml test.toml --method gradient",
     ),
     Format(
         (".tdms",),

@@ -19,6 +19,8 @@ from voxsoft.instruments.texts import Found, read_text
 from voxsoft.instruments.tracked import DEEPLABCUT, KINOVEA, read_deeplabcut, read_kinovea
 from voxsoft.units import si_value
 
+#: Suffix of testXpert's own files, which are not read.
+_ZWICK: Final = ".zs2"
 _AXIS: Final = re.compile(r"([+-]?)([xyz])")
 
 
@@ -101,8 +103,8 @@ def is_text(path: str | os.PathLike[str]) -> bool:
     >>> is_text("curve.csv"), is_text("curve"), is_text("test.tdms")
     (True, True, False)
     """
-    form = MEASURED.get(Path(path).suffix.lower())
-    return form is None or form is MEASURED[".csv"]
+    suffix = Path(path).suffix.lower()
+    return MEASURED.get(suffix, MEASURED[".csv"]) is MEASURED[".csv"] and suffix != _ZWICK
 
 
 def table_text(path: str | os.PathLike[str]) -> str:
@@ -145,7 +147,7 @@ def _found(file: Path, options: Options) -> Found:
     form = MEASURED.get(suffix)
     if form is None:
         hint = f"export it as CSV; read are {', '.join(MEASURED)}"
-        if suffix == ".zs2":
+        if suffix == _ZWICK:
             hint = "export the curves from testXpert as text (.tra, .csv)"
         raise FileError(str(file), f"{suffix or 'a file without a suffix'} is not read", hint)
     assert form.reader is not None

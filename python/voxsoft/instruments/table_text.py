@@ -187,7 +187,7 @@ class NumberForm:
         decimal_comma = decimal_point = group_comma = group_point = ""
         both_comma = both_point = ""
         for raw in cells:
-            cell = _SPACED.sub("", raw)
+            cell = _joined(raw)
             if "," not in cell and "." not in cell:
                 continue
             if _GROUPS[","].fullmatch(cell):
@@ -225,7 +225,7 @@ class NumberForm:
         ValueError
             The cell holds no number of this form.
         """
-        text = _SPACED.sub("", cell)
+        text = _joined(cell)
         if self.thousands and _GROUPS[self.thousands].fullmatch(text):
             text = text.replace(self.thousands, "")
         if self.decimal == "," and "," in text:
@@ -239,7 +239,7 @@ class NumberForm:
 
 def is_number(cell: str) -> bool:
     """Return True for a number in any form, and for an empty cell."""
-    text = _SPACED.sub("", cell)
+    text = _joined(cell)
     forms = (_POINT, _COMMA, *_GROUPS.values())
     return not text or any(form.fullmatch(text) for form in forms)
 
@@ -275,7 +275,16 @@ def _looks_written(text: str) -> bool:
     return all((ord(each) > 160 and each.isalpha()) or each in _LETTERS for each in rare)
 
 
+def _joined(cell: str) -> str:
+    """Return a cell without spaces between groups of three digits."""
+    if cell.isascii() and " " not in cell and "'" not in cell:
+        return cell
+    return _SPACED.sub("", cell)
+
+
 def _cells(line: str, separator: str, where: str) -> tuple[str, ...]:
+    if '"' not in line:
+        return tuple(map(str.strip, line.split(separator)))
     try:
         return tuple(cell.strip() for cell in next(csv.reader([line], delimiter=separator)))
     except csv.Error as error:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from voxsoft.errors import MeasurementError
+from voxsoft.errors import FileError, MeasurementError
 from voxsoft.instruments.column import Column, Floats
 from voxsoft.instruments.options import Options
 from voxsoft.instruments.table_text import NumberForm, TextRow, TextTable
@@ -116,6 +118,36 @@ def read_kinovea(text: str, name: str, options: Options) -> Found:
             label = f"{point} {axis}"
             columns.append(Column(label, options.unit_of(label, ""), np.array(numbers), times))
     return Found(columns, [f"The file says no unit of its coordinates; {_DOWN}, unless turned"])
+
+
+def read_kva(path: Path, options: Options) -> Found:
+    """Read the tracks of a file of Kinovea, whose points have the coordinates of its calibration.
+
+    Raises
+    ------
+    FileError
+        It is no XML of Kinovea, or its points have no such coordinates.
+    MeasurementError
+        Times without a unit.
+    """
+    try:
+        # Entities are safe: expat bounds the text that they expand to.
+        root = ET.fromstring(path.read_bytes())
+    except (ET.ParseError, ValueError, LookupError) as error:
+        raise FileError(str(path), f"is no XML: {error}", "save or copy it again") from None
+    lines = [KINOVEA, "#T X Y", ""]
+    for number, track in enumerate(root.iter("Track"), start=1):
+        title = track.get("name") or (track.findtext("Label/Text") or "").strip()
+        lines.append(f"# {title or f'point {number}'}")
+        for point in track.iter("TrackPoint"):
+            seen = [point.get(key, "") for key in ("UserTime", "UserX", "UserY")]
+            if not all(seen):
+                what = "holds tracks without coordinates: Kinovea writes UserX where it calculates"
+                hint = "export them in Kinovea by File > Export to spreadsheet > Gnuplot"
+                raise FileError(str(path), what, hint)
+            lines.append(" ".join(seen))
+        lines.append("")
+    return read_kinovea("\n".join(lines), path.name, options)
 
 
 def _kinovea_times(

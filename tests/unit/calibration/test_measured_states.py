@@ -125,7 +125,7 @@ def test_measurements_under_several_loads_are_compared_one_by_one():
     assert found.runs[0].ok
 
 
-def test_an_interval_holds_what_experiments_say_apart():
+def test_an_interval_holds_the_scatter_between_experiments():
     """Twelve numbers of three experiments, whose loads are wrong by 1 %: the interval of twelve
     independent numbers would miss the truth most of the time."""
     random = np.random.default_rng(4)

@@ -151,3 +151,25 @@ def test_a_column_is_found_by_its_end_and_in_any_case():
         data["force"]
     with pytest.raises(MeasurementError, match='no column "Fource"'):
         data["Fource"]
+
+
+KVA = """<?xml version="1.0"?><KinoveaVideoAnalysis><Tracks>
+<Track name="tip"><TrackPointList>
+<TrackPoint UserX="1.50" UserY="-2.00" UserTime="0:00:00:00">10;20;0</TrackPoint>
+<TrackPoint UserX="1.25" UserY="-2.50" UserTime="0:00:00:04">9;22;1</TrackPoint>
+</TrackPointList></Track>
+<Track><TrackPointList>
+<TrackPoint UserX="3" UserY="4" UserTime="0:00:01:00">1;2;25</TrackPoint>
+</TrackPointList></Track></Tracks></KinoveaVideoAnalysis>"""
+
+
+def test_tracks_of_kinovea_s_own_file_are_read(tmp_path):
+    found = vs.measured(file_of(tmp_path, KVA, "a.kva"), unit="cm")
+    assert found.tracks == ("tip", "point 2")
+    times, tip = found.track("tip")
+    np.testing.assert_allclose(tip[:, :2], [[0.015, -0.02], [0.0125, -0.025]], rtol=1e-12)
+    np.testing.assert_allclose(times, [0.0, 0.04])
+    with pytest.raises(FileError, match=r"without coordinates.*Export to spreadsheet"):
+        vs.measured(file_of(tmp_path, KVA.replace("UserX", "X"), "b.kva"))
+    with pytest.raises(FileError, match="is no XML"):
+        vs.measured(file_of(tmp_path, "tip 1 2", "c.kva"))

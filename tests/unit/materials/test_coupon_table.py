@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from voxsoft.errors import MeasurementError
-from voxsoft.materials.coupon import Curve, fit_coupons, read_curve
+from voxsoft.instruments import Column, Measured
+from voxsoft.materials.coupon import Curve, fit_coupons, read_curve, read_timed_test
 
 DATA = Path(__file__).parents[3] / "examples" / "data" / "tensile"
 STRAINS = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5]
@@ -278,3 +279,29 @@ def test_two_kinds_of_decimals_in_one_table_are_refused():
     text = "strain;stress_kPa\n0.5;1,5\n" + "".join(f"{i};{i}\n" for i in range(1, 6))
     with pytest.raises(MeasurementError, match=r"decimal comma and .* a decimal point"):
         read_curve(text)
+
+
+def test_a_curve_comes_from_measured_data_of_one_clock():
+    times = np.arange(6) / 10
+    travel = Column("Cell/Extension", "mm", [33 * e for e in STRAINS], times)
+    force = Column("Cell/Force", "N", [18e-6 * s for s in STRESSES], times)
+    lamp = Column("Cell/lamp", "V", np.ones(6), times)
+    curve = read_curve(Measured("a.tdms", (travel, force, lamp)), area=18e-6, length=33e-3)
+    np.testing.assert_allclose(curve.strain, STRAINS, atol=1e-12)
+    np.testing.assert_allclose(curve.stress, STRESSES, rtol=1e-12)
+    held = Column("Strain", "%", [0, 50, 50, 50, 50, 50, 50], np.arange(7.0))
+    stress = Column("Stress", "kPa", [0, 20, 15, 13, 12, 12, 12], np.arange(7.0))
+    test = read_timed_test(Measured("b.mat", (held, stress)), kind="relaxation")
+    # Held from 1 s to 6 s.
+    assert (test.duration, float(test.stress[1])) == (5.0, 20e3)
+    late = Column("Cell/Force", "N", force.numbers, times + 0.05)
+    with pytest.raises(MeasurementError, match=r"different times.*resampled\(rate\)"):
+        read_curve(Measured("a.tdms", (travel, late)), area=18e-6, length=33e-3)
+    with pytest.raises(MeasurementError, match='no column of stress among "Cell/Extension"'):
+        read_curve(Measured("a.tdms", (travel, lamp)), area=18e-6, length=33e-3)
+
+
+def test_gaps_of_measured_data_are_no_points_of_a_curve():
+    strain = Column("strain", "", [*STRAINS, np.nan])
+    stress = Column("stress", "Pa", [*STRESSES, 1.0])
+    assert len(read_curve(Measured("a.mat", (strain, stress))).strain) == len(STRAINS)
