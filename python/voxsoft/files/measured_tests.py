@@ -160,6 +160,13 @@ class MeasuredTest(Record):
             source=self.source,
         )
 
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Paths of all files, as the test names them."""
+        named = [each.file for each in (self.points, self.channels, self.picture) if each]
+        rest = None if self.picture is None else self.picture.rest
+        return (*named, rest) if rest else tuple(named)
+
     def data(self, folder: Path) -> Measured:
         """Read the points and the channels over one clock.
 
@@ -195,8 +202,20 @@ def load_measured_test(path: FilePath) -> MeasuredTest:
     MeasurementError
         Entries that are missing, unknown or of another kind; every problem is listed.
     """
-    name = Path(path).name
-    document = read_document(read_text(path), name)
+    return read_measured_test(read_text(path), Path(path).name)
+
+
+def read_measured_test(text: str, name: str) -> MeasuredTest:
+    """Read the description of a test from text; `name` is that of its file, for errors.
+
+    Raises
+    ------
+    FileError
+        The text is not TOML.
+    MeasurementError
+        Entries that are missing, unknown or of another kind; every problem is listed.
+    """
+    document = read_document(text, name)
     if document.get("schema") != SCHEMA:
         came = document.get("schema", "no schema")
         hint = f'write schema = "{SCHEMA}" above [points] or [picture]'

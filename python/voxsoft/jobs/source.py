@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -135,10 +135,15 @@ class MeasuredTable(Record):
             from voxsoft.instruments.read import table_text
 
             return (cls(name=name, text=table_text(path), select=select),)
-        from voxsoft.calibration import table_of
         from voxsoft.files.measured_tests import load_measurements
 
-        found = load_measurements(path)
+        return cls.of_measurements(load_measurements(path), name)
+
+    @classmethod
+    def of_measurements(cls, found: Sequence[Measurement], name: str) -> tuple[Self, ...]:
+        """Write the measurements of a test as tables."""
+        from voxsoft.calibration import table_of
+
         return tuple(
             cls(name=f"{name}, {at} of {len(found)}", text=table_of(measurement))
             for at, measurement in enumerate(found, start=1)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Final
 
 from voxsoft.calibration import Measurement, read_measurement
 from voxsoft.calibration.measurement import QUANTITIES
 from voxsoft.calibration.table import ARC, header_of, meaning_of
-from voxsoft.errors import MeasurementError, VoxSoftError
+from voxsoft.errors import FileError, MeasurementError, VoxSoftError
+from voxsoft.files.measured_tests import read_measured_test
 from voxsoft.instruments.heads import unit_of, units_row
 from voxsoft.instruments.table_text import TextTable
 from voxsoft.studio.protocol import commands, events
@@ -103,10 +105,7 @@ def measured(
         used = list(columns) if columns is not None else guessed_columns(text)
         found = read_measurement(mapped_text(text, used), name=name, select=select)
     except VoxSoftError as error:
-        problems = [
-            events.Finding(severity="error", where=p.where, what=p.what, hint=p.hint)
-            for p in error.problems
-        ]
+        problems = _findings(error)
     by_name = {each.column: each for each in used}
     event = events.Measured(
         name=name,
@@ -127,6 +126,56 @@ def measured(
         problems=problems,
     )
     return event, found
+
+
+def is_test(name: str) -> bool:
+    """Return True for a test of instruments, in TOML, by the name of its file."""
+    return name.lower().endswith(".toml")
+
+
+def measured_test(
+    name: str, text: str, folder: Path
+) -> tuple[events.Measured, tuple[Measurement, ...]]:
+    """Read a test of instruments, whose files are in the folder of the document.
+
+    Returns
+    -------
+    event
+        Event for the page.
+    measurements
+        One for each load; none where the test cannot be used, as the event says.
+    """
+    found: tuple[Measurement, ...] = ()
+    problems: list[events.Finding] = []
+    try:
+        test = read_measured_test(text, name)
+        inside = folder.resolve()
+        for file in test.files:
+            if not (inside / file).resolve().is_relative_to(inside):
+                hint = "copy the file beside the design"
+                raise FileError(name, f"names {file}, which is outside of the folder", hint)
+        found = tuple(test.measurements(folder))
+    except VoxSoftError as error:
+        problems = _findings(error)
+    first = found[0] if found else None
+    event = events.Measured(
+        name=name,
+        columns=[],
+        quantities=list(CHOICES),
+        stations=sum(len(each) for each in found),
+        materials=[],
+        arcs=[] if first is None or first.arcs is None else first.arcs.tolist(),
+        points=[] if first is None else _points(first),
+        problems=problems,
+    )
+    return event, found
+
+
+def _findings(error: VoxSoftError) -> list[events.Finding]:
+    return [
+        events.Finding(severity="error", where=p.where, what=p.what, hint=p.hint)
+        for p in error.problems
+    ]
 
 
 def _cells(text: str) -> tuple[list[str], list[list[str]], dict[int, str]]:
