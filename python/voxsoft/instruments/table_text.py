@@ -26,7 +26,8 @@ _GROUPS: Final = {
 }
 #: Spaces of all widths, and the Swiss apostrophe, between groups of three digits.
 _SPACED: Final = re.compile(r"(?<=\d)[ \u00a0\u2009\u202f'\u2019](?=\d{3}(?:\D|$))")
-_PLAIN: Final = re.compile(r"[+-]?\d+(?:[eE][+-]?\d+)?")
+#: Line of two or more numbers with nothing but spaces between them.
+_BY_SPACES: Final = re.compile(rf" *{_POINT.pattern}(?: +{_POINT.pattern})+ *")
 _LETTERS: Final = set("µμ°²³·±–—€’“”")
 
 
@@ -60,7 +61,7 @@ class TextTable:
     name
         Name in errors: that of the file.
     separator
-        ``","``, ``";"`` or a tab.
+        ``","``, ``";"``, a tab, or a space, which stands for any number of them.
     rows
         Lines with any cell.
     comments
@@ -94,6 +95,8 @@ class TextTable:
         lines = [(at, line) for at, line in numbered if line.strip() and line[0] != "#"]
         # Lines above the header may have none; with decimal commas, the separator is in all lines.
         separator = max(";\t,", key=lambda each: sum(each in line for _, line in lines[:100]))
+        if sum(bool(_BY_SPACES.fullmatch(line)) for _, line in lines[: 2 * PREAMBLE]) > 1:
+            separator = " "
         rows = [TextRow(at, _cells(line, separator, f"{name}, line {at}")) for at, line in lines]
         return cls(
             name,
@@ -283,6 +286,9 @@ def _joined(cell: str) -> str:
 
 
 def _cells(line: str, separator: str, where: str) -> tuple[str, ...]:
+    if separator == " ":
+        # A unit in brackets belongs to the word before it.
+        return tuple(word.replace("\0", " ") for word in re.sub(r" +(?=[(\[])", "\0", line).split())
     if '"' not in line:
         return tuple(map(str.strip, line.split(separator)))
     try:

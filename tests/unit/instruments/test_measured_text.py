@@ -35,6 +35,14 @@ def test_a_pressure_log_has_units_times_and_gaps(tmp_path):
     assert "Times count from 2026-11-30 12:00:00,000" in found.account
 
 
+def test_columns_may_stand_apart_by_spaces(tmp_path):
+    text = "Logger 7, channel 2\n  Time (s)   p [kPa]  T_degC\n 0.0   1.5  20\n 0.5  -2.5e1  21\n"
+    found = vs.measured(file_of(tmp_path, text, "a.dat"))
+    assert found.names == ("p", "T")
+    assert found["p"].values.tolist() == [1500.0, -25000.0]
+    assert found["p"].times.tolist() == [0.0, 0.5]
+
+
 def test_an_export_of_a_machine_has_the_units_of_its_second_row(tmp_path):
     rows = "".join(f'"{i / 10}","{1000.5 * i:,.1f}","{i}"\n' for i in range(4))
     head = '"Specimen 1"\n"Time","Force","Stroke"\n"sec","N","mm"\n'
