@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,6 +16,10 @@ from voxsoft.instruments.texts import Found
 #: Largest number of frames that the format counts, in 16 bits.
 _MOST: Final = 65_535
 _BLOCK: Final = 512
+#: Second byte of a file, and codes of processors with other numbers than Intel's.
+_KEY: Final = 0x50
+_DEC: Final = 85
+_MIPS: Final = 86
 
 
 def read(path: Path, options: Options) -> Found:
@@ -38,6 +43,7 @@ def read(path: Path, options: Options) -> Found:
     except ImportError:
         what = "is not installed, and reads C3D"
         raise MissingPackageError("ezc3d", what, "pip install 'voxsoft[measured]'") from None
+    _refuse_cut(path)
     try:
         file: Any = ezc3d.c3d(str(path))
         points = np.asarray(file["data"]["points"], dtype=np.float64)
@@ -74,6 +80,36 @@ def read(path: Path, options: Options) -> Found:
             columns.append(Column(name, options.unit_of(name, unit), numbers, times))
     columns += _analogs(analogs, known, first, rate, options)
     return Found(columns, notes)
+
+
+def _refuse_cut(path: Path) -> None:
+    """Refuse a file that ends early: ezc3d returns the frames before the end without a word.
+
+    The layout is that of https://www.c3d.org/HTML/default.htm: 512 bytes of counts as words of 16
+    bits, parameters from a block that byte 0 names, and frames from a block of word 9.
+    """
+    size = path.stat().st_size
+    hint = "save or copy it again"
+    with path.open("rb") as file:
+        head = file.read(_BLOCK)
+        if len(head) < _BLOCK or head[1] != _KEY or not head[0]:
+            raise FileError(str(path), "cannot be read as C3D: it begins otherwise", hint)
+        file.seek((head[0] - 1) * _BLOCK)
+        parameters = file.read(4)
+    if len(parameters) < 4:
+        raise FileError(str(path), "cannot be read as C3D: it ends before its parameters", hint)
+    blocks, processor = parameters[2], parameters[3]
+    order = ">" if processor == _MIPS else "<"
+    points, analogs, first, last = struct.unpack(f"{order}4H", head[2:10])
+    (start,) = struct.unpack(f"{order}H", head[16:18])
+    # The sign of the scale says if numbers are floats; floats of DEC and MIPS have it elsewhere.
+    sign = head[{_MIPS: 12, _DEC: 13}.get(processor, 15)]
+    frames = max(last - first + 1, 0)
+    needed = (start - 1) * _BLOCK + frames * (4 * points + analogs) * (4 if sign & 0x80 else 2)
+    needed = max(needed, (head[0] - 1 + blocks) * _BLOCK)
+    if size < needed:
+        what = f"is cut short: it has {size:,} bytes, and its {frames:,} frames end at {needed:,}"
+        raise FileError(str(path), what, hint)
 
 
 def _analogs(

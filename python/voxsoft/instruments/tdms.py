@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,6 +15,9 @@ from voxsoft.instruments.heads import is_time
 from voxsoft.instruments.options import Options
 from voxsoft.instruments.texts import Found
 
+#: Lead-in of a segment, and the length of one whose writer was stopped.
+_LEAD: Final = struct.Struct("<4sIIQQ")
+_OPEN: Final = 0xFFFF_FFFF_FFFF_FFFF
 _UNITS: Final = ("unit_string", "NI_UnitDescription", "unit", "Unit")
 
 
@@ -46,6 +51,7 @@ def read(path: Path, options: Options) -> Found:
         shown = str(error).partition("\n")[0][:200] or type(error).__name__
         what = f"cannot be read as TDMS: {shown}"
         raise FileError(str(path), what, "save or copy it again") from error
+    notes += _cut(path)
     starts = [c["start"] for _, channels in groups for c in channels if c["start"] is not None]
     zero = min(starts, default=None)
     if zero is not None:
@@ -69,6 +75,28 @@ def read(path: Path, options: Options) -> Found:
             if channel["scaled"]:
                 notes.append(f"{label}: scaled as the file says")
     return Found(columns, notes)
+
+
+def _cut(path: Path) -> Iterator[str]:
+    """Yield a sentence where a segment goes on after the end of the file.
+
+    A segment begins with 28 bytes: ``TDSm``, flags, version, and offsets of the next segment and of
+    the raw data, each of 64 bits, with all ones where the writer was stopped.
+    """
+    size, at = path.stat().st_size, 0
+    with path.open("rb") as file:
+        while at < size:
+            file.seek(at)
+            lead = file.read(_LEAD.size)
+            if len(lead) < _LEAD.size or lead[:4] != b"TDSm":
+                break
+            length = int(_LEAD.unpack(lead)[3])
+            if length == _OPEN:
+                yield "The writer was stopped in the last segment: rows up to there are read"
+                return
+            at += _LEAD.size + length
+    if at != size:
+        yield "The file is cut short in its last segment: rows up to there are read"
 
 
 def _channel(channel: Any) -> dict[str, Any]:  # noqa: ANN401 - npTDMS has no types

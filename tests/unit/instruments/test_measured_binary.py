@@ -83,6 +83,26 @@ def test_a_group_of_tdms_may_have_its_times_in_a_channel(tmp_path):
     assert vs.measured(path, units={"Time": "ms"})["Force"].times.tolist() == [0.0, 1e-3]
 
 
+def test_a_tdms_file_that_ends_early_says_so(tmp_path):
+    nptdms = pytest.importorskip("nptdms")
+    clock = waveform("2026-11-30T10:00:00", 0.1, "N")
+    path = tmp_path / "a.tdms"
+    with nptdms.TdmsWriter(path) as file:
+        for part in range(3):
+            values = np.arange(100.0) + 100 * part
+            file.write_segment([nptdms.ChannelObject("A", "F", values, properties=clock)])
+    whole = path.read_bytes()
+    assert not any("short" in note for note in vs.measured(path).notes)
+    path.write_bytes(whole[:-400])
+    found = vs.measured(path)
+    assert "The file is cut short in its last segment: rows up to there are read" in found.notes
+    # 400 bytes are 50 rows.
+    np.testing.assert_array_equal(found["F"].values, np.arange(250.0))
+    last = whole.rindex(b"TDSm")
+    path.write_bytes(whole[: last + 12] + b"\xff" * 8 + whole[last + 20 : -400])
+    assert any("writer was stopped" in note for note in vs.measured(path).notes)
+
+
 def write_c3d(path, points, *, labels, unit="mm", rate=100.0, residuals=None, analogs=None):
     """Write markers, (3, n, frames), and volts of one channel at ten times the rate."""
     ezc3d = pytest.importorskip("ezc3d")
@@ -153,6 +173,28 @@ def test_more_frames_than_c3d_counts_are_refused_and_not_cut(tmp_path):
         vs.measured(path)
     most = write_c3d(tmp_path / "most.c3d", points[:, :, :65_535], labels=("tip",))
     assert len(vs.measured(most)["tip x"].values) == 65_535
+
+
+@pytest.mark.parametrize("missing", [1, 16, 4000])
+def test_a_c3d_file_that_ends_within_its_frames_is_refused(tmp_path, missing):
+    """Its reader returns the frames before the end, without a word."""
+    path = write_c3d(tmp_path / "a.c3d", np.ones((3, 1, 500)), labels=("tip",))
+    whole = path.read_bytes()
+    # Frames of 16 bytes from the block that word 9 names.
+    end = (whole[16] - 1) * 512 + 500 * 16
+    path.write_bytes(whole[: end - missing])
+    with pytest.raises(FileError, match="500 frames end at"):
+        vs.measured(path)
+    path.write_bytes(whole[:end])
+    assert len(vs.measured(path)["tip x"].values) == 500
+
+
+def test_a_file_that_is_no_c3d_is_refused(tmp_path):
+    pytest.importorskip("ezc3d")
+    path = tmp_path / "a.c3d"
+    path.write_text("time,tip\n0,1\n")
+    with pytest.raises(FileError, match="begins otherwise"):
+        vs.measured(path)
 
 
 def test_whole_numbers_of_matlab_are_floats_and_rows_are_columns(tmp_path):
