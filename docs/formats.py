@@ -23,6 +23,15 @@ for.
 | suffix | format | taken |
 |---|---|---|
 """
+MEASURED: Final = """
+## Measured data
+
+Columns of instruments over time, by `voxsoft.measured`; `voxsoft material fit` takes them, and
+`calibrate` and `compare` by a test ([which file goes where](../how-to/files.md)).
+
+| suffix | format | taken |
+|---|---|---|
+"""
 WRITTEN: Final = """
 ## Written
 
@@ -37,11 +46,14 @@ COLUMNS: Final[tuple[Holding, ...]] = ("parts", "regions", "cavities", "values")
 
 def page() -> str:
     """Return the text of the page."""
-    read = [
-        f"| {', '.join(f'`{s}`' for s in form.suffixes)} | {form.title} | {form.taken} |"
-        for form in FORMATS
-        if form.reader is not None
-    ]
+    read, measured = (
+        [
+            f"| {', '.join(f'`{s}`' for s in form.suffixes)} | {form.title} | {form.taken} |"
+            for form in FORMATS
+            if form.reader is not None and (form.kind == "measured") == is_measured
+        ]
+        for is_measured in (False, True)
+    )
     written = []
     for form in FORMATS:
         if form.writer is None:
@@ -52,7 +64,8 @@ def page() -> str:
         unit = "given by `--unit`; mm if left out" if form.unit is None else form.unit
         suffixes = ", ".join(f"`{suffix}`" for suffix in form.suffixes)
         written.append(f"| {suffixes} | {form.title} | {' | '.join(kept)} | {unit} |")
-    return HEAD + "\n".join(read) + "\n" + WRITTEN + "\n".join(written) + "\n"
+    tables = (HEAD, read), (MEASURED, measured), (WRITTEN, written)
+    return "".join(f"{head}{chr(10).join(rows)}\n" for head, rows in tables)
 
 
 if __name__ == "__main__":

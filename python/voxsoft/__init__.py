@@ -39,6 +39,7 @@ if TYPE_CHECKING:
         fabrication,
         fields,
         files,
+        instruments,
         jobs,
         materials,
         mesh,
@@ -80,6 +81,7 @@ if TYPE_CHECKING:
     from voxsoft.design.discretization.discretize import mesh_of, voxels_of
     from voxsoft.errors import VoxSoftError
     from voxsoft.files import load, save
+    from voxsoft.instruments import Measured, measured
     from voxsoft.materials import (
         Fiber,
         Gent,
@@ -163,6 +165,7 @@ _HOMES = {
     "voxsoft.design.discretization.discretize": ("mesh_of", "voxels_of"),
     "voxsoft.errors": ("VoxSoftError",),
     "voxsoft.files": ("load", "save"),
+    "voxsoft.instruments": ("Measured", "measured"),
     "voxsoft.materials": (
         "Fiber",
         "Gent",
@@ -227,6 +230,7 @@ _MODULES = (
     "fabrication",
     "fields",
     "files",
+    "instruments",
     "jobs",
     "materials",
     "mesh",

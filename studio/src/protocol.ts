@@ -23,7 +23,7 @@ export const STILL_OBJECTS = 2;
 export const CAVITY = 128;
 
 /** Endings of mesh files that are read. */
-export const MESHES = [".vtu", ".vti", ".vtp", ".vts", ".vtr", ".vtk", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".tif", ".tiff", ".msh", ".inp", ".mesh", ".stl", ".obj", ".3mf", ".ply", ".off", ".glb", ".npy", ".vxa", ".vxc", ".vxd"] as const;
+export const MESHES = [".vtu", ".vti", ".vtp", ".vts", ".vtr", ".vtk", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".tif", ".tiff", ".msh", ".inp", ".mesh", ".stl", ".obj", ".3mf", ".ply", ".off", ".glb", ".npy", ".vxa", ".vxc", ".vxd", ".mat"] as const;
 
 /** Formats of files that the server writes, by ending. */
 export const WRITTEN = {

@@ -8,12 +8,16 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
+import typer
 from typer.testing import CliRunner
 
 from voxsoft.calibration import Experiment, Measurement
 from voxsoft.cli.app import app
+from voxsoft.cli.calibrate import _on_a_line
+from voxsoft.errors import MeasurementError
 from voxsoft.files import load
 from voxsoft.files.cards import load_card_file
+from voxsoft.jobs import MeasuredTable
 from voxsoft.simulation import simulate
 
 ROOT = Path(__file__).parents[2]
@@ -198,8 +202,26 @@ def test_calibrate_prints_the_object_and_writes_a_card():
     }
     assert due <= found.keys()
     assert 0.001 < found["mean_error"] < found["max_error"] < 0.03
+    assert any("taken for marks on the lower edge" in each for each in found["warnings"])
     names = {path.name for path in Path("c").iterdir()}
     assert {"ecoflex-00-30.toml", "fitness.png", "shape.png", "profile.png", "shapes.csv"} <= names
+
+
+def test_the_line_of_marks_is_asked_for_where_somebody_answers(monkeypatch):
+    marks = MeasuredTable(name="strip.csv", text="arc_mm,dz_mm\n30,-9\n")
+    probes = MeasuredTable(name="tip.csv", text="probe,dz_mm\ntip,-9\n")
+    named = MeasuredTable(name="old.csv", text="# line: upper-edge\narc_mm,dz_mm\n30,-9\n")
+    asked = []
+    monkeypatch.setattr(typer, "prompt", lambda text, default: asked.append(text) or "centerline")
+    tables = [marks, probes, named]
+    assert _on_a_line(tables, None, asks=False) == tables
+    assert _on_a_line([probes, named], None, asks=True) == [probes, named]
+    assert not asked
+    found = _on_a_line(tables, None, asks=True)
+    assert asked == ["lower-edge, centerline or upper-edge"]
+    assert [table.read().line for table in found] == ["centerline", None, "upper-edge"]
+    with pytest.raises(MeasurementError, match='"centerline" and "upper-edge"'):
+        _on_a_line([named], "centerline", asks=False)[0].read()
 
 
 @pytest.mark.slow

@@ -52,6 +52,7 @@ LONG = {
     "magnets.md",
     "make.md",
     "material-card.md",
+    "measured-data.md",
     "paths.md",
     "pneunet.md",
     "refine.md",

@@ -19,7 +19,8 @@ from voxsoft.calibration.misfit import Deviation
 from voxsoft.calibration.result import Calibration, Candidate, Fit, Generation
 from voxsoft.calibration.run import CalibrationEvent, ProgressCallback, calibrate
 from voxsoft.calibration.space import DEFAULT_BOUNDS, usual_ranges
-from voxsoft.calibration.table import read_measurement
+from voxsoft.calibration.states import measurements_at
+from voxsoft.calibration.table import read_measurement, table_of
 
 __all__ = [
     "DEFAULT_BOUNDS",
@@ -35,6 +36,8 @@ __all__ = [
     "Profile",
     "ProgressCallback",
     "calibrate",
+    "measurements_at",
     "read_measurement",
+    "table_of",
     "usual_ranges",
 ]

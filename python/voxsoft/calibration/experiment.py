@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -39,13 +39,14 @@ class Experiment(Shown):
     ----------
     design
         Body as it was clamped and loaded in the laboratory. All its parts are of one material, the
-        one to be calibrated; its present constants do not matter.
+        one to be calibrated; its present constants do not matter. Values that the measurement
+        names (:attr:`Measurement.changes`) stand in place of its own.
     measurement
         Measured positions or displacements of its stations.
     line
-        Line of the body on which arc positions lie: ``lower-edge`` (default, as on the
-        paper's photographs), ``centerline`` or ``upper-edge``, at the middle of the width. Stations
-        that name a probe do not use it.
+        Line of the body on which arc positions lie: ``lower-edge``, ``centerline`` or
+        ``upper-edge``, at the middle of the width. Default: that of the measurement, or
+        ``lower-edge``, as on the paper's photographs. Stations that name a probe do not use it.
 
     Raises
     ------
@@ -69,14 +70,30 @@ class Experiment(Shown):
 
     design: Design
     measurement: Measurement
-    line: LineName = "lower-edge"
+    line: LineName = None  # type: ignore[assignment] # filled in below
+    line_is_assumed: bool = field(init=False, default=False)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "design", changed(self.design, self.measurement.changes))
+        assumed = self.line is None and self.measurement.line is None
+        object.__setattr__(self, "line_is_assumed", assumed)
+        if self.line is None:
+            object.__setattr__(self, "line", self.measurement.line or "lower-edge")
         _ = self.material, self.places
         self._check_size()
 
     def _lines(self) -> Iterator[str]:
         yield f"{self.name}: {len(self.measurement)} stations of the design {self.design.name}"
+
+    @property
+    def caution(self) -> str:
+        """Warning that nothing says on which line arc positions lie; empty where something does."""
+        if self.measurement.arcs is None or not self.line_is_assumed:
+            return ""
+        return (
+            f"{self.name}: arc positions are taken for marks on the lower edge; another line "
+            'gives another modulus: say it by "# line: centerline" in the table, --line or line='
+        )
 
     @property
     def name(self) -> str:
@@ -242,6 +259,17 @@ class Experiment(Shown):
                     f"{format_quantity(float(self.measurement.arcs.max()), 'length')}",
                     _unit_hint(reach, float(self.measurement.arcs.max())),
                 )
+
+
+def changed(design: Design, changes: Sequence[str]) -> Design:
+    """Return a design with other values, as ``--set`` takes them.
+
+    Raises
+    ------
+    DesignError
+        A key that leads nowhere, or a value that is none.
+    """
+    return design.with_values(*changes) if changes else design
 
 
 def _unit_hint(came: float, due: float) -> str:

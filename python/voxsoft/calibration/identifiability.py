@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -64,6 +64,10 @@ class Profile:
     Residuals of a model that does not fit are no independent noise: neighboring stations err
     alike, so that true intervals are wider. The converse is safe: a parameter that is not
     identifiable here is not identifiable.
+
+    Measured loads (:attr:`Measurement.changes`) have errors of their own, each of which
+    moves all numbers of its experiment together. Of more such experiments than parameters the
+    interval holds also that of :func:`spread_of_experiments`.
     """
 
     name: str
@@ -82,7 +86,15 @@ class Profile:
     @property
     def sentence(self) -> str:
         """Interval of the parameter in words."""
-        low, high = (None if end is None else self._shown(end) for end in (self.low, self.high))
+        digits = 3
+        if self.low is not None and self.high is not None:
+            # Enough to tell the two ends apart.
+            digits = next(
+                (n for n in range(3, 7) if self._shown(self.low, n) != self._shown(self.high, n)), 7
+            )
+        low, high = (
+            None if end is None else self._shown(end, digits) for end in (self.low, self.high)
+        )
         if low and high:
             within = f"between {low} and {high} (95 %)"
             return within if self.identifiable else f"{within}: too wide to count as identified"
@@ -92,8 +104,8 @@ class Profile:
             return f"only bounded from below, by {low} (95 %)"
         return "not identifiable: the data fit as well anywhere in the range"
 
-    def _shown(self, value: float) -> str:
-        return format_quantity(float(f"{value:.3g}"), self.kind)
+    def _shown(self, value: float, digits: int) -> str:
+        return format_quantity(float(f"{value:.{digits}g}"), self.kind)
 
 
 def profiles(misfit: Misfit, best: Evaluation) -> tuple[Profile, ...]:
@@ -108,9 +120,70 @@ def profiles(misfit: Misfit, best: Evaluation) -> tuple[Profile, ...]:
     """
     sides = [(index, side) for index in range(len(misfit.space)) for side in (-1, 1)]
     walked = misfit.side_by_side(lambda way: _Walk(misfit, best, *way).run(), sides)
-    return tuple(
+    found = [
         _joined(misfit, best, index, walked[2 * index], walked[2 * index + 1])
         for index in range(len(misfit.space))
+    ]
+    loaded = all(experiment.measurement.changes for experiment in misfit.experiments)
+    if not loaded or misfit.free_scale or len(misfit.experiments) <= len(misfit.space):
+        return tuple(found)
+    linear = misfit.linearized(best.genes)
+    if isinstance(linear, str):
+        return tuple(found)
+    residuals = [(each.simulated - each.measured).ravel() for each in linear.deviations]
+    slopes = [each.reshape(-1, len(misfit.space)) for each in linear.slopes]
+    widths = spread_of_experiments(residuals, slopes)
+    return tuple(_widened(each, float(w)) for each, w in zip(found, widths, strict=True))
+
+
+def spread_of_experiments(
+    residuals: Sequence[NDArray[np.float64]], slopes: Sequence[NDArray[np.float64]]
+) -> NDArray[np.float64]:
+    r"""Return half of the 95 % intervals of parameters by the scatter of experiments, (k,).
+
+    It is the cluster-robust interval of least squares (Liang and Zeger 1986,
+    doi:10.1093/biomet/73.1.13), with residuals :math:`r_g` and slopes :math:`J_g` of experiment
+    g, any of whose residuals may follow one another:
+
+    .. math:: V = A^{-1} \Big(\sum_g J_g^T r_g r_g^T J_g\Big) A^{-1} \frac{G}{G - k},
+        \quad A = \sum_g J_g^T J_g,
+
+    times the quantile of Student's distribution with :math:`G - k` degrees of freedom.
+
+    Parameters
+    ----------
+    residuals
+        Residuals of each of G experiments, (n,).
+    slopes
+        Their derivatives by k parameters, (n, k); k is less than G.
+
+    Examples
+    --------
+    >>> rows = [np.ones((4, 1))] * 3
+    >>> apart = spread_of_experiments([np.full(4, r) for r in (-1.0, 0.0, 1.0)], rows)
+    >>> round(float(apart[0] / np.sqrt(1.0 / 3.0)), 3)  # the t of three numbers with variance 1
+    4.303
+    """
+    from scipy.special import stdtrit
+
+    count, size = len(residuals), slopes[0].shape[1]
+    within = sum(jacobian.T @ jacobian for jacobian in slopes)
+    pulls = [j.T @ r for j, r in zip(slopes, residuals, strict=True)]
+    between = sum(np.outer(pull, pull) for pull in pulls)
+    inverse = np.linalg.pinv(np.asarray(within))
+    variance = np.diag(inverse @ np.asarray(between) @ inverse) * count / (count - size)
+    reach = float(stdtrit(count - size, 0.975))
+    half: NDArray[np.float64] = reach * np.sqrt(np.maximum(variance, 0.0))
+    return half
+
+
+def _widened(profile: Profile, half: float) -> Profile:
+    """Return a profile whose interval holds one of half a width in natural logarithms."""
+    low, high = (float(profile.best * np.exp(sign * half)) for sign in (-1.0, 1.0))
+    return replace(
+        profile,
+        low=None if profile.low is None else min(profile.low, low),
+        high=None if profile.high is None else max(profile.high, high),
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from voxsoft._shown import Shown, counted
+from voxsoft.calibration.line import LineName
 from voxsoft.errors import MeasurementError
 
 #: Quantities of a station: positions relative to the clamp face, and displacements.
@@ -37,6 +38,11 @@ class Measurement(Shown):
         Name of the measurement, such as that of the material.
     source
         Source of the numbers, and the license under which they may be used.
+    line
+        Line of the body on which arc positions were marked, if it is known: ``lower-edge``,
+        ``centerline`` or ``upper-edge``.
+    changes
+        Values of the design in this test, as ``--set`` takes them: ``("loads[0].value=12 kPa",)``.
 
     Raises
     ------
@@ -61,6 +67,8 @@ seen
     probes: tuple[str, ...] | None = None
     name: str = "measurement"
     source: str = ""
+    line: LineName | None = None
+    changes: tuple[str, ...] = ()
 
     def __init__(
         self,
@@ -71,6 +79,8 @@ seen
         probes: tuple[str, ...] | list[str] | None = None,
         name: str = "measurement",
         source: str = "",
+        line: LineName | None = None,
+        changes: tuple[str, ...] | list[str] = (),
     ) -> None:
         numbers = np.array(values, dtype=np.float64)
         numbers.setflags(write=False)
@@ -81,6 +91,8 @@ seen
             "probes": None if probes is None else tuple(probes),
             "name": name,
             "source": source,
+            "line": line,
+            "changes": tuple(changes),
         }
         for field, value in fields.items():
             object.__setattr__(self, field, value)

@@ -271,6 +271,7 @@ class Calibration(Shown):
                 "fitness": self.search.fitness,
                 "evaluations": self.search.evaluations,
             },
+            "warnings": self.warnings,
             "experiments": [fit.summary() for fit in self.fits],
             "history": [
                 {
@@ -315,6 +316,12 @@ class Calibration(Shown):
             caution=" ".join(filter(None, [caution, *self._cautions()])),
             calibration=self._record(),
         )
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings about the data, in sentences: a line that was assumed, a systematic misfit."""
+        each = ((fit.experiment.caution, fit.caution) for fit in self.fits)
+        return [caution for pair in each for caution in pair if caution]
 
     def _rounded(self) -> Material:
         """Round to 4 digits: all moduli of a lattice, and the other searched constants."""

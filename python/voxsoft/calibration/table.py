@@ -3,48 +3,59 @@
 from __future__ import annotations
 
 import csv
-import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Final
+import io
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final, NamedTuple, get_args
 
 import numpy as np
 
+from voxsoft.calibration.line import LineName
 from voxsoft.calibration.measurement import QUANTITIES, Measurement
 from voxsoft.errors import MeasurementError
+from voxsoft.instruments.heads import is_unit, split_head, unit_of, units_row
+from voxsoft.instruments.table_text import PREAMBLE, NumberForm, TextRow, TextTable
 from voxsoft.records import closest
 
 ARC: Final = "arc_position_from_clamp"
-UNITS: Final = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
+#: Labels of the arc position, as a head without its unit.
+ARCS: Final = ("arc position from clamp", "arc position", "arc length", "arc", "s")
 _LABELS: Final = ("probe", "material", "note")
-_WITH_UNIT: Final = re.compile(rf"({ARC}|d?[xyz])(?:_(.*))?")
-_COMMA: Final = re.compile(r"[+-]?\d*,\d*(e[+-]?\d+)?", re.IGNORECASE)
+_KNOWN: Final = frozenset((*ARCS, *QUANTITIES, *_LABELS))
+_LINE: Final = "line:"
+_SET: Final = "set:"
 _ALLOWED: Final = (
     f"columns are probe or {ARC}_mm for the station, x_mm, y_mm, z_mm for positions relative to "
-    "the clamp face, dx_mm, dy_mm, dz_mm for displacements (units: _m, _cm, _mm), "
+    "the clamp face, dx_mm, dy_mm, dz_mm for displacements (or in other units of length), "
     "and material, note"
 )
 
 
-@dataclass(frozen=True)
-class _Row:
-    line: int
-    cells: dict[str, str]
+class _Head(NamedTuple):
+    """Head of a column: index, text, meaning, and its unit in m (0 of text)."""
+
+    at: int
+    text: str
+    label: str
+    factor: float = 0.0
 
 
 def read_measurement(text: str, *, name: str = "table", select: str | None = None) -> Measurement:
     r"""Read one measurement from text with commas, semicolons or tabs between columns.
 
     Beside semicolons and tabs, numbers may have decimal commas, as spreadsheets write them in much
-    of Europe.
+    of Europe; thousands may be set apart. Lines above the header are passed over.
 
     Lines that start with ``#`` are comments; they name the source of the data and become the
-    measurement's source. The first other line names the columns:
+    measurement's source. ``# line: centerline`` (or ``lower-edge``, ``upper-edge``) says on which
+    line of the body arc positions were marked; ``# set: loads[0].value=12 kPa`` says a value of the
+    design in this test. The header names the columns:
 
     - the station: ``probe`` (a probe of the design) or ``arc_position_from_clamp_m``, on the
       lower edge unless a calibration is given another line;
     - the measured numbers: ``x_m``, ``y_m``, ``z_m``, positions relative to the clamp face, and
-      ``dx_m``, ``dy_m``, ``dz_m``, displacements; either may be ``_mm`` or ``_cm``;
+      ``dx_m``, ``dy_m``, ``dz_m``, displacements; either in any unit of length, behind the name
+      (``x_mm``, ``x [mm]``) or in the line below;
     - ``material``, where one table holds several; ``note``, which is not read, as columns without
       a name are not.
 
@@ -74,137 +85,202 @@ def read_measurement(text: str, *, name: str = "table", select: str | None = Non
     >>> seen.probes, float(seen.values[0, 0]), seen.source
     (('tip',), -0.0125, 'me, 2026, CC0')
     """
-    _refuse_binary(text, name)
-    numbered = list(enumerate(text.removeprefix("\ufeff").splitlines(), start=1))
-    comments = [line.lstrip("# ").rstrip() for _, line in numbered if line.startswith("#")]
-    lines = [(at, line) for at, line in numbered if line.strip() and not line.startswith("#")]
-    if not lines:
+    table = TextTable.of(text, name)
+    if not table.rows:
         raise MeasurementError(name, "holds no table", _ALLOWED)
-    header = lines[0][1]
-    separator = max(",;\t", key=header.count)
-    columns = _columns(_cells(header, separator), name)
-    rows = list(_rows(lines[1:], columns, separator, name))
-    rows = _selected(rows, columns, select, name)
-    source = " ".join(comment for comment in comments if comment)
-    return _measurement(rows, columns, source, name)
+    at = header_of(table)
+    heads = _heads(table, at)
+    rows = table.rows[at + 1 :]
+    if units_row(table.rows, at, [head.at for head in heads if head.label not in _LABELS]):
+        rows = rows[1:]
+    _check_lengths(rows, len(table.rows[at].cells), name)
+    chosen = _selected(rows, heads, select, name)
+    lines, changes = (
+        [each for each in table.comments if each.lower().startswith(key)] for key in (_LINE, _SET)
+    )
+    source = " ".join(each for each in table.comments if each not in (*lines, *changes))
+    found = _measurement(table, chosen, heads, source)
+    return replace(
+        found,
+        line=_line(lines, name),
+        changes=tuple(each[len(_SET) :].strip() for each in changes),
+    )
 
 
-def _refuse_binary(text: str, name: str) -> None:
-    if "\0" in text:
-        raise MeasurementError(name, "is not a text file", "save the table as CSV")
+def table_of(measurement: Measurement) -> str:
+    """Write a measurement as a table that :func:`read_measurement` reads back as it is, but names.
+
+    Examples
+    --------
+    >>> seen = Measurement(quantities=["dz"], values=[[-0.005]], probes=["tip"], changes=["a=1 mm"])
+    >>> print(table_of(seen), end="")
+    # set: a=1 mm
+    probe,dz_m
+    tip,-0.005
+    """
+    comments = [measurement.source] if measurement.source else []
+    comments += [f"{_LINE} {measurement.line}"] if measurement.line else []
+    comments += [f"{_SET} {change}" for change in measurement.changes]
+    arcs = measurement.arcs
+    stations = list(map(repr, arcs.tolist())) if arcs is not None else measurement.probes
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(
+        ["probe" if arcs is None else f"{ARC}_m", *(f"{each}_m" for each in measurement.quantities)]
+    )
+    for station, row in zip(stations or (), measurement.values.tolist(), strict=True):
+        writer.writerow([station, *map(repr, row)])
+    return "".join(f"# {comment}\n" for comment in comments) + out.getvalue()
 
 
-def _cells(line: str, separator: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+def _line(comments: Sequence[str], name: str) -> LineName | None:
+    """Return the line of the body that the comments name, if any."""
+    named = {comment[len(_LINE) :].strip().lower().replace(" ", "-") for comment in comments}
+    if not named:
+        return None
+    lines: dict[str, LineName] = {line: line for line in get_args(LineName)}
+    if len(named) > 1 or not named <= set(lines):
+        came = " and ".join(f'"{line}"' for line in sorted(named))
+        raise MeasurementError(f"{name}, # line:", came, f"name one of {', '.join(lines)}")
+    return lines[named.pop()]
 
 
-def _columns(columns: list[str], name: str) -> list[str]:
-    if {"X", "Y"} <= {*columns}:
-        what = "X and Y are places in a picture, as ImageJ measures them, and name no station"
-        hint = (
-            f"add a column probe or {ARC}_mm, call X x_mm, measured from the clamp face, and Y "
-            "dz_mm, the displacement upward (a picture's Y points down)"
-        )
-        raise MeasurementError(f"{name}, header", what, hint)
-    named = [column for column in columns if column]
-    for column in named:
-        _check_column(column, name)
-    bare = [_stem(column) for column in named]
-    twice = next((column for column in bare if bare.count(column) > 1), None)
+def header_of(table: TextTable) -> int:
+    """Find the row that names a station and a measured quantity; lines may stand above it."""
+    for at, row in enumerate(table.rows[:PREAMBLE]):
+        labels = {meaning_of(cell)[0] for cell in row.cells}
+        if labels & {"probe", ARC} and labels & {*QUANTITIES}:
+            return at
+    return table.likely_header(is_unit)
+
+
+def meaning_of(cell: str) -> tuple[str, str]:
+    """Return the meaning of a head and its unit.
+
+    Examples
+    --------
+    >>> meaning_of("Arc position (mm)"), meaning_of("dz_m"), meaning_of("remark")
+    (('arc_position_from_clamp', 'mm'), ('dz', 'm'), ('remark', ''))
+    """
+    label, unit = split_head(cell, _KNOWN)
+    return (ARC if label in ARCS else label), unit
+
+
+def _heads(table: TextTable, at: int) -> list[_Head]:
+    name, cells = table.name, table.rows[at].cells
+    if {"X", "Y"} <= {*cells}:
+        raise _of_a_picture(name)
+    named = [index for index, cell in enumerate(cells) if cell]
+    below = units_row(table.rows, at, named) or {}
+    heads = [_head(index, cells[index], below.get(index, ""), name) for index in named]
+    labels = [head.label for head in heads]
+    twice = next((label for label in labels if labels.count(label) > 1), None)
     if twice:
         raise MeasurementError(f"{name}, header", f'"{twice}" comes twice', "keep one of them")
-    if ("probe" in bare) == (ARC in bare):
-        what = "both probe and arc position" if "probe" in bare else "no column for the station"
+    if ("probe" in labels) == (ARC in labels):
+        what = "both probe and arc position" if "probe" in labels else "no column for the station"
         raise MeasurementError(f"{name}, header", f"has {what}", _ALLOWED)
-    if not set(bare) & set(QUANTITIES):
+    if not {*labels} & {*QUANTITIES}:
         raise MeasurementError(f"{name}, header", "has no measured quantity", _ALLOWED)
-    return columns
+    return heads
 
 
-def _check_column(column: str, name: str) -> None:
-    if column in _LABELS:
-        return
-    match = _WITH_UNIT.fullmatch(column)
-    where = f"{name}, column {column}"
-    if match is None:
+def _of_a_picture(name: str) -> MeasurementError:
+    what = "X and Y are places in a picture, as ImageJ measures them, and name no station"
+    hint = (
+        f'describe them in a test (TOML): picture = {{ file = "{name}", unit = "mm", stations = '
+        '["0 mm", "15 mm"] }, the first at the clamp face; or add a column probe, and call X x_mm, '
+        "from the clamp face, and Y dz_mm, upward (a picture's Y points down)"
+    )
+    return MeasurementError(f"{name}, header", what, hint)
+
+
+def _head(at: int, cell: str, below: str, name: str) -> _Head:
+    label, unit = meaning_of(cell)
+    if label in _LABELS:
+        return _Head(at, cell, label)
+    where = f"{name}, column {cell}"
+    if label not in (ARC, *QUANTITIES):
         known = [*_LABELS, f"{ARC}_m", *(f"{quantity}_m" for quantity in QUANTITIES)]
-        hint = closest(column, known)
+        hint = closest(cell, known)
         raise MeasurementError(where, "is not known", hint if "did" in hint else _ALLOWED)
-    if match.group(2) is None:
-        raise MeasurementError(where, "has no unit", f'write "{column}_mm"')
-    if match.group(2) not in UNITS:
+    found = unit_of(unit or below)
+    if not (unit or below):
+        raise MeasurementError(where, "has no unit", f'write "{cell}_mm"')
+    if found is None or found.kind != "length":
+        what = f'"{unit or below}" is not a unit of length'
+        raise MeasurementError(where, what, "convert to _m, _cm or _mm")
+    return _Head(at, cell, label, found.factor)
+
+
+def _check_lengths(rows: Sequence[TextRow], width: int, name: str) -> None:
+    for row in rows:
+        if len(row.cells) == width or (len(row.cells) > width and not any(row.cells[width:])):
+            continue
+        last = row is rows[-1] and len(row.cells) < width
         raise MeasurementError(
-            where, f'"{match.group(2)}" is not a unit here', "convert to _m, _cm or _mm"
+            f"{name}, line {row.line}",
+            f"has {len(row.cells)} cells; there are {width} columns",
+            "the file may have been cut off"
+            if last
+            else "use decimal points, or semicolons between columns",
         )
 
 
-def _stem(column: str) -> str:
-    return column if column in _LABELS else column.rpartition("_")[0]
-
-
-def _rows(
-    lines: Sequence[tuple[int, str]], columns: list[str], separator: str, name: str
-) -> Iterator[_Row]:
-    for at, line in lines:
-        cells = _cells(line, separator)
-        if len(cells) != len(columns):
-            last = at == lines[-1][0] and len(cells) < len(columns)
-            raise MeasurementError(
-                f"{name}, line {at}",
-                f"has {len(cells)} cells; there are {len(columns)} columns",
-                "the file may have been cut off"
-                if last
-                else "use decimal points, or semicolons between columns",
-            )
-        if separator != ",":
-            cells = [cell.replace(",", ".") if _COMMA.fullmatch(cell) else cell for cell in cells]
-        yield _Row(at, dict(zip(columns, cells, strict=True)))
-
-
-def _selected(rows: list[_Row], columns: list[str], select: str | None, name: str) -> list[_Row]:
-    if "material" not in columns:
+def _selected(
+    rows: Sequence[TextRow], heads: Sequence[_Head], select: str | None, name: str
+) -> list[TextRow]:
+    column = next((head.at for head in heads if head.label == "material"), None)
+    if column is None:
         if select is not None:
             raise MeasurementError(name, f'has no column "material" to find "{select}" in')
-        return rows
-    materials = list(dict.fromkeys(row.cells["material"] for row in rows))
+        return list(rows)
+    materials = list(dict.fromkeys(row.cell(column) for row in rows))
     listed = ", ".join(f'"{material}"' for material in materials)
     if select is None:
         if len(materials) > 1:
             raise MeasurementError(
                 name, f"holds several materials: {listed}", "choose one: --material, or select="
             )
-        return rows
-    found = [row for row in rows if row.cells["material"].casefold() == select.casefold()]
+        return list(rows)
+    found = [row for row in rows if row.cell(column).casefold() == select.casefold()]
     if not found:
         raise MeasurementError(name, f'has no material "{select}"', f"it holds {listed}")
     return found
 
 
-def _measurement(rows: list[_Row], columns: list[str], source: str, name: str) -> Measurement:
+def _measurement(
+    table: TextTable,
+    rows: Sequence[TextRow],
+    heads: Sequence[_Head],
+    source: str,
+) -> Measurement:
+    name = table.name
     if not rows:
         raise MeasurementError(name, "has a header and no rows", "the file may have been cut off")
-    measured = [column for column in columns if _stem(column) in QUANTITIES]
-    values = np.array([[_length(row, column, name) for column in measured] for row in rows])
-    arc = next((column for column in columns if _stem(column) == ARC), None)
-    title = rows[0].cells.get("material") or name
+    form = table.numbers(rows, [head.at for head in heads if head.factor])
+    measured = [head for head in heads if head.label in QUANTITIES]
+    values = np.array([[_length(row, head, form, name) for head in measured] for row in rows])
+    at = {head.label: head for head in heads}
+    arc, material = at.get(ARC), at.get("material")
     try:
         return Measurement(
-            quantities=[_stem(column) for column in measured],
+            quantities=[head.label for head in measured],
             values=values,
-            arcs=[_length(row, arc, name) for row in rows] if arc else None,
-            probes=None if arc else [row.cells["probe"] for row in rows],
-            name=title,
+            arcs=[_length(row, arc, form, name) for row in rows] if arc else None,
+            probes=None if arc else [row.cell(at["probe"].at) for row in rows],
+            name=(rows[0].cell(material.at) if material else "") or name,
             source=source,
         )
     except MeasurementError as error:
         raise MeasurementError(f"{name}, {error.where}", error.what, error.hint) from None
 
 
-def _length(row: _Row, column: str, name: str) -> float:
-    cell = row.cells[column]
-    where = f"{name}, line {row.line}, {column}"
+def _length(row: TextRow, head: _Head, form: NumberForm, name: str) -> float:
+    cell = row.cell(head.at)
+    where = f"{name}, line {row.line}, {head.text}"
     try:
-        value = float(cell)
+        value = form.read(cell)
     except ValueError:
         came = f'"{cell}" is not a number' if cell else "the cell is empty"
         raise MeasurementError(
@@ -214,4 +290,4 @@ def _length(row: _Row, column: str, name: str) -> float:
         raise MeasurementError(
             where, f"{cell} is not a finite number", "leave out stations that were not seen"
         )
-    return value * UNITS[column.rpartition("_")[2]]
+    return value * head.factor

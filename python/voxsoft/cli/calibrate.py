@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,6 +15,7 @@ from voxsoft.cli.output import plain, print_json, quantity, say, show_table
 
 if TYPE_CHECKING:
     from voxsoft.calibration import Calibration
+    from voxsoft.jobs import MeasuredTable
 
 
 def calibrate(
@@ -21,7 +23,7 @@ def calibrate(
     data: Annotated[
         list[Path],
         typer.Argument(
-            help="Measured data (CSV), one file or several; arc positions are on the lower edge.",
+            help="Tables of stations (CSV) or tests (TOML), one file or several.",
             exists=True,
             dir_okay=False,
         ),
@@ -34,6 +36,14 @@ def calibrate(
     ] = "genetic",
     material: Annotated[
         str | None, typer.Option("--material", help="Which material, where a file holds several.")
+    ] = None,
+    line: Annotated[
+        str | None,
+        typer.Option(
+            "--line",
+            help="Line of arc positions: lower-edge, centerline or upper-edge. Asked for if left "
+            "out, and lower-edge where nobody answers.",
+        ),
     ] = None,
     free_scale: Annotated[
         bool, typer.Option("--free-scale", help="Fit one scale factor of the data as well.")
@@ -58,9 +68,10 @@ def calibrate(
 
     with errors_in_words(json=json):
         loaded = files.load(design, assignments=sets or [])
+        tables = [table for path in data for table in MeasuredTable.of_file(path, material)]
         spec = CalibrateSpec(
             design=DesignSource.of_file(design, sets or []),
-            data=[MeasuredTable.of_file(path, material) for path in data],
+            data=_on_a_line(tables, line, asks=not json and sys.stdin.isatty()),
             method=method,
             free_scale=free_scale,
             generations=generations,
@@ -80,6 +91,22 @@ def calibrate(
             say(f"wrote {plain(str(folder))}: {names}")
 
 
+def _on_a_line(tables: list[MeasuredTable], line: str | None, *, asks: bool) -> list[MeasuredTable]:
+    """Return the tables with the line of their arc positions, that a person is asked for."""
+    seen = [table.read() for table in tables]
+    along = [each.arcs is not None and (line or each.line is None) for each in seen]
+    if not any(along) or (line is None and not asks):
+        return tables
+    if line is None:
+        names = ", ".join(t.name for t, is_open in zip(tables, along, strict=True) if is_open)
+        say(f"{plain(names)}: arc positions, and no line of the body on which they were marked")
+        line = typer.prompt("lower-edge, centerline or upper-edge", default="lower-edge")
+    return [
+        table.on_line(line) if is_open else table
+        for table, is_open in zip(tables, along, strict=True)
+    ]
+
+
 def _show(answer: Calibration) -> None:
     mean, largest = (quantity(error, "length") for error in (answer.mean_error, answer.max_error))
     say(f"mean error {mean}, largest {largest}, fitness {answer.fitness:.4f}")
@@ -96,5 +123,5 @@ def _show(answer: Calibration) -> None:
         if fit.experiment.measurement.arcs is not None:
             where = fit.experiment.line.replace("-", " ")
             say(f"{plain(fit.experiment.name)}: arc positions are on the {where}")
-        if fit.caution:
-            say(f"[yellow]warning[/yellow] {plain(fit.caution)}")
+    for warning in answer.warnings:
+        say(f"[yellow]warning[/yellow] {plain(warning)}")

@@ -47,7 +47,9 @@ def compare(
     measured: Annotated[
         list[Path] | None,
         typer.Option(
-            "--measured", help="A CSV of the real body, as for calibrate. Repeatable.", exists=True
+            "--measured",
+            help="A table or test of the real body, as for calibrate. Repeatable.",
+            exists=True,
         ),
     ] = None,
     time_limit: Annotated[
@@ -81,7 +83,7 @@ def compare(
         sizes, numbers = _lengths(voxel_sizes), _numbers(splits)
         spec = CompareSpec(
             design=DesignSource.of_file(design, sets or []),
-            data=[MeasuredTable.of_file(path) for path in measured or []],
+            data=[table for path in measured or [] for table in MeasuredTable.of_file(path)],
             solvers=[name.strip() for name in solvers.split(",") if name.strip()],
             outside=outside.value,
             voxel_sizes=sizes,

@@ -279,7 +279,7 @@ def _show_fit(answer: CouponFit, chosen: str) -> None:
     for name, why in answer.rejected.items():
         say(f"{name}: {plain(why)}")
     softening = [] if soft is None else list(soft.warnings)
-    for warning in answer.of(chosen).warnings + answer.warnings + softening:
+    for warning in answer.summary(chosen)["warnings"] + softening:
         say(f"[yellow]warning:[/yellow] {plain(warning)}")
 
 

@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any, Final, get_args
 
 from voxsoft.calibration import Experiment, Measurement
+from voxsoft.calibration.experiment import changed
 from voxsoft.comparison.brick_contact import passed_through
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.cautions import cautions_of, cautions_of_contact, cautions_of_layers
@@ -25,7 +26,7 @@ from voxsoft.comparison.outside import OutsideAnswer
 from voxsoft.comparison.quantities import of_answer, of_result
 from voxsoft.comparison.scikit_fem import run_scikit_fem, scikit_fem_version
 from voxsoft.design import Design, Solver, require_design
-from voxsoft.errors import MissingPackageError, SimulationError, VoxSoftError
+from voxsoft.errors import MeasurementError, MissingPackageError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Diagnostic, Result, Setup, simulate
 from voxsoft.simulation.compatibility import refuse
@@ -77,7 +78,8 @@ def compare(
     splits
         Bricks along the edge of a voxel, rising; default 1 and 2.
     measured
-        Measurements of the real body.
+        Measurements of the real body; values of the design that they name
+        (:attr:`~voxsoft.calibration.Measurement.changes`) are one for all of them.
     time_limit
         Time that each run may take, in s or with its unit.
     progress
@@ -115,6 +117,7 @@ def compare(
     if list(splits) != sorted(set(splits)) or not splits or splits[0] < 1:
         raise SimulationError("splits", "do not rise from 1", "write 1,2 or 1,2,3")
     code = _outside(outside)
+    design = _as_measured(design, measured)
     design, unlike = with_full_voxels(design) if code else (design, ())
     plain = design.replace(solver=Solver())
     refine = design.solver.refine
@@ -138,6 +141,18 @@ def compare(
         cautions += cautions_of_layers(design)
     warnings = (*_unused(design), *unlike, *cautions)
     return Comparison(design, tuple(runs), tuple(solvers)[-1], code or "", judged, note, warnings)
+
+
+def _as_measured(design: Design, measured: Sequence[Measurement]) -> Design:
+    """Return the design as it was loaded when it was measured."""
+    changes = {measurement.changes for measurement in measured}
+    if len(changes) > 1:
+        raise MeasurementError(
+            "measured",
+            f"{' and '.join(measurement.name for measurement in measured)} were loaded differently",
+            "compare each of them alone",
+        )
+    return changed(design, next(iter(changes), ()))
 
 
 def _unused(design: Design) -> Iterator[Diagnostic]:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from voxsoft.files.designs import load, save
     from voxsoft.files.exports import export, unit_of, write_scene, write_series
     from voxsoft.files.family_file import write_family
+    from voxsoft.files.measured_tests import load_measurements
     from voxsoft.files.meshes import read_mesh, write_mesh
     from voxsoft.files.path_table import write_path
     from voxsoft.files.run_folder import write_run
@@ -27,6 +28,7 @@ __all__ = [
     "check_mesh",
     "export",
     "load",
+    "load_measurements",
     "read_mesh",
     "save",
     "unit_of",
@@ -52,6 +54,7 @@ _HOMES = {
     "check_mesh": "voxsoft.files.checks",
     "export": "voxsoft.files.exports",
     "load": "voxsoft.files.designs",
+    "load_measurements": "voxsoft.files.measured_tests",
     "read_mesh": "voxsoft.files.meshes",
     "save": "voxsoft.files.designs",
     "unit_of": "voxsoft.files.exports",

@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from voxsoft._folders import folder_name
-from voxsoft.errors import FileError, MeasurementError
 from voxsoft.files.cards import save_card
 from voxsoft.files.designs import FilePath, read_document, read_text
 from voxsoft.files.figures import save_figure
 from voxsoft.files.run_folder import make_folder, provenance, write_json
+from voxsoft.instruments import Measured, measured
+from voxsoft.instruments.read import is_text, table_text
 from voxsoft.materials import Mode
 from voxsoft.materials.card import Card
 from voxsoft.materials.coupon import (
@@ -36,7 +37,7 @@ def load_curve(
     area: float | None = None,
     length: float | None = None,
 ) -> Curve:
-    r"""Read a stress-strain curve from a CSV file.
+    r"""Read a stress-strain curve from a table, or a file of :func:`voxsoft.measured`.
 
     Parameters
     ----------
@@ -52,7 +53,7 @@ def load_curve(
     FileError
         A missing, unreadable or too large file.
     MeasurementError
-        Text that is not UTF-8, or a table that cannot be used, with the line.
+        No text, or a table that cannot be used, with the line.
 
     Examples
     --------
@@ -62,21 +63,20 @@ def load_curve(
     >>> float(load_curve(file).stress[-1])
     17000.0
     """
-    text, name = _table(path), Path(path).name
-    return read_curve(text, name=name, mode=mode, area=area, length=length)
+    return read_curve(_table(path), name=Path(path).name, mode=mode, area=area, length=length)
 
 
 def load_cycles(
     path: FilePath, *, area: float | None = None, length: float | None = None
 ) -> Cycles:
-    """Read a uniaxial test with load and unload from a CSV file; see :func:`load_curve`.
+    """Read a uniaxial test with load and unload from a file; see :func:`load_curve`.
 
     Raises
     ------
     FileError
         A missing, unreadable or too large file.
     MeasurementError
-        Text that is not UTF-8, a table that cannot be used, or no cycle in it.
+        No text, a table that cannot be used, or no cycle in it.
     """
     return read_cycles(_table(path), name=Path(path).name, area=area, length=length)
 
@@ -88,7 +88,7 @@ def load_timed_test(
     area: float | None = None,
     length: float | None = None,
 ) -> TimedTest:
-    """Read a uniaxial test over time from a CSV file; see :func:`load_curve`.
+    """Read a uniaxial test over time from a file; see :func:`load_curve`.
 
     Parameters
     ----------
@@ -104,20 +104,14 @@ def load_timed_test(
     FileError
         A missing, unreadable or too large file.
     MeasurementError
-        Text that is not UTF-8, a table that cannot be used, or a test unlike its kind.
+        No text, a table that cannot be used, or a test unlike its kind.
     """
-    text, name = _table(path), Path(path).name
-    return read_timed_test(text, kind=kind, name=name, area=area, length=length)
+    return read_timed_test(_table(path), kind=kind, name=Path(path).name, area=area, length=length)
 
 
-def _table(path: FilePath) -> str:
-    """Read the text of a table."""
-    try:
-        return read_text(path)
-    except FileError as error:
-        if "UTF-8" in error.what:
-            raise MeasurementError(error.where, error.what, "save the table as CSV") from None
-        raise
+def _table(path: FilePath) -> str | Measured:
+    """Read a table: its text, or the columns of an instrument's own format."""
+    return table_text(path) if is_text(path) else measured(path)
 
 
 def load_modulus_tests(path: FilePath) -> list[MeasuredModulus]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from voxsoft.calibration import Measurement, read_measurement
-from voxsoft.errors import FileError, MeasurementError
-from voxsoft.files.designs import FilePath, read_text
+from voxsoft.files.designs import FilePath
+from voxsoft.instruments.read import table_text
 
 
 def load_measurement(path: FilePath, *, select: str | None = None) -> Measurement:
@@ -24,7 +24,7 @@ def load_measurement(path: FilePath, *, select: str | None = None) -> Measuremen
     FileError
         A missing, unreadable or too large file.
     MeasurementError
-        Text that is not UTF-8, or a table that cannot be used, with the line.
+        No text, or a table that cannot be used, with the line.
 
     Examples
     --------
@@ -34,22 +34,4 @@ def load_measurement(path: FilePath, *, select: str | None = None) -> Measuremen
     >>> load_measurement(file).values.tolist()
     [[-0.0125]]
     """
-    return read_measurement(measurement_text(path), name=Path(path).name, select=select)
-
-
-def measurement_text(path: FilePath) -> str:
-    """Read the text of a measurement's file.
-
-    Raises
-    ------
-    FileError
-        A missing, unreadable or too large file.
-    MeasurementError
-        Text that is not UTF-8.
-    """
-    try:
-        return read_text(path)
-    except FileError as error:
-        if "UTF-8" in error.what:
-            raise MeasurementError(error.where, error.what, "save the table as CSV") from None
-        raise
+    return read_measurement(table_text(path), name=Path(path).name, select=select)

@@ -56,7 +56,7 @@ def read_npy(path: Path) -> Contents:
     if not (values.min() >= 0 and values.max() <= _MOST):
         what = f"holds {values.min()} to {values.max()}; parts are numbered 0 (empty) to {_MOST}"
         raise FileError(where, what, "number the parts from 1, with 0 outside")
-    return _labeled(where, values.astype(np.uint8), "NumPy array")
+    return labeled_voxels(where, values.astype(np.uint8), "NumPy array")
 
 
 def read_voxcad(path: Path) -> Contents:
@@ -99,7 +99,9 @@ def read_voxcad(path: Path) -> Contents:
     lattice = next(root.iter("Lattice"), None)
     steps, unit = _steps(where, lattice)
     labels = values.reshape(nz, ny, nx).transpose(2, 1, 0)
-    return _labeled(where, labels, "VoxCAD", steps, unit, list(_names(root, np.unique(values))))
+    return labeled_voxels(
+        where, labels, "VoxCAD", steps, unit, list(_names(root, np.unique(values)))
+    )
 
 
 def _steps(where: str, lattice: ET.Element | None) -> tuple[NDArray[np.float64], float | None]:
@@ -138,7 +140,7 @@ def _names(root: ET.Element, labels: Sequence[int] | NDArray[np.uint8]) -> Itera
             yield f'Label {label} is the material "{name}" of the palette; its numbers are not read'
 
 
-def _labeled(
+def labeled_voxels(
     where: str,
     values: NDArray[np.uint8],
     called: str,
@@ -146,7 +148,7 @@ def _labeled(
     unit: float | None = None,
     notes: Sequence[str] = (),
 ) -> Contents:
-    """Return cells of labels, (nx, ny, nz)."""
+    """Return cells of labels, (nx, ny, nz), of voxels with sizes in a unit that is known or not."""
     x, y, z = values.shape
     arrays: dict[str, NDArray[Any]] = {"label": values.ravel(order="F")}
     sizes = np.diag(np.ones(3) if steps is None else steps)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -120,19 +120,46 @@ class MeasuredTable(Record):
     select: str | None = None
 
     @classmethod
-    def of_file(cls, path: FilePath, select: str | None = None) -> Self:
-        """Read the file of a table.
+    def of_file(cls, path: FilePath, select: str | None = None) -> tuple[Self, ...]:
+        """Read the file of a table, or the tables of a test (TOML): one for each load.
 
         Raises
         ------
         FileError
             A missing, unreadable or too large file.
         MeasurementError
-            Text that is not UTF-8.
+            A file that is no text, or a test that cannot be used.
         """
-        from voxsoft.files.measurements import measurement_text
+        name = Path(path).name
+        if Path(path).suffix.lower() != ".toml":
+            from voxsoft.instruments.read import table_text
 
-        return cls(name=Path(path).name, text=measurement_text(path), select=select)
+            return (cls(name=name, text=table_text(path), select=select),)
+        from voxsoft.files.measured_tests import load_measurements
+
+        return cls.of_measurements(load_measurements(path), name)
+
+    @classmethod
+    def of_measurements(cls, found: Sequence[Measurement], name: str) -> tuple[Self, ...]:
+        """Write the measurements of a test as tables."""
+        from voxsoft.calibration import table_of
+
+        return tuple(
+            cls(name=f"{name}, {at} of {len(found)}", text=table_of(measurement))
+            for at, measurement in enumerate(found, start=1)
+        )
+
+    def on_line(self, line: str) -> Self:
+        r"""Return the table with a comment that names the line of its arc positions.
+
+        Examples
+        --------
+        >>> table = MeasuredTable(name="t", text="arc_mm,dz_mm\n30,-5").on_line("centerline")
+        >>> table.read().line
+        'centerline'
+        """
+        # Below: lines keep their numbers in errors.
+        return self.replace(text=f"{self.text.rstrip()}\n# line: {line}\n")
 
     def read(self) -> Measurement:
         """Make the measurement.

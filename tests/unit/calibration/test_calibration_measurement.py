@@ -75,7 +75,7 @@ def test_one_of_several_materials():
         ("probe;dz_mm\na;-1,5,2\n", '"-1,5,2" is not a number'),
         (" ,X,Y\n1,12.5,40.1\n", r"X and Y are places in a picture.*picture's Y points down"),
         ("probe,dz\ntip,-1\n", r'has no unit. Try: write "dz_mm"'),
-        ("probe,dz_inch\ntip,-1\n", r'"inch" is not a unit'),
+        ("probe,dz_kPa\ntip,-1\n", r'"kPa" is not a unit of length'),
         ("probe,sag_mm\ntip,-1\n", r"column sag_mm: is not known"),
         ("probe,dzz_mm\ntip,-1\n", r"dzz_mm: is not known"),
         ("probe,note\ntip,fine\n", "no measured quantity"),
@@ -173,3 +173,51 @@ def test_clamp_at_the_other_end():
 
 def test_sag_is_along_gravity(beam):
     assert Experiment(beam, read_measurement(GOOD)).sag == pytest.approx(0.058)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Camera 2;strip 7\n\nprobe;x [mm];dz [mm]\ntip;1.250,5;-12,5\n",
+        "probe;x;dz\n;mm;mm\ntip;1250,5;-12,5\n",
+        'probe,x (mm),dz / cm\ntip,"1,250.5",-1.25\n',
+        "Probe\tX (mm)\tdZ in m\ntip\t1 250.5\t-0.0125\n",
+        "probe,x_m,dz_inch,\ntip,1.2505,-0.49212598425196846,\n",
+    ],
+)
+def test_tables_of_spreadsheets_and_machines_read_alike(text):
+    seen = read_measurement(text)
+    assert (seen.probes, seen.quantities) == (("tip",), ("x", "dz"))
+    # Rounding of one product.
+    np.testing.assert_allclose(seen.values, [[1.2505, -0.0125]], rtol=1e-15)
+
+
+def test_a_table_in_the_coding_of_a_machine_is_read(tmp_path):
+    path = tmp_path / "maß.csv"
+    text = "# Prüfung für Ä\nprobe;dz_mm\ntip;-12,5\n"
+    for coding in ("cp1252", "utf-8-sig", "utf-16"):
+        path.write_bytes(text.encode(coding))
+        seen = Measurement.read(path)
+        assert (seen.source, float(seen.values[0, 0])) == ("Prüfung für Ä", -0.0125)
+
+
+def test_a_table_says_the_line_of_its_marks(beam):
+    table = f"# Line: upper edge\n{GOOD}"
+    seen = read_measurement(table)
+    assert (seen.line, seen.source) == ("upper-edge", "someone, 2026")
+    experiment = Experiment(beam, seen)
+    assert experiment.line == "upper-edge"
+    assert not experiment.caution
+    assert Experiment(beam, seen, line="centerline").line == "centerline"
+    with pytest.raises(MeasurementError, match=r'"middle".*name one of lower-edge, centerline'):
+        read_measurement(f"# line: middle\n{GOOD}")
+    with pytest.raises(MeasurementError, match='"centerline" and "upper-edge"'):
+        read_measurement(f"{table}# line: centerline\n")
+
+
+def test_a_line_that_nobody_named_is_warned_about(beam):
+    experiment = Experiment(beam, read_measurement(GOOD, name="strip.csv"))
+    assert experiment.line == "lower-edge"
+    assert experiment.caution.startswith("strip.csv: arc positions are taken for marks on the low")
+    probes = Measurement(quantities=["dz"], values=[[-0.01]], probes=["station-9"])
+    assert not Experiment(beam, probes).caution

@@ -9,7 +9,7 @@ from voxsoft.cli.export import export
 from voxsoft.errors import FileError
 from voxsoft.files.meshes import read_mesh_file, write_mesh
 from voxsoft.formats.read import known_suffixes
-from voxsoft.formats.registry import FORMATS, READ, WRITTEN, function
+from voxsoft.formats.registry import FORMATS, MEASURED, READ, WRITTEN, function
 from voxsoft.studio.outputs.exports import FORMATS as EXPORTS
 from voxsoft.voxels import Voxels
 
@@ -33,9 +33,14 @@ def test_each_reader_and_writer_exists():
 
 
 def test_each_suffix_is_read_by_one_format():
-    suffixes = [s for form in FORMATS if form.reader is not None for s in form.suffixes]
-    assert len(suffixes) == len(set(suffixes)) == len(READ)
+    read = [form for form in FORMATS if form.reader is not None]
+    for found, is_measured in ((READ, False), (MEASURED, True)):
+        forms = [form for form in read if (form.kind == "measured") == is_measured]
+        suffixes = [suffix for form in forms for suffix in form.suffixes]
+        assert len(suffixes) == len(set(suffixes)) == len(found)
     assert set(READ) <= set(known_suffixes())
+    # One suffix may be a body and a measurement; the reader asked for says which.
+    assert {*READ} & {*MEASURED} <= {".mat"}
 
 
 @pytest.mark.parametrize("suffix", MESHES)

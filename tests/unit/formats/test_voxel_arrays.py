@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from voxsoft.design import Design
 from voxsoft.design.discretization.discretize import voxels_of
@@ -210,3 +211,33 @@ def test_labels_are_those_of_an_array_in_python(tmp_path):
         volumes = (m.tet_volumes[m.tet_part == n] for m, n in ((mesh, part), (expected, label)))
         one, other = (each.sum() for each in volumes)
         assert one == pytest.approx(other)
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.float64, bool])
+def test_labels_of_matlab_are_parts_in_any_type(tmp_path, kind):
+    """MATLAB calculates in doubles, and stores whole ones in as few bits as they need."""
+    labels = LABELS.astype(kind)
+    savemat(tmp_path / "a.mat", {"scan": labels, "spacing": 2.0, "name": "lung"})
+    read = read_mesh_file(tmp_path / "a.mat", unit="2 mm")
+    # Six tetrahedra in a cell; parts are numbered in the order of their labels.
+    cells_of = [np.count_nonzero(labels == label) for label in np.unique(labels[labels > 0])]
+    assert np.bincount(read.mesh.tet_part)[1:].tolist() == [6 * count for count in cells_of]
+    # The box of the cells, with the axes in the order of the array.
+    cells = np.argwhere(LABELS)
+    np.testing.assert_allclose(read.mesh.vertices.min(axis=0), 2e-3 * cells.min(axis=0))
+    np.testing.assert_allclose(read.mesh.vertices.max(axis=0), 2e-3 * (cells.max(axis=0) + 1))
+
+
+@pytest.mark.parametrize(
+    ("variables", "what"),
+    [
+        ({"a": np.ones((2, 3))}, "no array with three axes: a"),
+        ({"a": np.ones((2, 3, 4)), "b": np.ones((2, 3, 4))}, "several arrays with three axes: a"),
+        ({"a": np.full((2, 3, 4), 0.5)}, "a holds fractions.*compare with a threshold"),
+        ({"a": np.full((2, 3, 4), 300.0)}, "a holds 300 to 300; parts are numbered 0"),
+    ],
+)
+def test_other_variables_of_matlab_are_refused(tmp_path, variables, what):
+    savemat(tmp_path / "a.mat", variables)
+    with pytest.raises(FileError, match=what):
+        read_contents(tmp_path / "a.mat")

@@ -288,8 +288,35 @@ def test_a_card_that_fits_worse_than_others_says_its_own_stress_and_so():
     (mode,) = (each for each in fit.untested if each.mode == "equibiaxial")
     assert mode.low < 116.3e3 < mode.high
     (sentence,) = (each for each in fit.warnings if each.startswith("equibiaxial"))
-    own = nominal_stress(fit.recommended.material, [mode.stretch], "equibiaxial")[0]
+    own = float(nominal_stress(fit.recommended.material, [mode.stretch], "equibiaxial")[0])
     assert f"The card says {format_quantity(float(f'{own:.3g}'), 'modulus')}" in sentence
-    alone = fit.recommended.name not in mode.models
-    assert ("is not among the models that fit alike" in sentence) == alone
+    # The case this is about: a recommended model that the others fit better than.
+    assert fit.recommended.name not in mode.models
+    assert mode.low <= own <= mode.high
+    assert f"by {fit.recommended.name} and models that fit better" in sentence
     assert not any("safer" in each for each in fit.warnings)
+
+
+def test_the_warning_on_a_card_of_another_model_is_about_that_model():
+    random = np.random.default_rng(0)
+    stretch = np.linspace(1.02, 2.0, 60)
+    stress = 2.0 * (stretch - stretch**-2) * (20e3 + 10e3 / stretch)
+    curve = Curve(stretch - 1.0, stress + 150.0 * random.standard_normal(60), name="coupon")
+    fit = fit_coupons([curve], toe="off")
+    chosen = fit.of("mooney-rivlin")
+    assert chosen is not fit.recommended
+    own = float(nominal_stress(chosen.material, [1.5], "equibiaxial")[0])
+    shown = format_quantity(float(f"{own:.3g}"), "modulus")
+    assert f"The card says {shown}" in fit.card("other", "mooney-rivlin").caution
+    assert f"The card says {shown}" in " ".join(fit.summary("mooney-rivlin")["warnings"])
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["ecoflex-00-30", "dragon-skin-10", "rtv615"])
+@pytest.mark.parametrize("farthest", [0.5, 1.0])
+def test_a_recommended_card_lies_inside_the_range_of_its_own_warning(name, farthest):
+    curve = read_curve((DATA / f"{name}.csv").read_text(encoding="utf-8"), name=name)
+    fit = fit_coupons([curve], max_strain=farthest)
+    for mode in fit.untested:
+        own = nominal_stress(fit.recommended.material, [mode.stretch], mode.mode)[0]
+        assert mode.low <= own <= mode.high

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from voxsoft.errors import MeasurementError
-from voxsoft.materials.coupon import Curve, read_curve
+from voxsoft.instruments import Column, Measured
+from voxsoft.materials.coupon import Curve, fit_coupons, read_curve, read_timed_test
 
 DATA = Path(__file__).parents[3] / "examples" / "data" / "tensile"
 STRAINS = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5]
@@ -123,7 +124,7 @@ def test_wrong_columns_are_reported_in_words(heads, words):
     [
         ("", "is empty"),
         ("\n\n", "is empty"),
-        ("a\0b", "is not a table"),
+        ("a\0b", "is not a text file"),
         ("strain,stress_kPa\n", "has 0 points"),
         ("strain,stress_kPa\n0,0\n1,x\n", "line 3.*not a number"),
         ("strain,stress_kPa\n0,0\n1\n", "line 3.*not a number"),
@@ -200,3 +201,107 @@ def test_a_stress_of_the_wrong_sign_is_refused(strain, sign, words):
         Curve(stretch - 1.0, sign * stress)
     # A load cell whose zero is off by more than all of the curve says nothing of its sign.
     Curve(stretch - 1.0, stress - 1e6)
+
+
+def neo_hookean(strains):
+    """Engineering stress of shear modulus 20 kPa in Pa."""
+    stretch = 1.0 + np.asarray(strains)
+    return 20e3 * (stretch - stretch**-2)
+
+
+@pytest.mark.parametrize("backward", [False, True])
+def test_compression_with_negative_numbers_is_a_curve(backward):
+    strain = np.linspace(0.0, -0.4, 9)[:: -1 if backward else 1]
+    text = table(["strain", "stress_Pa"], [strain, neo_hookean(strain)])
+    curve = read_curve(text)
+    np.testing.assert_array_equal(curve.strain, strain)
+    assert fit_coupons([curve], toe="off").of("neo-hookean").constants["c10"].value == (
+        pytest.approx(10e3)
+    )
+    with pytest.raises(MeasurementError, match="the strain rises: a cycle"):
+        read_curve(table(["strain", "stress_Pa"], [[0, -0.1, -0.2, -0.1, 0.0, -0.3], STRESSES]))
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_columns_of_compression_are_negative_whichever_way_the_machine_counts(sign):
+    strain = np.linspace(0.0, -0.4, 9)
+    rows = [10 * sign * np.abs(strain), 1e-4 * sign * np.abs(neo_hookean(strain))]
+    text = table(["Compressive extension (mm)", "Compressive load (N)"], rows)
+    curve = read_curve(text, area="100 mm^2", length="10 mm")
+    np.testing.assert_allclose(curve.strain, strain, atol=1e-15)
+    np.testing.assert_allclose(curve.stress, neo_hookean(strain), rtol=1e-12)
+
+
+def test_an_export_of_zwickroell_is_read():
+    """Quoted cells, semicolons, commas, a row of units, and the crosshead beside the travel."""
+    rows = "".join(
+        f'"{i / 10:.1f}";"{1.8 * i:.2f}";"{3.3 * i:.1f}";"{9.9 * i:.1f}"\n'.replace(".", ",")
+        for i in range(6)
+    )
+    heads = '"Prüfzeit";"Standardkraft";"Standardweg";"Traversenweg"\n"s";"N";"mm";"mm"\n'
+    curve = read_curve(
+        '"Prüfprotokoll";"Zug"\n"Datum";"12.5.2026"\n\n' + heads + rows, area=18e-6, length=33e-3
+    )
+    np.testing.assert_allclose(curve.strain, [0.1 * i for i in range(6)], atol=1e-12)
+    np.testing.assert_allclose(curve.stress, [1e5 * i for i in range(6)])
+
+
+def test_an_export_of_shimadzu_is_read_with_commas_of_thousands():
+    rows = "".join(f'"{i / 10}","{300.5 * i:,.1f}","{i}.0"\n' for i in range(6))
+    assert '"1,202.0"' in rows
+    head = '"Key word","","Product Name"\n"1 _ 1"\n"Time","Force","Stroke"\n"sec","N","mm"\n'
+    curve = read_curve(head + rows, area="1 m^2", length="10 mm")
+    np.testing.assert_allclose(curve.stress, [300.5 * i for i in range(6)], rtol=1e-12)
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("mm/m", 1e-3), ("µε", 1e-6), ("‰", 1e-3)])
+def test_small_strains_have_their_units(unit, factor):
+    text = table([f"Strain ({unit})", "Stress (kPa)"], [range(6), range(6)])
+    np.testing.assert_allclose(read_curve(text).strain, factor * np.arange(6), rtol=1e-12)
+
+
+def test_decimal_commas_between_commas_are_no_further_columns():
+    """Half of each number would be read, silently."""
+    text = "strain,stress_kPa\n" + "".join(f"0,{i},1,{i}\n" for i in range(6))
+    with pytest.raises(MeasurementError, match="line 2: has 4 cells; there are 2 columns"):
+        read_curve(text)
+
+
+def test_a_comma_that_may_be_either_is_refused():
+    text = "strain (%),stress_Pa\n" + "".join(f'{i},"{i},500"\n' for i in range(1, 7))
+    with pytest.raises(MeasurementError, match=r'"1,500" may be 1500 or 1\.500'):
+        read_curve(text)
+    assert read_curve(text.replace('"1,500"', '"0,500"')).stress[0] == 0.5
+    assert read_curve(text.replace("1,", "1.5,", 1)).stress[0] == 1500.0
+
+
+def test_two_kinds_of_decimals_in_one_table_are_refused():
+    text = "strain;stress_kPa\n0.5;1,5\n" + "".join(f"{i};{i}\n" for i in range(1, 6))
+    with pytest.raises(MeasurementError, match=r"decimal comma and .* a decimal point"):
+        read_curve(text)
+
+
+def test_a_curve_comes_from_measured_data_of_one_clock():
+    times = np.arange(6) / 10
+    travel = Column("Cell/Extension", "mm", [33 * e for e in STRAINS], times)
+    force = Column("Cell/Force", "N", [18e-6 * s for s in STRESSES], times)
+    lamp = Column("Cell/lamp", "V", np.ones(6), times)
+    curve = read_curve(Measured("a.tdms", (travel, force, lamp)), area=18e-6, length=33e-3)
+    np.testing.assert_allclose(curve.strain, STRAINS, atol=1e-12)
+    np.testing.assert_allclose(curve.stress, STRESSES, rtol=1e-12)
+    held = Column("Strain", "%", [0, 50, 50, 50, 50, 50, 50], np.arange(7.0))
+    stress = Column("Stress", "kPa", [0, 20, 15, 13, 12, 12, 12], np.arange(7.0))
+    test = read_timed_test(Measured("b.mat", (held, stress)), kind="relaxation")
+    # Held from 1 s to 6 s.
+    assert (test.duration, float(test.stress[1])) == (5.0, 20e3)
+    late = Column("Cell/Force", "N", force.numbers, times + 0.05)
+    with pytest.raises(MeasurementError, match=r"different times.*resampled\(rate\)"):
+        read_curve(Measured("a.tdms", (travel, late)), area=18e-6, length=33e-3)
+    with pytest.raises(MeasurementError, match='no column of stress among "Cell/Extension"'):
+        read_curve(Measured("a.tdms", (travel, lamp)), area=18e-6, length=33e-3)
+
+
+def test_gaps_of_measured_data_are_no_points_of_a_curve():
+    strain = Column("strain", "", [*STRAINS, np.nan])
+    stress = Column("stress", "Pa", [*STRESSES, 1.0])
+    assert len(read_curve(Measured("a.mat", (strain, stress))).strain) == len(STRAINS)

@@ -74,10 +74,27 @@ def test_the_warning_vanishes_once_the_other_modes_are_tested():
 @pytest.mark.slow
 def test_less_noise_leaves_less_open():
     noisy, clean = (
-        fitted("treloar", "uniaxial", noise=noise).untested[0] for noise in (0.01, 1e-4)
+        fit_coupons(
+            [measured(TRELOAR, "uniaxial", noise=noise, reach=2.0)],
+            toe="off",
+            models=["ogden-3"],
+        ).untested[0]
+        for noise in (0.01, 1e-4)
     )
     assert clean.spread < 0.2 * noisy.spread
     assert not clean.sentence
+
+
+@pytest.mark.slow
+def test_a_card_far_from_determined_stress_has_a_warning():
+    """Clean data of Treloar's rubber determine 602 kPa; a law of one invariant has 483 kPa."""
+    fit = fitted("treloar", "uniaxial", noise=1e-4)
+    own = float(nominal_stress(fit.recommended.material, 1.5, "equibiaxial"))
+    truth = float(nominal_stress(TRELOAR, 1.5, "equibiaxial"))
+    assert own < 0.9 * truth
+    found = fit.untested[0]
+    assert (found.low, found.low_model) == (own, fit.recommended.name)
+    assert any("equibiaxial stress at stretch 1.5" in warning for warning in fit.warnings)
 
 
 def test_compression_is_equibiaxial_tension():

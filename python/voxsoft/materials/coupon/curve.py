@@ -58,7 +58,8 @@ class Curve:
     Parameters
     ----------
     strain
-        Engineering strain (change of length over original length), (n,), rising.
+        Engineering strain (change of length over original length), (n,): rising, or, of
+        compression, all the way down or up.
     stress
         Engineering stress (force over original cross section) in Pa, (n,).
     mode
@@ -72,7 +73,7 @@ class Curve:
     ------
     MeasurementError
         Fewer than five points, numbers that are not finite, lengths that differ, a strain that
-        falls (a cycle), a stress whose sign is turned, or an unknown mode.
+        turns (a cycle), a stress whose sign is turned, or an unknown mode.
 
     Examples
     --------
@@ -114,13 +115,16 @@ class Curve:
                 f"strain {strain.min():g} is a length of zero or less",
                 "compression is negative and above -1; is the column in percent?",
             )
-        # Crossheads and cameras jitter by less than 2 % of the range.
-        fall = np.maximum.accumulate(strain) - strain
-        if fall.max() > 0.02 * np.ptp(strain):
-            at = int(np.argmax(fall > 0.02 * np.ptp(strain)))
+        # Crossheads and cameras jitter by less than 2 % of the range. A table of compression
+        # begins at either end.
+        jitter = 0.02 * np.ptp(strain)
+        fall, rise = (np.maximum.accumulate(each) - each for each in (strain, -strain))
+        pressed = strain.max() < -strain.min()
+        if fall.max() > jitter and not (pressed and rise.max() <= jitter):
+            at = int(np.argmax((rise if pressed else fall) > jitter))
             raise MeasurementError(
                 f"{self.name}, point {at + 1}",
-                "the strain falls: a cycle",
+                f"the strain {'rises' if pressed else 'falls'}: a cycle",
                 "keep the loading branch of one cycle, or give all as a cyclic test (--cyclic)",
             )
         self._check_sign()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -15,7 +16,7 @@ from voxsoft.materials.coupon.cycles import Cycles
 from voxsoft.materials.coupon.families import FAMILIES, Anchor, Block, Data, Family, NoFit
 from voxsoft.materials.coupon.interval import Interval, noise_of
 from voxsoft.materials.coupon.modulus_test import MeasuredModulus
-from voxsoft.materials.coupon.result import CouponFit, ModelFit
+from voxsoft.materials.coupon.result import CouponFit, ModelFit, stress_in
 from voxsoft.materials.coupon.untested import UntestedMode, untested_modes
 from voxsoft.materials.hyperelastic import NEARLY_INCOMPRESSIBLE, Floats, Hyperelastic
 from voxsoft.materials.lattice import SILICONE_DENSITY
@@ -127,7 +128,7 @@ def fit_coupons(
         for family, constants in solved.items()
     ]
     ranked.sort(key=lambda fit: (fit.cv_rmse, fit.size))
-    return CouponFit(
+    found = CouponFit(
         tuple(curves),
         used,
         tuple(curve.toe() for curve in curves),
@@ -139,6 +140,10 @@ def fit_coupons(
         _untested(used, families, solved, whole, ranked),
         tuple(each.corrected(each.first_loading().toe(), toe, max_strain) for each in cycles),
     )
+    # A card outside of the range that its own warning states would be one of two errors.
+    card = found.recommended
+    held = tuple(mode.holding(card.name, stress_in(card, mode)) for mode in found.untested)
+    return replace(found, untested=held)
 
 
 def _untested(

@@ -110,7 +110,7 @@ class CouponFit:
     cycles
         Cyclic tests, toe corrected; their first loadings are among the curves.
     untested
-        Stress in each mode that no curve has, by all models that fit alike.
+        Stress in each mode that no curve has, by all models that fit alike and the recommended one.
     """
 
     measured: tuple[Curve, ...]
@@ -182,7 +182,11 @@ class CouponFit:
 
     @property
     def warnings(self) -> list[str]:
-        """Warnings on the data, in sentences."""
+        """Warnings on the data and the recommended model, in sentences."""
+        return self._warnings(self.recommended)
+
+    def _warnings(self, fit: ModelFit) -> list[str]:
+        """Return the warnings beside a model."""
         found: list[str] = []
         for curve, toe in zip(self.measured, self.toes, strict=True):
             found += _about_the_start(curve, toe, self.correction)
@@ -191,10 +195,8 @@ class CouponFit:
                 "Only uniaxial curves: each model is a guess in the other modes; neo-hookean, gent "
                 "and yeoh, of one invariant, stay stable there, and may be far off"
             )
-        fit = self.recommended
         for mode in self.untested:
-            stress = float(nominal_stress(fit.material, np.array([mode.stretch]), mode.mode)[0])
-            sentence = mode.beside(fit.name, stress)
+            sentence = mode.beside(fit.name, stress_in(fit, mode))
             found += [sentence] if sentence else []
         young = fit.young.value
         if not _RUBBER[0] < young < _RUBBER[1]:
@@ -205,7 +207,7 @@ class CouponFit:
             misfit = abs(young - seen.young) / seen.uncertainty
             if misfit > 2.0:
                 found.append(
-                    f"{seen.name} ({_kpa(seen.young)}) and {self.recommended.name} "
+                    f"{seen.name} ({_kpa(seen.young)}) and {fit.name} "
                     f"({_kpa(young)}) differ by {misfit:.1f} standard uncertainties"
                 )
         return found
@@ -249,7 +251,7 @@ class CouponFit:
                 [
                     f"Fitted to strains between {self._span(0):.2f} and {self._span(1):.2f}",
                     *fit.warnings,
-                    *self.warnings,
+                    *self._warnings(fit),
                     *(() if soft is None else soft.warnings),
                 ]
             )
@@ -293,7 +295,7 @@ class CouponFit:
             },
             "rejected": dict(self.rejected),
             "untested": [mode._asdict() for mode in self.untested],
-            "warnings": self.recommended.warnings + self.warnings,
+            "warnings": self.of(model).warnings + self._warnings(self.of(model)),
         }
 
     def _unstable(self, fit: ModelFit) -> MaterialError:
@@ -352,6 +354,11 @@ class CouponFit:
             "another; it holds for this model and these specimens"
         )
         return notes
+
+
+def stress_in(fit: ModelFit, mode: UntestedMode) -> float:
+    """Return the engineering stress of a model at the stretch of an untested mode in Pa."""
+    return float(nominal_stress(fit.material, np.array([mode.stretch]), mode.mode)[0])
 
 
 def _summary_of(fit: ModelFit) -> dict[str, Any]:

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import re
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from voxsoft.errors import MeasurementError, UnitError
+from voxsoft.errors import MeasurementError
+from voxsoft.instruments.heads import is_unit, split_head, unit_of, units_row
+from voxsoft.instruments.measured import Measured
+from voxsoft.instruments.table_text import PREAMBLE, TextRow, TextTable
 from voxsoft.materials.coupon.curve import Curve
 from voxsoft.materials.coupon.cycles import Cycles
 from voxsoft.materials.coupon.timed import TestKind, TimedTest
 from voxsoft.materials.homogeneous import Mode
 from voxsoft.materials.hyperelastic import Floats
-from voxsoft.units import format_quantity, parse, to_si
+from voxsoft.units import KINDS, format_quantity, to_si
 
 # English and German column names of machines of Instron, MTS, Shimadzu and ZwickRoell. "Travel" is
-# that of the crosshead; compression, whose sign differs between machines, is not guessed.
+# that of the crosshead.
 _NAMES: Final = {
     "strain": (
         *("strain", "eng strain", "engineering strain", "nominal strain", "tensile strain"),
@@ -28,19 +28,41 @@ _NAMES: Final = {
     "stretch": ("stretch", "stretch ratio", "lambda"),
     "displacement": (
         *("displacement", "extension", "tensile extension", "elongation", "crosshead", "stroke"),
-        *("standard travel", "weg", "standardweg", "traversenweg", "verlängerung"),
+        *("standard travel", "crosshead travel", "crosshead displacement", "deformation", "disp."),
+        *("weg", "standardweg", "traversenweg", "verlängerung", "verformung"),
     ),
     "stress": (
         *("stress", "eng stress", "engineering stress", "nominal stress", "tensile stress"),
         *("spannung", "technische spannung", "nennspannung", "zugspannung"),
     ),
-    "force": ("force", "load", "tensile load", "standard force", "kraft", "standardkraft"),
+    "force": (
+        *("force", "load", "tensile load", "standard force", "test force", "axial force"),
+        *("kraft", "standardkraft", "prüfkraft"),
+    ),
     "time": ("time", "test time", "elapsed time", "zeit", "prüfzeit"),
+}
+# Displacements that give way to another one in the same table.
+_SECOND: Final = (
+    *("crosshead", "crosshead travel", "crosshead displacement", "traversenweg"),
+    *("deformation", "verformung"),
+)
+# Columns of compression, whose sign differs between machines: they are negative here.
+_PRESSED: Final = {
+    "strain": ("compressive strain", "compression strain", "stauchung"),
+    "displacement": (
+        *("compressive extension", "compressive displacement", "compression", "druckweg"),
+        *("compressive extension at standard", "compression displacement"),
+    ),
+    "stress": ("compressive stress", "compression stress", "druckspannung"),
+    "force": ("compressive load", "compressive force", "compression load", "druckkraft"),
 }
 _TRUE: Final = (
     *("true strain", "log strain", "true stress", "cauchy stress"),
     *("wahre dehnung", "wahre spannung"),
 )
+_LABELS: Final = frozenset(
+    label for names in (_NAMES, _PRESSED) for labels in names.values() for label in labels
+) | {*_TRUE}
 _STRAINS: Final = ("strain", "stretch", "displacement")
 _STRESSES: Final = ("stress", "force")
 _KIND: Final = {"displacement": "length", "stress": "pressure", "force": "force", "time": "time"}
@@ -50,27 +72,26 @@ _EXAMPLE: Final = {
     "force": "force_N",
     "time": "time_s",
 }
-_NO_UNIT: Final = ("", "-", "1", "mm/mm", "m/m", "in/in")
-_PERCENT: Final = ("%", "percent", "pct")
-# Machines write units in any case; "Mpa" is no millipascal.
-_CASELESS: Final = {u.lower(): u for u in ("Pa", "kPa", "MPa", "GPa", "N", "kN", "mm", "m", "psi")}
 _ALLOWED: Final = (
     "strain (or strain_percent, stretch, displacement_mm) and stress_kPa (or _Pa, _MPa, force_N)"
 )
 # Upper limit of the strain of any rubber: some stretch to 20 times their length.
 _LARGEST_STRAIN: Final = 25.0
-_LARGEST_TEXT: Final = 50_000_000
 
 
 class _Column(NamedTuple):
+    """Column of a table: index, head, quantity, unit; if it says compression, or gives way."""
+
     at: int
     head: str
     name: str
     unit: str
+    pressed: bool = False
+    second: bool = False
 
 
 def read_curve(
-    text: str,
+    data: str | Measured,
     *,
     name: str = "curve",
     mode: Mode = "uniaxial",
@@ -81,8 +102,9 @@ def read_curve(
 
     Parameters
     ----------
-    text
-        Comma, semicolon or tab separated. Columns are found by name, units stand behind the name:
+    data
+        Text, comma, semicolon or tab separated, or measured data (:func:`voxsoft.measured`).
+        Columns are found by name, units stand behind the name or in the line below:
         ``strain`` (or ``eng_strain``; ``strain_percent``, ``strain (%)``), ``stretch`` or
         ``displacement_mm``; and ``stress_kPa`` (``stress [MPa]``, ``eng_stress_Pa``, ...) or
         ``force_N``. Strain and stress are engineering quantities. Other columns are left alone.
@@ -117,7 +139,7 @@ def read_curve(
     ...
     voxsoft.errors.MeasurementError: curve: no column of strain and no column of stress among ...
     """
-    strain, stress = _columns(text, name, area, length)
+    strain, stress = _columns(data, name, area, length)
     broken = _break(strain, stress)
     whole = slice(None) if broken is None else slice(0, broken + 1)
     return Curve(
@@ -130,7 +152,7 @@ def read_curve(
 
 
 def read_cycles(
-    text: str,
+    data: str | Measured,
     *,
     name: str = "cycles",
     mode: Mode = "uniaxial",
@@ -151,11 +173,11 @@ def read_cycles(
     >>> read_cycles(text).strain[5:7].tolist()
     [0.1, 0.08]
     """
-    return Cycles(*_columns(text, name, area, length), mode, name)
+    return Cycles(*_columns(data, name, area, length), mode, name)
 
 
 def read_timed_test(
-    text: str,
+    data: str | Measured,
     *,
     kind: TestKind,
     name: str = "test",
@@ -166,7 +188,7 @@ def read_timed_test(
 
     Parameters
     ----------
-    text
+    data
         Table with a column of the time besides, ``time_s`` (``Time (min)``, ``Zeit [s]``).
     kind
         ``"relaxation"``: the strain is held; ``"rate"``: it grows at one rate.
@@ -185,28 +207,28 @@ def read_timed_test(
     >>> read_timed_test("time_s,strain (%),stress_kPa" + rows, kind="relaxation").duration
     70.0
     """
-    strain, stress, time = _timed_columns(text, name, area, length)
+    strain, stress, time = _timed_columns(data, name, area, length)
     return TimedTest(time, strain, stress, kind, name)
 
 
 def _columns(
-    text: str, name: str, area: float | str | None, length: float | str | None
+    data: str | Measured, name: str, area: float | str | None, length: float | str | None
 ) -> tuple[Floats, Floats]:
     """Return strain and stress in Pa, uncorrected, from a table."""
-    return _quantities(text, name, area, length, timed=False)[:2]
+    return _quantities(data, name, area, length, timed=False)[:2]
 
 
 def _timed_columns(
-    text: str, name: str, area: float | str | None, length: float | str | None
+    data: str | Measured, name: str, area: float | str | None, length: float | str | None
 ) -> tuple[Floats, Floats, Floats]:
     """Return strain, stress in Pa and time in s from a table."""
-    strain, stress, time = _quantities(text, name, area, length, timed=True)
+    strain, stress, time = _quantities(data, name, area, length, timed=True)
     assert time is not None
     return strain, stress, time
 
 
 def _quantities(
-    text: str,
+    data: str | Measured,
     name: str,
     area: float | str | None,
     length: float | str | None,
@@ -216,59 +238,86 @@ def _quantities(
     """Return strain, stress in Pa and, if asked, time in s from a table."""
     length = None if length is None else to_si(length, "length", "length")
     area = None if area is None else to_si(area, "area", "area")
-    separator, rows = _rows(text, name)
-    start, across, along = _header(rows, name)
-    columns = [across, along]
-    if timed:
-        columns.append(_time_column(rows[start], f"{name}, line {start + 1}"))
-    if _is_units_row(rows, start, columns):
-        unit_row = rows[start + 1]
-        columns = [c._replace(unit=unit_row[c.at].strip(" ()[]")) for c in columns]
-        start += 1
-    numbers = _numbers(rows, start + 1, columns, name, decimal_comma=separator != ",")
+    if isinstance(data, str):
+        columns, numbers = _of_text(data, name, timed)
+    else:
+        columns, numbers = _of_measured(data, name, timed)
     strain = _strain(numbers[:, 0], columns[0], length, name)
     stress = _stress(numbers[:, 1], columns[1], area, name)
+    strain, stress = (
+        _compressive(values) if column.pressed else values
+        for values, column in ((strain, columns[0]), (stress, columns[1]))
+    )
     return strain, stress, numbers[:, 2] * _factor(columns[2], name) if timed else None
 
 
-def _time_column(header: Sequence[str], where: str) -> _Column:
-    columns = [column for i, cell in enumerate(header) if (column := _column(i, cell))]
-    found = _one_of(columns, ("time",), where)
-    if found is None:
-        heads = ", ".join(f'"{cell.strip()}"' for cell in header if cell.strip())
-        raise MeasurementError(
-            where, f"no column of the time among {heads}", "call it time_s (or _min, _h)"
-        )
-    return found
-
-
-def _rows(text: str, name: str) -> tuple[str, list[list[str]]]:
-    if len(text) > _LARGEST_TEXT or "\0" in text:
-        raise MeasurementError(name, "is not a table of text", "save the table as CSV")
-    lines = text.lstrip("\ufeff").splitlines()
-    # Lines above the header may have none; with decimal commas, the separator is in all lines.
-    separator = max(";\t,", key=lambda each: sum(each in line for line in lines[:100]))
-    try:
-        rows = list(csv.reader(io.StringIO("\n".join(lines)), delimiter=separator))
-    except csv.Error as error:
-        raise MeasurementError(name, f"is not a table: {error}", "save it as CSV") from None
-    if not any(any(cell.strip() for cell in row) for row in rows):
+def _of_text(text: str, name: str, timed: bool) -> tuple[list[_Column], Floats]:
+    """Return the columns that are read, and their numbers, from a text."""
+    table = TextTable.of(text, name)
+    if not table.rows:
         raise MeasurementError(name, "is empty", f"give columns {_ALLOWED}")
-    return separator, rows
+    header, columns = _header(table, timed)
+    table.check_lengths(header)
+    first = header + 1
+    below = units_row(table.rows, header, [column.at for column in columns])
+    if below is not None:
+        first += 1
+        if not any(column.unit for column in columns):
+            columns = [column._replace(unit=below[column.at]) for column in columns]
+    return columns, _numbers(table, table.rows[first:], columns)
 
 
-def _header(rows: Sequence[Sequence[str]], name: str) -> tuple[int, _Column, _Column]:
+def _of_measured(data: Measured, name: str, timed: bool) -> tuple[list[_Column], Floats]:
+    """Return the columns that are read, and their numbers, from measured data."""
+    columns = [
+        found._replace(unit=column.unit, head=column.name)
+        for at, column in enumerate(data.columns)
+        if (found := _column(at, column.name.rpartition("/")[2]))
+    ]
+    across, along = _one_of(columns, _STRAINS, name), _one_of(columns, _STRESSES, name)
+    if across is None or along is None:
+        raise _missing(name, [column.name for column in data.columns], columns)
+    chosen = [data.columns[across.at], data.columns[along.at]]
+    clocks = [column.times for column in chosen]
+    alone = sum(times is None for times in clocks)
+    if alone == 1 or (not alone and not _alike(*clocks)):
+        what = f'"{across.head}" and "{along.head}" were measured at different times'
+        raise MeasurementError(name, what, "give .resampled(rate) of the measured data")
+    numbers = [column.numbers for column in chosen]
+    used = [across, along]
+    if timed:
+        if clocks[0] is None:
+            raise MeasurementError(name, "has no time", "give rate= or time= to vs.measured")
+        used.append(_Column(-1, "time", "time", "s"))
+        numbers.append(clocks[0])
+    table = np.stack(numbers, axis=1)
+    return used, table[np.isfinite(table).all(axis=1)]
+
+
+def _alike(first: Floats | None, second: Floats | None) -> bool:
+    return first is not None and second is not None and bool(np.array_equal(first, second))
+
+
+def _header(table: TextTable, timed: bool) -> tuple[int, list[_Column]]:
     """Find the line that names a strain and a stress; machines write some lines above it."""
-    first = next(i for i, row in enumerate(rows) if any(cell.strip() for cell in row))
-    for at, row in enumerate(rows[: first + 60]):
-        columns = [column for i, cell in enumerate(row) if (column := _column(i, cell))]
-        across = _one_of(columns, _STRAINS, f"{name}, line {at + 1}")
-        along = _one_of(columns, _STRESSES, f"{name}, line {at + 1}")
+    for at, row in enumerate(table.rows[:PREAMBLE]):
+        columns = _known(row)
+        where = f"{table.name}, line {row.line}"
+        across = _one_of(columns, _STRAINS, where)
+        along = _one_of(columns, _STRESSES, where)
         if across and along:
-            return at, across, along
-    likely = rows[_above_numbers(rows, first)]
-    heads = [cell.strip() for cell in likely if cell.strip()]
-    found = [column for i, cell in enumerate(likely) if (column := _column(i, cell))]
+            over = [_time_column(row, columns, where)] if timed else []
+            return at, [across, along, *over]
+    likely = table.rows[table.likely_header(is_unit)]
+    raise _missing(table.name, likely.cells, _known(likely))
+
+
+def _known(row: TextRow) -> list[_Column]:
+    return [column for i, cell in enumerate(row.cells) if (column := _column(i, cell))]
+
+
+def _missing(name: str, cells: Sequence[str], found: Sequence[_Column]) -> MeasurementError:
+    heads = [cell for cell in cells if cell]
     missing = [
         f"no column of {what}"
         for what, names in (("strain", _STRAINS), ("stress", _STRESSES))
@@ -276,36 +325,26 @@ def _header(rows: Sequence[Sequence[str]], name: str) -> tuple[int, _Column, _Co
     ]
     came = ", ".join(f'"{head}"' for head in heads[:12]) + (", ..." if len(heads) > 12 else "")
     hint = f"name them {_ALLOWED}"
-    if any(_split(head)[0] in _TRUE for head in heads):
+    if any(split_head(head, _LABELS)[0] in _TRUE for head in heads):
         hint = "expected engineering quantities: stress = true stress/stretch, strain = stretch - 1"
-    raise MeasurementError(name, f"{' and '.join(missing)} among {came}", hint)
+    return MeasurementError(name, f"{' and '.join(missing)} among {came}", hint)
 
 
-def _above_numbers(rows: Sequence[Sequence[str]], first: int) -> int:
-    """Find the most likely header line: the one above the numbers and their units."""
-    filled = [at for at in range(first, len(rows)) if any(cell.strip() for cell in rows[at])]
-    numbers = next((n for n, at in enumerate(filled) if all(map(_is_number, rows[at]))), 0)
-    above = [at for at in filled[:numbers] if not all(map(_is_unit, rows[at]))]
-    return above[-1] if above else first
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell.replace(",", ".") or "0")
-    except ValueError:
-        return False
-    return True
-
-
-def _is_unit(cell: str) -> bool:
-    unit = cell.strip(" ()[]").lower()
-    return unit in (*_NO_UNIT, *_PERCENT, *_CASELESS, "s", "min")
+def _time_column(header: TextRow, columns: Sequence[_Column], where: str) -> _Column:
+    found = _one_of(columns, ("time",), where)
+    if found is None:
+        heads = ", ".join(f'"{cell}"' for cell in header.cells if cell)
+        raise MeasurementError(
+            where, f"no column of the time among {heads}", "call it time_s (or _min, _h)"
+        )
+    return found
 
 
 def _one_of(columns: Sequence[_Column], names: Sequence[str], where: str) -> _Column | None:
     """Choose the column with the first of these names."""
     for name in names:
         same = [column for column in columns if column.name == name]
+        same = [column for column in same if not column.second] or same
         if len(same) > 1:
             heads = " and ".join(f'"{column.head}"' for column in same)
             raise MeasurementError(where, f"{heads} are both a {name}", "leave one of them out")
@@ -315,58 +354,34 @@ def _one_of(columns: Sequence[_Column], names: Sequence[str], where: str) -> _Co
 
 
 def _column(index: int, cell: str) -> _Column | None:
-    label, unit = _split(cell)
-    for name, labels in _NAMES.items():
-        if label in labels:
-            return _Column(index, cell.strip(), name, unit)
+    label, unit = split_head(cell, _LABELS)
+    for pressed, labels in ((False, _NAMES), (True, _PRESSED)):
+        for name, known in labels.items():
+            if label in known:
+                return _Column(index, cell, name, unit, pressed, label in _SECOND)
     return None
 
 
-def _split(cell: str) -> tuple[str, str]:
-    """Split a head such as ``eng_stress_Pa`` or ``Load [N]`` into its label and its unit."""
-    head = cell.strip()
-    bracketed = re.fullmatch(r"(.*?)[\s_]*[(\[](.*)[)\]]", head)
-    if bracketed:
-        return _label(bracketed[1]), bracketed[2].strip()
-    known = {label for labels in _NAMES.values() for label in labels}
-    if _label(head) in known or _label(head) in _TRUE:
-        return _label(head), ""
-    label, joint, unit = head.replace(" ", "_").rpartition("_")
-    return (_label(label), unit) if joint else (_label(head), "")
+def _compressive(values: Floats) -> Floats:
+    """Return numbers of a column of compression with the sign of compression, negative."""
+    if not len(values):
+        return values
+    largest = values[np.argmax(np.abs(values))]
+    return -values if largest > 0.0 else values
 
 
-def _label(text: str) -> str:
-    return re.sub(r"[\s_]+", " ", text).strip().lower()
-
-
-def _is_units_row(rows: Sequence[Sequence[str]], start: int, columns: Sequence[_Column]) -> bool:
-    if start + 1 >= len(rows) or any(column.unit for column in columns):
-        return False
-    row = rows[start + 1]
-    cells = [row[column.at].strip() if column.at < len(row) else "" for column in columns]
-    return any(cells) and all(not re.search(r"\d", cell.replace("^2", "")) for cell in cells)
-
-
-def _numbers(
-    rows: Sequence[Sequence[str]],
-    start: int,
-    columns: Sequence[_Column],
-    name: str,
-    *,
-    decimal_comma: bool,
-) -> Floats:
+def _numbers(table: TextTable, rows: Sequence[TextRow], columns: Sequence[_Column]) -> Floats:
+    form = table.numbers(rows, [column.at for column in columns])
     found = []
-    for number, row in enumerate(rows[start:], start=start + 1):
-        if not any(cell.strip() for cell in row):
-            continue
+    for row in rows:
         pair = []
         for column in columns:
-            cell = row[column.at].strip() if column.at < len(row) else ""
+            cell = row.cell(column.at)
             try:
-                pair.append(float(cell.replace(",", ".") if decimal_comma else cell))
+                pair.append(form.read(cell))
             except ValueError:
                 raise MeasurementError(
-                    f"{name}, line {number}",
+                    f"{table.name}, line {row.line}",
                     f'"{cell[:40]}" in column "{column.head}" is not a number',
                     "take the line out if nothing was measured there",
                 ) from None
@@ -376,18 +391,17 @@ def _numbers(
 
 def _factor(column: _Column, name: str) -> float:
     kind = _KIND[column.name]
+    where, example = f'column "{column.head}"', f'call it "{_EXAMPLE[column.name]}", say'
     if not column.unit:
-        raise MeasurementError(
-            name,
-            f'column "{column.head}" has no unit',
-            f'call it "{_EXAMPLE[column.name]}", say',
-        )
-    try:
-        return parse(f"1 {_CASELESS.get(column.unit.lower(), column.unit)}", kind)
-    except UnitError as error:
-        raise MeasurementError(
-            name, f'column "{column.head}": {error.what}', f'call it "{_EXAMPLE[column.name]}", say'
-        ) from None
+        raise MeasurementError(name, f"{where} has no unit", example)
+    found = unit_of(column.unit)
+    if found is None:
+        what = f'{where}: there is no unit "{column.unit}"'
+        raise MeasurementError(name, what, example)
+    if found.kind != kind:
+        what = f'{where}: "{column.unit}" is no unit of {kind}; expected {KINDS[kind].article}'
+        raise MeasurementError(name, what, example)
+    return found.factor
 
 
 def _strain(
@@ -404,13 +418,12 @@ def _strain(
                 'give --length "33 mm"',
             )
         return values * _factor(column, name) / length
-    unit = column.unit.lower()
-    if unit in _PERCENT:
-        values = values / 100.0
-    elif unit not in _NO_UNIT:
+    unit = unit_of(column.unit)
+    if unit is None or unit.kind != "number":
         raise MeasurementError(
             name, f'column "{column.head}": "{column.unit}" is no unit of strain', "use % or none"
         )
+    values = values * unit.factor
     strain = values - 1.0 if column.name == "stretch" else values
     if len(strain) and np.abs(strain).max() > _LARGEST_STRAIN:
         raise MeasurementError(

@@ -63,7 +63,8 @@ class UntestedMode(NamedTuple):
     low_model, high_model
         Names of the models at the ends of the range.
     models
-        Names of all models that fit alike.
+        Names of all models that fit alike. Where the recommended one is not among them, the range
+        holds its stress all the same, as the card does.
     """
 
     mode: Mode
@@ -96,10 +97,28 @@ fit alike: walls of chambers are stretched both ways; test a membrane (--equibia
             f"{format_quantity(float(f'{stress:.3g}'), 'modulus')} ({model})"
             for stress, model in ((self.low, self.low_model), (self.high, self.high_model))
         ]
+        worse = [m for m in (self.low_model, self.high_model) if m not in self.models]
+        by = f"{worse[0]} and models that fit better" if worse else "models that fit alike"
         return (
-            f"{self.mode} stress at stretch {self.stretch:.3g} is {' to '.join(ends)} by models "
-            f"that fit alike: {_ADVICE[self.mode]}"
+            f"{self.mode} stress at stretch {self.stretch:.3g} is {' to '.join(ends)} by {by}: "
+            f"{_ADVICE[self.mode]}"
         )
+
+    def holding(self, name: str, stress: float) -> UntestedMode:
+        """Return the mode with a range that holds the stress of a model [Pa].
+
+        Examples
+        --------
+        >>> alike = ("mooney-rivlin", "ogden-2")
+        >>> mode = UntestedMode("equibiaxial", 1.5, 90e3, 118e3, *alike, alike)
+        >>> mode.holding("yeoh-3", 69e3).low_model, mode.holding("yeoh-3", 100e3) == mode
+        ('yeoh-3', True)
+        """
+        if stress < self.low:
+            return self._replace(low=stress, low_model=name)
+        if stress > self.high:
+            return self._replace(high=stress, high_model=name)
+        return self
 
     def beside(self, name: str, stress: float) -> str:
         """Return the sentence with the stress of a model of the fit [Pa], and if it fits alike.
@@ -109,16 +128,13 @@ fit alike: walls of chambers are stretched both ways; test a membrane (--equibia
         >>> alike = ("mooney-rivlin", "ogden-2")
         >>> mode = UntestedMode("equibiaxial", 1.5, 90e3, 118e3, *alike, alike)
         >>> mode.beside("yeoh-3", 69e3)
-        'equibiaxial stress at stretch 1.5 is 90 kPa (mooney-rivlin) to 118 kPa (ogden-2) by \
-models that fit alike: walls of chambers are stretched both ways; test a membrane (--equibiaxial). \
-The card says 69 kPa: yeoh-3 is not among the models that fit alike'
+        'equibiaxial stress at stretch 1.5 is 69 kPa (yeoh-3) to 118 kPa (ogden-2) by yeoh-3 and \
+models that fit better: walls of chambers are stretched both ways; test a membrane \
+(--equibiaxial). The card says 69 kPa'
         """
-        if not self.sentence:
-            return ""
+        held = self.holding(name, stress)
         own = f"The card says {format_quantity(float(f'{stress:.3g}'), 'modulus')}"
-        if name not in self.models:
-            own += f": {name} is not among the models that fit alike"
-        return f"{self.sentence}. {own}"
+        return f"{held.sentence}. {own}" if held.sentence else ""
 
 
 _ADVICE: Final[dict[Mode, str]] = {

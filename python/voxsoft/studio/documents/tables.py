@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import csv
 import io
-import re
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Final
 
 from voxsoft.calibration import Measurement, read_measurement
 from voxsoft.calibration.measurement import QUANTITIES
-from voxsoft.calibration.table import ARC, UNITS
-from voxsoft.errors import MeasurementError, VoxSoftError
+from voxsoft.calibration.table import ARC, header_of, meaning_of
+from voxsoft.errors import FileError, MeasurementError, VoxSoftError
+from voxsoft.files.measured_tests import read_measured_test
+from voxsoft.instruments.heads import unit_of, units_row
+from voxsoft.instruments.table_text import TextTable
 from voxsoft.studio.protocol import commands, events
 
 #: Possible contents of a column, as the page offers them; "" is a column that is not read.
@@ -19,7 +22,8 @@ CHOICES: Final = ("", "arc", "probe", *QUANTITIES, "material", "note")
 _LABELS: Final = ("probe", "material", "note")
 #: Cells of a column that are shown.
 _SAMPLE: Final = 5
-_NAMED: Final = re.compile(rf"(?P<quantity>{ARC}|arc|s|d?[xyz])[ _\[(]*(?P<unit>mm|cm|m)?[\])]?")
+#: Units of length, as the page offers them.
+_UNITS: Final = ("mm", "cm", "m")
 
 
 def guessed_columns(text: str) -> list[commands.ColumnMap]:
@@ -30,18 +34,17 @@ def guessed_columns(text: str) -> list[commands.ColumnMap]:
     >>> [(c.quantity, c.unit) for c in guessed_columns("s (mm),dz [cm],remark\n1,2,a")]
     [('arc', 'mm'), ('dz', 'cm'), ('', '')]
     """
-    header, _ = _cells(text)
+    header, _, below = _cells(text)
     found = []
-    for column in header:
-        plain = column.strip().casefold()
-        named = _NAMED.fullmatch(plain)
-        if plain in _LABELS:
-            found.append(commands.ColumnMap(column=column, quantity=plain))
-        elif named:
-            quantity = "arc" if named["quantity"] in (ARC, "s") else named["quantity"]
-            found.append(
-                commands.ColumnMap(column=column, quantity=quantity, unit=named["unit"] or "")
-            )
+    for index, column in enumerate(header):
+        meaning, unit = meaning_of(column)
+        if meaning in _LABELS:
+            found.append(commands.ColumnMap(column=column, quantity=meaning))
+        elif meaning == ARC or meaning in QUANTITIES:
+            quantity = "arc" if meaning == ARC else meaning
+            unit = unit or below.get(index, "")
+            known = unit if unit in _UNITS else ""
+            found.append(commands.ColumnMap(column=column, quantity=quantity, unit=known))
         else:
             found.append(commands.ColumnMap(column=column, quantity=""))
     return found
@@ -55,7 +58,7 @@ def mapped_text(text: str, columns: Sequence[commands.ColumnMap]) -> str:
     MeasurementError
         A column that is not there, or a quantity or unit that is not known.
     """
-    header, rows = _cells(text)
+    header, rows, _ = _cells(text)
     comments = [line for line in text.splitlines() if line.startswith("#")]
     chosen: list[tuple[int, str]] = []
     for each in columns:
@@ -68,8 +71,8 @@ def mapped_text(text: str, columns: Sequence[commands.ColumnMap]) -> str:
             raise MeasurementError(where, f'"{each.quantity}" is not known')
         name = each.quantity
         if name not in _LABELS:
-            if each.unit not in UNITS:
-                raise MeasurementError(where, "needs a unit", f"choose from {', '.join(UNITS)}")
+            if each.unit not in _UNITS:
+                raise MeasurementError(where, "needs a unit", f"choose from {', '.join(_UNITS)}")
             name = f"{ARC if name == 'arc' else name}_{each.unit}"
         chosen.append((header.index(each.column), name))
     out = io.StringIO()
@@ -98,14 +101,11 @@ def measured(
     rows: list[list[str]] = []
     used: list[commands.ColumnMap] = []
     try:
-        header, rows = _cells(text)
+        header, rows, _ = _cells(text)
         used = list(columns) if columns is not None else guessed_columns(text)
         found = read_measurement(mapped_text(text, used), name=name, select=select)
     except VoxSoftError as error:
-        problems = [
-            events.Finding(severity="error", where=p.where, what=p.what, hint=p.hint)
-            for p in error.problems
-        ]
+        problems = _findings(error)
     by_name = {each.column: each for each in used}
     event = events.Measured(
         name=name,
@@ -128,21 +128,77 @@ def measured(
     return event, found
 
 
-def _cells(text: str) -> tuple[list[str], list[list[str]]]:
-    """Header and rows of a table, whose separator may be a comma, semicolon or tab."""
-    if "\0" in text:
-        raise MeasurementError("table", "is not a text file", "save the table as CSV")
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    if not lines:
-        raise MeasurementError("table", "holds no table", "name the columns in its first line")
-    separator = max((",", ";", "\t"), key=lines[0].count)
+def is_test(name: str) -> bool:
+    """Return True for a test of instruments, in TOML, by the name of its file."""
+    return name.lower().endswith(".toml")
+
+
+def measured_test(
+    name: str, text: str, folder: Path
+) -> tuple[events.Measured, tuple[Measurement, ...]]:
+    """Read a test of instruments, whose files are in the folder of the document.
+
+    Returns
+    -------
+    event
+        Event for the page.
+    measurements
+        One for each load; none where the test cannot be used, as the event says.
+    """
+    found: tuple[Measurement, ...] = ()
+    problems: list[events.Finding] = []
     try:
-        rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator)]
-    except csv.Error as error:
-        raise MeasurementError("table", f"cannot be read: {error}", "save it as CSV") from None
-    if separator != ",":  # where columns are parted by semicolons numbers often have commas
-        rows = [rows[0], *([cell.replace(",", ".") for cell in row] for row in rows[1:])]
-    return rows[0], rows[1:]
+        test = read_measured_test(text, name)
+        inside = folder.resolve()
+        for file in test.files:
+            if not (inside / file).resolve().is_relative_to(inside):
+                hint = "copy the file beside the design"
+                raise FileError(name, f"names {file}, which is outside of the folder", hint)
+        found = tuple(test.measurements(folder))
+    except VoxSoftError as error:
+        problems = _findings(error)
+    first = found[0] if found else None
+    event = events.Measured(
+        name=name,
+        columns=[],
+        quantities=list(CHOICES),
+        stations=sum(len(each) for each in found),
+        materials=[],
+        arcs=[] if first is None or first.arcs is None else first.arcs.tolist(),
+        points=[] if first is None else _points(first),
+        problems=problems,
+    )
+    return event, found
+
+
+def _findings(error: VoxSoftError) -> list[events.Finding]:
+    return [
+        events.Finding(severity="error", where=p.where, what=p.what, hint=p.hint)
+        for p in error.problems
+    ]
+
+
+def _cells(text: str) -> tuple[list[str], list[list[str]], dict[int, str]]:
+    """Header, rows with numbers in plain form, and units below the header, of a table."""
+    table = TextTable.of(text, "table")
+    if not table.rows:
+        raise MeasurementError("table", "holds no table", "name the columns in its first line")
+    at = header_of(table)
+    header = table.rows[at].cells
+    named = range(len(header))
+    below = units_row(table.rows, at, named) or {}
+    rows = table.rows[at + (2 if below else 1) :]
+    columns = [index for index in named if meaning_of(header[index])[0] not in _LABELS]
+    form = table.numbers(rows, columns)
+
+    def plain(cell: str, index: int) -> str:
+        try:
+            return repr(form.read(cell)) if index in columns else cell
+        except ValueError:
+            return cell
+
+    cells = [[plain(cell, index) for index, cell in enumerate(row.cells)] for row in rows]
+    return list(header), cells, {i: u for i, u in below.items() if unit_of(u) is not None}
 
 
 def _materials(

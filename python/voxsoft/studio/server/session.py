@@ -56,7 +56,13 @@ from voxsoft.studio.documents.several import (
     file_of_template,
     several_of,
 )
-from voxsoft.studio.documents.tables import guessed_columns, mapped_text, measured
+from voxsoft.studio.documents.tables import (
+    guessed_columns,
+    is_test,
+    mapped_text,
+    measured,
+    measured_test,
+)
 from voxsoft.studio.documents.uploads import safe_name, unpack_folder
 from voxsoft.studio.documents.versions import Versions, versions_event
 from voxsoft.studio.motion.engine import Engine
@@ -507,7 +513,7 @@ class Session:
             raise StudyError("job", "the design is not valid", "fix the underlined errors")
         tables = []
         if isinstance(asked, commands.CalibrateSpec):
-            tables = [self._table(each) for each in asked.data]
+            tables = [table for each in asked.data for table in self._measured_tables(each)]
         source = DesignSource(text=document.text, folder=str(document.folder))
         name = asked.name or f"{document.design.name}-{_KIND_NAMES[type(asked)]}"
         spec = spec_of(asked, source, tables)
@@ -545,21 +551,33 @@ class Session:
 
     @_execute.register
     def _on_measurement(self, command: commands.Measurement, tab: Tab) -> None:
-        event, _ = measured(command.name, command.text, command.columns, command.select)
+        if is_test(command.name):
+            event, _ = measured_test(command.name, command.text, self.document.folder)
+        else:
+            event, _ = measured(command.name, command.text, command.columns, command.select)
         self._tables[command.name] = (command.text, command.columns)
         self.tabs.send_to(tab, event)
 
-    def _table(self, data: commands.MeasuredData) -> MeasuredTable:
-        """A table that was sent before, mapped."""
+    def _measured_tables(self, data: commands.MeasuredData) -> tuple[MeasuredTable, ...]:
+        """A table that was sent before, mapped, or those of a test."""
         if data.name not in self._tables:
             raise FileError(data.name, "was not sent", "drop the file on the page again")
         text, columns = self._tables[data.name]
+        if is_test(data.name):
+            event, loads = measured_test(data.name, text, self.document.folder)
+            if not loads:
+                raise self._unusable(event)
+            return MeasuredTable.of_measurements(loads, data.name)
         event, found = measured(data.name, text, data.columns or columns, data.select)
         if found is None:
-            first = event.problems[0]
-            raise MeasurementError(first.where, first.what, first.hint)
+            raise self._unusable(event)
         mapped = mapped_text(text, data.columns or columns or guessed_columns(text))
-        return MeasuredTable(name=data.name, text=mapped, select=data.select)
+        return (MeasuredTable(name=data.name, text=mapped, select=data.select),)
+
+    def _unusable(self, event: events.Measured) -> MeasurementError:
+        """The first problem of a table that cannot be used."""
+        first = event.problems[0]
+        return MeasurementError(first.where, first.what, first.hint)
 
     @_execute.register
     def _on_card_save(self, command: commands.CardSave, tab: Tab) -> None:

@@ -45,7 +45,7 @@ export function Tables() {
         type="file"
         tabIndex={-1}
         multiple
-        accept=".csv,.tsv,.txt"
+        accept=".csv,.tsv,.txt,.toml"
         aria-label="Choose a table of measurements"
         data-testid="measurement-file"
         onChange={(event) => {
@@ -70,7 +70,8 @@ export function Tables() {
         {files.length === 0 ? (
           <p className="muted">
             Drop a table (.csv) of points measured on the body at rest: a distance along it or the
-            name of a probe in each row, and positions or displacements.
+            name of a probe in each row, and positions or displacements. Or a test (.toml) of
+            instruments, whose files are beside the design.
           </p>
         ) : (
           files.map((file) => <OneTable key={file.name} file={file} />)
