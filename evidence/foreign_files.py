@@ -240,7 +240,8 @@ def cells(folder: Path) -> Iterator[File]:
 def read(file: File) -> tuple[float, int]:
     """Volume [mL] and number of parts that ``voxsoft check`` reports."""
     command = [sys.executable, "-m", "voxsoft", "check", str(file.path), "--json", *file.flags]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    # lib3mf leaves the locale of this process at C.
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
     try:
         reported = json.loads(done.stdout)
         parts = reported["volumes"]["parts"]

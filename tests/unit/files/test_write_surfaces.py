@@ -95,8 +95,7 @@ def test_3mf_is_in_mm_with_its_parts_as_components_of_one_item(tmp_path):
     assert re.findall(r'<item objectid="(\d)"', model) == ["3"]
 
 
-def test_lib3mf_reads_a_3mf_without_a_warning(tmp_path):
-    lib3mf = pytest.importorskip("lib3mf")
+def test_lib3mf_reads_a_3mf_without_a_warning(tmp_path, lib3mf):
     write_surfaces(tmp_path / "two.3mf", PARTS)
     model = lib3mf.get_wrapper().CreateModel()
     reader = model.QueryReader("3mf")

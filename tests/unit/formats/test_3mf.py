@@ -345,8 +345,7 @@ def test_our_files_are_read_by_trimesh(tmp_path):
     assert sorted(body.volume for body in bodies) == pytest.approx([32.0, 96.0])
 
 
-def test_files_of_lib3mf_are_read_at_their_places(tmp_path):
-    lib3mf = pytest.importorskip("lib3mf")
+def test_files_of_lib3mf_are_read_at_their_places(tmp_path, lib3mf):
     wrapper = lib3mf.get_wrapper()
     made = wrapper.CreateModel()
     made.SetUnit(lib3mf.ModelUnit.Inch)
