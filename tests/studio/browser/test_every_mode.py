@@ -211,7 +211,7 @@ def name_of(value):
         (FEW, (1280, 720), "light"),
         (["open"], (3840, 2160), "dark"),
         *(
-            pytest.param(ALL, size, scheme, marks=pytest.mark.slow)
+            pytest.param(ALL, size, scheme, marks=[pytest.mark.slow, pytest.mark.timeout(900)])
             for size in SIZES
             for scheme in ("dark", "light")
         ),

@@ -92,11 +92,11 @@ def test_the_theme_follows_the_system_and_can_be_turned(served, open_tab):
     assert tab.page.evaluate("document.documentElement.dataset.theme") == "dark"
 
 
-def test_the_tour_has_five_steps_and_comes_once(served, open_tab):
+def test_the_tour_has_six_steps_and_comes_once(served, open_tab):
     tab = open_tab(served.address, tour=True)
     tab.find("tour").wait_for()
-    for step in range(5):
-        assert f"{step + 1} of 5" in tab.find("tour").inner_text()
+    for step in range(6):
+        assert f"{step + 1} of 6" in tab.find("tour").inner_text()
         tab.find("tour-next").click()
     tab.find("tour").wait_for(state="detached")
     tab.page.reload()

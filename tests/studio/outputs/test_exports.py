@@ -5,6 +5,7 @@ import io
 import tomllib
 import xml.etree.ElementTree as ET
 import zipfile
+from pathlib import Path
 
 import httpx
 import meshio
@@ -65,11 +66,22 @@ def test_a_mesh_is_read_back(at_rest, tmp_path, format):
         assert moved[:, 2].max() == pytest.approx(0.013, abs=1e-3)
 
 
-def test_a_computation_of_the_lattice_is_refused_with_a_remedy(at_rest):
-    answer = export(at_rest, "inp")
-    assert answer.status_code == 422
-    assert 'no "lattice" material' in answer.json()["what"]
-    assert "voxsoft mesh" in answer.json()["hint"]
+def test_of_the_lattice_the_mesh_alone_is_written_and_the_loss_is_listed(tmp_path):
+    lattice = vs.load(Path(__file__).parents[3] / "examples/cylinder.toml")
+    body = StudioBody.of(lattice, rev=1, topology=1)
+    shown = Shown("cylinder", "", body, body.mesh.vertices, None, (), (), (), factors=(1.0,))
+    run_folder = write_run(vs.simulate(lattice, error="off"), tmp_path / "run")
+    for written in (
+        export_shown(shown, "inp", {}, tmp_path),
+        export_run(run_folder, "inp", {}, tmp_path / "run"),
+    ):
+        (lost,) = written.lost
+        assert lost.where == "computation"
+        assert "holds the mesh alone" in lost.what
+        assert 'no "lattice" material' in lost.what
+        text = written.file.read_text(encoding="ascii")
+        assert "*ELEMENT, TYPE=C3D4" in text
+        assert "*STEP" not in text
 
 
 def test_a_computation_has_the_loads_as_they_are_set(tmp_path):

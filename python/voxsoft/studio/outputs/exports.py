@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from voxsoft import files
 from voxsoft.design import Design
-from voxsoft.errors import ErrorDetail, FileError
+from voxsoft.errors import DesignError, ErrorDetail, FileError, SimulationError, VoxSoftError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.exports import write_computed, write_source
 from voxsoft.files.run_folder import make_folder
@@ -140,7 +140,8 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         in STL and OBJ files, ``"mm"`` by default; ``voxels``: whether a surface is that of the
         voxels; ``resolved``: whether a design file holds
         values in place of formulas; ``scale`` of a picture; of a computation ``mesh_alone``, and
-        its ``unit``, ``element`` and ``split``.
+        its ``unit``, ``element`` and ``split``. Where the design has no computation, such as the
+        lattice, the file holds the mesh alone, and the loss is listed.
     folder
         Folder of the files.
 
@@ -163,7 +164,11 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         write_atomically(target, shown.text)
     elif form is not None and form.computation is not None and not _is_mesh_alone(options):
         whole = shown.body.under(shown.factors).design
-        lost = write_computed(target, whole, **_of_computation(options))
+        try:
+            lost = write_computed(target, whole, **_of_computation(options))
+        except (DesignError, SimulationError) as error:
+            _write_mesh(shown, target, form, options)
+            lost = (_mesh_alone(error),)
     elif form is not None and form.has_shape:
         _write_mesh(shown, target, form, options)
     elif form is not None and form.kind == "series":
@@ -219,7 +224,14 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
     given |= {key: bool(options.get(key, False)) for key in ("deformed", "voxels", "mesh_alone")}
     several = form is not None and form.kind == "series"
     written = _within(target) if several else target
-    lost = files.export(source, written, **given)
+    try:
+        lost = files.export(source, written, **given)
+    except (DesignError, SimulationError) as error:
+        if form is None or form.computation is None or given["mesh_alone"]:
+            raise
+        given = {key: given[key] for key in ("deformed", "voxels")}
+        files.export(source, written, mesh_alone=True, **given)
+        lost = (_mesh_alone(error),)
     if several:
         target = archive(written.parent, target.with_suffix(".zip"))
     return Written(target, lost)
@@ -228,6 +240,12 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
 def _is_mesh_alone(options: dict[str, Any]) -> bool:
     """Return True where a file is asked for that holds the shape and no computation."""
     return bool(options.get("mesh_alone", False) or options.get("deformed", False))
+
+
+def _mesh_alone(error: VoxSoftError) -> ErrorDetail:
+    """Return the reason why a file holds the mesh, and not the computation that was asked for."""
+    what = f"is left out, the file holds the mesh alone: {error.where} {error.what}"
+    return ErrorDetail("computation", what, error.hint)
 
 
 def _of_computation(options: dict[str, Any]) -> dict[str, Any]:
