@@ -29,6 +29,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 
 from measure import Report
 
+from voxsoft.files import read_mesh
+
 #: Body: a bent block with a hole, about 40 mm long, in mm.
 BODY = trimesh.creation.annulus(r_min=6.0, r_max=12.0, height=20.0)
 BODY.apply_transform(trimesh.transformations.rotation_matrix(0.3, (1, 2, 3), (5, 0, 0)))
@@ -136,7 +138,8 @@ def prints(folder: Path) -> Iterator[File]:
         model.AddBuildItem(body, placed(matrix))
         if count == 2:
             model.AddBuildItem(body, wrapper.GetIdentityTransform())
-        yield File(write(model, f"{name}.3mf"), count * volume, count)
+        # Two items of one object are one part.
+        yield File(write(model, f"{name}.3mf"), count * volume)
     model = wrapper.CreateModel()
     group = model.AddComponentsObject()
     group.AddComponent(mesh(model, BODY, "ring", 1.0), wrapper.GetIdentityTransform())
@@ -248,7 +251,12 @@ def read(file: File) -> tuple[float, int]:
         volume = sum(each["described"] for each in parts.values())
     except (ValueError, KeyError):
         raise SystemExit(f"{file.path.name}: {done.stdout}{done.stderr}") from None
-    return volume * 1e6, max(len(reported["file"]["parts"]), 1)
+    held = reported["file"]["held"]
+    count = max(len(held["sets"]), 1)
+    if "label" in held["arrays"]:
+        unit = file.flags[-1] if file.flags else None
+        count = len(np.unique(read_mesh(file.path, unit=unit).tet_part))
+    return volume * 1e6, count
 
 
 def main() -> None:
