@@ -30,7 +30,9 @@ def one_body(design: Design, name: str) -> Design:
         raise DesignError("body", f"{name!r} is not known", f"one of {known}")
     if not whole.bodies:
         return design
+    inner = next((each.design for each in design.bodies if each.name == name), None)
     return whole.alone(name).replace(
+        molds=design.molds or (inner.molds if isinstance(inner, Design) else None),
         clamps=[
             Clamp(region=_alone(each.region), axes=each.axes, name=each.name)
             for each in whole.clamps

@@ -68,7 +68,11 @@ def segments_of(
         return (surface,)
     size = high - low
     rooms = [np.array(each) for each in permutations(printer.volume)]
-    counts = [np.ceil(size / room - 1e-9).astype(int) for room in rooms]
+    # A seam lies between samples, up to a sample beside its place.
+    counts = [
+        np.where(size <= room, 1, np.ceil(size / (room - 2.0 * grid.step))).astype(int)
+        for room in rooms
+    ]
     best = min(range(len(rooms)), key=lambda k: (int(np.prod(counts[k])), int(counts[k].max())))
     if np.prod(counts[best]) > _SEGMENTS:
         return (surface,)
@@ -109,7 +113,7 @@ def _seams(
     found = []
     for number in range(1, count):
         even = ends[0] + number * length
-        near = np.flatnonzero(np.abs(middles - even) <= max(reach, grid.step))
+        near = np.flatnonzero(np.abs(middles - even) <= reach)
         # The widest place, and of equal ones the most even.
         best = min(near, key=lambda k: (-int(common[k]), abs(middles[k] - even)))
         found.append(float(middles[best]))

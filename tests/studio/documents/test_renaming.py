@@ -103,11 +103,17 @@ def test_sections_of_their_own_and_quoted_keys_are_definitions():
         ("shapes", "wall", "a wall", "cannot be called"),
         ("shapes", "height", "hull", "nothing called"),
         ("objects", "wall", "hull", "nothing called"),
+        ("parameters", "wall", "thick-wall", "cannot be called"),
     ],
 )
 def test_names_that_cannot_be_given_are_refused(section, name, to, word):
     with pytest.raises(DesignError, match=word):
         renamed(TEXT, section, name, to)
+
+
+def test_a_name_in_a_table_on_one_line_is_left_to_the_text():
+    with pytest.raises(DesignError, match="on one line"):
+        renamed('parameters = { wall = "5 mm" }', "parameters", "wall", "skin")
 
 
 def test_a_text_that_is_no_toml_yet_can_be_renamed():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.design import families
+from voxsoft.design import Body, families
 from voxsoft.errors import DesignError
 from voxsoft.fabrication import Printer, make, making, one_body, proof
 from voxsoft.units import mm
@@ -145,6 +145,39 @@ def test_molds_larger_than_the_printer_are_printed_in_segments_with_dowels():
     # Holes of two samples across are polygons.
     assert holes / each == pytest.approx(round(holes / each), rel=0.1)
     assert any("Join the 3 segments" in note for note in made.notes)
+
+
+def test_a_mold_twice_as_long_as_the_printer_is_divided():
+    """Two halves would fit to the micrometer; seams lie between samples, so there are three."""
+    bar = vs.Part(shape=vs.Box(size=(60 * mm, 8 * mm, 6 * mm)), material="ecoflex-00-30")
+    design = vs.Design(name="bar", voxel_size=2 * mm, parts=[bar])
+    low, high = make(design, printer=PRINTER).casts[0].mold.parts[0].surface.bounds
+    half = float(high[0] - low[0]) / 2
+    small = PRINTER.replace(volume=(half, 32 * mm, half))
+    made = make(design, printer=small)
+    assert made.problems == ()
+    assert len(made.casts[0].segments[0]) == 3
+
+
+def test_one_body_of_several_keeps_the_options_of_the_design():
+    bar = vs.Part(shape=vs.Box(size=(60 * mm, 8 * mm, 6 * mm)), material="ecoflex-00-30")
+    inner = vs.Design(name="bar", voxel_size=2 * mm, parts=[bar])
+    both = vs.Design(
+        name="both",
+        voxel_size=2 * mm,
+        bodies=[
+            Body(name="a", design=inner),
+            Body(name="b", design=inner, position=(0, 1, 0)),
+        ],
+        molds={"shrinkage": 0.01, "printer": {"wall": 1 * mm}},
+    )
+    made = make(one_body(both, "b"))
+    assert made.printer.wall == 1 * mm
+    assert made.casts[0].shrinkage == 0.01
+    own = both.replace(
+        bodies=[Body(name="a", design=inner.replace(molds={"way": "printed"}))], molds=None
+    )
+    assert one_body(own, "a").molds.way == "printed"
 
 
 def test_segments_have_no_point_in_common_and_leave_none_out():

@@ -32,6 +32,8 @@ _SPEAKING: Final[dict[Named, re.Pattern[str] | None]] = {
 }
 
 _NAME: Final = re.compile(r"[A-Za-z_][\w-]*", re.ASCII)
+#: Formulas read a minus sign where the name of a parameter had one.
+_IN_FORMULAS: Final = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _HEADER: Final = re.compile(r"\s*\[\[?\s*([\w-]+)", re.ASCII)
 _TEXT: Final = re.compile(r'"((?:\\.|[^"\\])*)"|\'([^\']*)\'')
 
@@ -46,12 +48,14 @@ def renamed(text: str, section: Named, name: str, to: str) -> str:
     section
         Section of the thing.
     name, to
-        Its name as it is, and its name from now on: letters, digits, `_` and `-`.
+        Its name as it is, and its name from now on: letters, digits, `_` and, but for
+        parameters, `-`.
 
     Raises
     ------
     DesignError
-        The new name is none or is taken, or nothing in the section has the old one.
+        The new name is none or is taken, nothing in the section has the old one, or a table on
+        one line holds it.
 
     Examples
     --------
@@ -62,9 +66,12 @@ def renamed(text: str, section: Named, name: str, to: str) -> str:
     [shapes]
     rod = { size = ["= 2*skin", 1, 1] }
     """
-    if not _NAME.fullmatch(to):
-        raise DesignError(f"{section}.{name}", f"cannot be called {to!r}", "letters, digits, _, -")
-    if to in _names(text, section):
+    own = section == "parameters"
+    if not (_IN_FORMULAS if own else _NAME).fullmatch(to):
+        hint = "use letters, digits and _" if own else "use letters, digits, _ and -"
+        raise DesignError(f"{section}.{name}", f"cannot be called {to!r}", hint)
+    known = _names(text, section)
+    if to in known:
         raise DesignError(f"{section}.{name}", f"cannot be called {to!r}: the name is taken")
     lines = []
     current = ""
@@ -85,6 +92,9 @@ def renamed(text: str, section: Named, name: str, to: str) -> str:
             changed = _mentioned(after, section, name, to)
         defined |= after != code or bool(own_entry and changed != after)
         lines.append(changed + comment)
+    if not defined and name in known:
+        what = f"{name!r} stands in a table on one line"
+        raise DesignError(section, what, "rename it in the text")
     if not defined:
         raise DesignError(section, f"has nothing called {name!r}", "look at the text as it is now")
     return "\n".join(lines)
