@@ -157,7 +157,7 @@ class _Found:
         """Size of the part of a metric that the deformation makes; all of it where not known."""
         result = self.result
         match target.metric:
-            case "mass" | "volume" | "undercut":
+            case "mass" | "volume" | "undercut" | "min_wall_thickness":
                 return 0.0
             case "cavity_volume" | "cavity_volume_change":
                 return self.grown(set(chosen_cavities(target.cavity, result.mesh, "cavity")))

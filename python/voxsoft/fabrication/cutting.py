@@ -94,15 +94,11 @@ def best_cut(values: Floats, grid: Grid, ends: Floats, held: Floats, center: Flo
     return min(found, key=lambda each: each[:2])[2] if found else None
 
 
-def least_caught(values: Floats, grid: Grid) -> float:
-    """Return the volume [m³] that the best plane across any axis leaves in undercuts."""
-    least = np.inf
-    for axis in range(3):
-        planes = _planes(np.moveaxis(values, axis, 2), grid, axis)
-        through = planes.areas > 0.0
-        if through.any():
-            least = min(least, float(planes.caught[through].min()))
-    return least
+def least_caught(values: Floats, grid: Grid, axis: int) -> float:
+    """Return the volume [m³] that the best plane across an axis leaves in undercuts."""
+    planes = _planes(np.moveaxis(values, axis, 2), grid, axis)
+    through = planes.areas > 0.0
+    return float(planes.caught[through].min(initial=np.inf))
 
 
 def _beside(heights: Floats, marks: Floats, step: float) -> NDArray[np.int64]:

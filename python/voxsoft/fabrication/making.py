@@ -25,6 +25,7 @@ from voxsoft.fabrication.planning import Casting, Plan, plan
 from voxsoft.fabrication.plates import plates_of
 from voxsoft.fabrication.sampled import Surface, counted_volume, surface_of
 from voxsoft.fabrication.splitting import fits, segments_of
+from voxsoft.fabrication.walls import Wall, thinnest_walls
 from voxsoft.materials.casting import CastingData, casting_data
 from voxsoft.units import format_quantity
 
@@ -129,6 +130,8 @@ class Fabrication:
         Holes for air tubes.
     patterns
         Outlines of layers that lie in a plane, by the names of their files.
+    walls
+        Thinnest wall of each casting's component.
     described, poured
         Volume of all castings, traced from samples of the design and without inlets, and of the
         space in their molds [m³].
@@ -146,6 +149,7 @@ class Fabrication:
     printed: tuple[Printed, ...]
     inlets: tuple[Inlet, ...]
     patterns: Mapping[str, Pattern]
+    walls: tuple[Wall, ...]
     described: float
     poured: float
     problems: tuple[ErrorDetail, ...]
@@ -291,6 +295,7 @@ def make(
         printed=tuple(printed),
         inlets=tuple(inlets),
         patterns=patterns,
+        walls=tuple(thinnest_walls(body)),
         described=described,
         poured=sum(each.poured for each in casts),
         problems=tuple(problems),

@@ -170,11 +170,18 @@ def plan(
     return Plan(component, "printed", why, (), None, caught.draw.undercut, place), inlets
 
 
-def undercut_of(design: Design) -> float:
+def undercut_of(design: Design, axis: int | None = None) -> float:
     """Return the volume [m³] that keeps a design from being cast, in one mold or in two halves.
 
     Zero says that printed molds of two parts release all of its components; of the chambers of
     any other, cores must be lost. Samples are a third of a voxel apart.
+
+    Parameters
+    ----------
+    design
+        The design, of one body.
+    axis
+        Axis along which all molds are drawn, 0 to 2; default: for each component the best.
 
     Examples
     --------
@@ -183,12 +190,13 @@ def undercut_of(design: Design) -> float:
     (0.0, True)
     """
     body = Body.of(design, design.voxel_size / 3.0)
+    axes = range(3) if axis is None else (axis,)
     total = 0.0
     for component in body.components:
         if not component.rigid:
             values, grid = component.values, body.grid
-            whole = [_direction(values, grid, axis, 1).draw.undercut for axis in range(3)]
-            total += min(*whole, least_caught(values, grid))
+            whole = [_direction(values, grid, each, 1).draw.undercut for each in axes]
+            total += min(*whole, *(least_caught(values, grid, each) for each in axes))
     return total
 
 

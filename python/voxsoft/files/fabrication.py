@@ -72,6 +72,10 @@ def fabrication_summary(made: Fabrication, suffix: str = ".3mf") -> dict[str, An
             }
             for cast in made.casts
         ],
+        "walls": [
+            {"component": each.component, "thickness": each.thickness, "at": list(each.place)}
+            for each in made.walls
+        ],
         "deviation": made.deviation,
         "volume": {"described": made.described, "poured": made.poured},
         "trapped_air": made.trapped_air,
@@ -290,6 +294,10 @@ def _proof_table(made: Fabrication) -> Iterator[str]:
         )
     yield "</table><p class=quiet>Each part is one closed solid, leaves along its direction "
     yield "without meeting the casting, and is nowhere thinner than the wall of the printer.</p>"
+    for wall in made.walls:
+        at = ", ".join(f"{1e3 * each + 0.0:.3g}" for each in wall.place)
+        yield f"<p class=quiet>The thinnest wall of {escape(wall.component)} is "
+        yield f"{1e3 * wall.thickness:.3g} mm thick, at ({at}) mm.</p>"
     yield "<p class=quiet>Stretch while a casting leaves its mold is not computed: no part has "
     yield "an undercut deeper than 0.1 mm, so that the casting need not stretch.</p>"
 

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Final
 
 from voxsoft.errors import DesignError
+from voxsoft.metrics.casting import MIN_WALL_THICKNESS, UNDERCUT
 from voxsoft.metrics.chambers import CAVITY_VOLUME, CAVITY_VOLUME_CHANGE
 from voxsoft.metrics.chord import CHORD_ANGLE, CURVATURE
 from voxsoft.metrics.contact import CONTACT_AREA, CONTACT_FORCE, CONTACT_GAP, STICKING
@@ -27,7 +28,6 @@ from voxsoft.metrics.supplies import (
 )
 from voxsoft.metrics.tangent import COMPLIANCE, NATURAL_FREQUENCY, STIFFNESS
 from voxsoft.metrics.tendon import TENDON_LENGTH, TENDON_TENSION
-from voxsoft.metrics.undercut import UNDERCUT
 from voxsoft.metrics.whole_body import ELASTIC_ENERGY, MASS, VOLUME
 from voxsoft.records import closest
 
@@ -68,6 +68,7 @@ _ALL: Final[dict[str, Metric]] = {
         TENDON_TENSION,
         TENDON_LENGTH,
         UNDERCUT,
+        MIN_WALL_THICKNESS,
     )
 }
 
