@@ -269,6 +269,15 @@ export interface RenameCommand {
   to: string;
 }
 
+/** Exchange two entries of a list of the document, with their comments. */
+export interface SwapCommand {
+  t: "swap";
+  seq: number;
+  path: (string | number)[];
+  first: number;
+  second: number;
+}
+
 /**
  * Add a body: a design file of the folder, a template, or a file that was uploaded.
  *
@@ -1808,6 +1817,7 @@ export type AnyCommand =
   | MoveCommand
   | RemoveCommand
   | RenameCommand
+  | SwapCommand
   | AddBodyCommand
   | DesignsCommand
   | MaterialsCommand

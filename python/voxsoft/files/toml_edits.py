@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import tomlkit
@@ -39,16 +40,57 @@ def with_value(text: str, path: Path, value: object) -> str:
     >>> print(with_value('wall = "5 mm"  # thin', ["wall"], "6 mm"))
     wall = "6 mm"  # thin
     """
-    try:
+    with _refusing(path, "set"):
         document = tomlkit.parse(text)
         _set(document, list(path), value)
         return tomlkit.dumps(document)
+
+
+def with_swapped(text: str, path: Path, first: int, second: int) -> str:
+    r"""Exchange two entries of a list of a text in TOML, with their comments.
+
+    Parameters
+    ----------
+    text
+        The text of a design.
+    path
+        Keys and indices of the list.
+    first, second
+        Indices of the entries.
+
+    Raises
+    ------
+    DesignError
+        The text is not TOML, or the path leads to no list with both entries.
+
+    Examples
+    --------
+    >>> print(with_swapped('of = ["rod", "ball"]', ["of"], 0, 1))
+    of = ["ball", "rod"]
+    """
+    with _refusing(path, "reordered"):
+        document = tomlkit.parse(text)
+        here: Any = document
+        for step in path:
+            here = here[step]
+        if not isinstance(here, list):
+            raise TypeError("it is no list")
+        if not all(0 <= index < len(here) for index in (first, second)):
+            raise IndexError(f"it has {len(here)} entries")
+        here[first], here[second] = here[second], here[first]
+        return tomlkit.dumps(document)
+
+
+@contextmanager
+def _refusing(path: Path, done: str) -> Iterator[None]:
+    """Report an edit that cannot be made by its place."""
+    try:
+        yield
     except (TOMLKitError, RecursionError) as error:
-        raise DesignError(
-            place(path), f"cannot be set: {error}", "fix the text first, then use the form"
-        ) from None
+        hint = "fix the text first, then use the form"
+        raise DesignError(place(path), f"cannot be {done}: {error}", hint) from None
     except (KeyError, IndexError, TypeError, AttributeError, ValueError) as error:
-        raise DesignError(place(path), f"cannot be set: {error}") from None
+        raise DesignError(place(path), f"cannot be {done}: {error}") from None
 
 
 def with_document(text: str, document: Mapping[str, Any]) -> str:

@@ -140,6 +140,20 @@ class TestDesign:
         assert 'kind = "force"' not in document_text(design)
         assert 'kind = "gravity"' in document_text(design)
 
+    def test_a_value_that_was_just_typed_stays_when_its_entry_moves_up(self, design):
+        design.page.get_by_label("Add a load").select_option("force")
+        entry = design.find("loads-1")
+        entry.get_by_role("button", name="force", exact=False).first.click()
+        up = entry.get_by_role("button", name="Move force up")
+        entry.hover()
+        entry.get_by_label("Value z", exact=True).fill("-3 N")
+        # The press leaves the field, which sends its value, and comes before the answer to that.
+        up.click()
+        has_text(design, '"-3 N"')
+        text = document_text(design)
+        design.until("document.querySelector('[data-testid=loads-0]').innerText.includes('-3 N')")
+        assert text.index('"-3 N"') < text.index('kind = "gravity"')
+
     def test_a_shape_is_renamed_wherever_it_is_named(self, design):
         design.find("shapes-body").get_by_role("button", name="body", exact=False).first.click()
         name = design.find("shapes-body").get_by_label("Name", exact=True)

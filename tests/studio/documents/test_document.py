@@ -7,7 +7,7 @@ import pytest
 
 from voxsoft.design import families
 from voxsoft.errors import DesignError, FileError
-from voxsoft.files.toml_edits import with_value
+from voxsoft.files.toml_edits import with_swapped, with_value
 from voxsoft.studio.documents.document import MOST_DOCUMENTS, DesignDocument
 from voxsoft.studio.documents.opening import template_document
 from voxsoft.studio.documents.positions import span_of
@@ -117,6 +117,46 @@ def test_an_edit_in_toml_agrees_with_its_data(path, value):
         here[path[-1]] = value
     found = tomllib.loads(with_value(CYLINDER, path, value))
     assert {k: v for k, v in found.items() if v != []} == {k: v for k, v in due.items() if v != []}
+
+
+LISTS = """\
+of = [
+  "rod",   # first
+  "ball",  # second
+]
+
+# pushes
+[[loads]]
+kind = "pressure"  # of air
+value = "4 kPa"
+
+[solver]
+method = "statics"
+
+# pulls
+[[loads]]
+kind = "gravity"
+"""
+
+
+@pytest.mark.parametrize("path", [["of"], ["loads"]])
+def test_two_entries_of_a_list_are_exchanged_with_their_comments(path):
+    due = tomllib.loads(LISTS)
+    due[path[0]].reverse()
+    text = with_swapped(LISTS, path, 0, 1)
+    assert tomllib.loads(text) == due
+    for comment in ("# first", "# second", "# pushes", "# of air", "# pulls"):
+        assert comment in text
+    assert tomllib.loads(with_swapped(text, path, 1, 0)) == tomllib.loads(LISTS)
+
+
+@pytest.mark.parametrize(
+    ("path", "second"),
+    [(["of"], 2), (["of"], -1), (["solver"], 0), (["nothing"], 1), (["of", 0], 1)],
+)
+def test_no_two_entries_are_not_exchanged(path, second):
+    with pytest.raises(DesignError, match="cannot be reordered"):
+        with_swapped(LISTS, path, 0, second)
 
 
 @pytest.mark.parametrize(

@@ -89,6 +89,14 @@ class Edits(Command):
     changes: Annotated[list[OneEdit], Meta(min_length=1, max_length=100)]
 
 
+class Swap(Command):
+    """Exchange two entries of a list of the document, with their comments."""
+
+    path: Path
+    first: int
+    second: int
+
+
 class Beside(Entry, tag_field="kind", tag="beside"):
     """A copy that is moved by a vector, m."""
 
@@ -494,6 +502,7 @@ AnyCommand = (
     | Move
     | Remove
     | Rename
+    | Swap
     | AddBody
     | Designs
     | Materials

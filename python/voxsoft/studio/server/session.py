@@ -24,6 +24,7 @@ from voxsoft.files.cards import card_name, load_card_file, save_card
 from voxsoft.files.designs import read_text
 from voxsoft.files.figures import save_thumbnail
 from voxsoft.files.run_folder import make_folder
+from voxsoft.files.toml_edits import with_swapped
 from voxsoft.jobs import CalibrateSpec, DesignSource, MeasuredTable, load
 from voxsoft.simulation.checks.check import CheckReport
 from voxsoft.studio.bodies.body import StudioBody
@@ -235,6 +236,12 @@ class Session:
     def _on_edits(self, command: commands.Edits, tab: Tab) -> None:
         self._author = tab
         self._change(self.document, [(each.path, each.value) for each in command.changes])
+
+    @_execute.register
+    def _on_swap(self, command: commands.Swap, tab: Tab) -> None:
+        self._author = tab
+        text = with_swapped(self.document.text, command.path, command.first, command.second)
+        self._changed(self.document.replace(text))
 
     @_execute.register
     def _on_copy(self, command: commands.Copy, tab: Tab) -> None:

@@ -39,6 +39,11 @@ export function rename(section: Named, name: string, to: string): void {
   send({ t: "rename", section, name, to });
 }
 
+/** Exchange two entries of a list; their values stay those of the newest text. */
+export function swap(path: Path, first: number, second: number): void {
+  send({ t: "swap", path: [...path], first, second });
+}
+
 /** Problem of a name that something is to get, or null. */
 export function problemOfName(
   name: string,

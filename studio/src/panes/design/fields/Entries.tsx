@@ -8,11 +8,11 @@ import { useStudio } from "../../../store/studio";
 import { setView, useView } from "../../../store/view";
 import { takeDropped } from "../../materials/give";
 import { DRAGGED } from "../../materials/use";
-import { edit, type Named, problemOfName, problemsAt, rename } from "../edits";
+import { edit, type Named, problemOfName, problemsAt, rename, swap } from "../edits";
 import { useForm } from "../form";
 import { Glyph } from "./Glyph";
 import type { MenuPlace } from "./Menu";
-import { swapped, TableFields } from "./SchemaField";
+import { TableFields } from "./SchemaField";
 import { controlOf, resolve, type Schema, single, summary } from "./schema";
 import { freeName, starter } from "./starters";
 
@@ -272,7 +272,7 @@ export function EntryList(props: {
                     {
                       glyph: "up" as const,
                       label: `Move ${title} up`,
-                      run: () => edit([section], swapped(values, i, i - 1)),
+                      run: () => swap([section], i, i - 1),
                     },
                   ]
                 : []),

@@ -5,7 +5,7 @@ import { describeValue, formatKind, readWritten } from "../../../controls/kinds"
 import { TextField } from "../../../controls/TextField";
 import { formatNumber } from "../../../controls/units";
 import { browseMaterials } from "../../materials/browse";
-import { edit, type Path, problemsAt, problemText } from "../edits";
+import { edit, type Path, problemsAt, problemText, swap } from "../edits";
 import { useForm } from "../form";
 import { PromoteTool } from "../parameters/PromoteTool";
 import { isNumber, promoted } from "../parameters/promote";
@@ -352,7 +352,6 @@ function TupleField(props: LeafProps & { items: readonly Schema[] }) {
 function ListField(props: SchemaFieldProps & { item: Schema }) {
   const { root, names } = useForm();
   const values = Array.isArray(props.value) ? props.value : [];
-  const set = (next: unknown[]) => edit(props.path, next);
   return (
     <Nested label={props.label} help={props.help} onRemove={props.onRemove}>
       {values.map((value, i) => (
@@ -370,7 +369,7 @@ function ListField(props: SchemaFieldProps & { item: Schema }) {
             kind="quiet"
             label={`Move ${props.label} ${i + 1} up`}
             disabled={i === 0}
-            onClick={() => set(swapped(values, i, i - 1))}
+            onClick={() => swap(props.path, i, i - 1)}
           >
             <Glyph name="up" />
           </Button>
@@ -384,15 +383,6 @@ function ListField(props: SchemaFieldProps & { item: Schema }) {
       </Button>
     </Nested>
   );
-}
-
-export function swapped<T>(values: readonly T[], i: number, j: number): T[] {
-  const next = [...values];
-  const [a, b] = [next[i], next[j]];
-  if (a === undefined || b === undefined) return next;
-  next[i] = b;
-  next[j] = a;
-  return next;
 }
 
 /** The fields of a table that are there or must be, and a list of those that could be added. */
