@@ -278,6 +278,12 @@ export interface SwapCommand {
   second: number;
 }
 
+/** Ask for `synced` once all commands before it are done: requests beside the socket wait. */
+export interface SyncCommand {
+  t: "sync";
+  seq: number;
+}
+
 /**
  * Add a body: a design file of the folder, a template, or a file that was uploaded.
  *
@@ -1800,6 +1806,12 @@ export interface ErrorEvent {
   hint: string;
 }
 
+/** All commands up to `seq` are done. */
+export interface SyncedEvent {
+  t: "synced";
+  seq: number;
+}
+
 /** A line for the log. */
 export interface LogEvent {
   t: "log";
@@ -1818,6 +1830,7 @@ export type AnyCommand =
   | RemoveCommand
   | RenameCommand
   | SwapCommand
+  | SyncCommand
   | AddBodyCommand
   | DesignsCommand
   | MaterialsCommand
@@ -1900,4 +1913,5 @@ export type AnyEvent =
   | VersionsEvent
   | VersionDifferenceEvent
   | ErrorEvent
+  | SyncedEvent
   | LogEvent;

@@ -20,6 +20,8 @@ let lastFrame: Frame | null = null;
 let lastSmooth: Smooth | null = null;
 const sentAt = new Map<number, number>();
 const ready = new Set<() => void>();
+/** Resolvers of commands that wait until all before them are done, by their numbers. */
+const syncing = new Map<number, () => void>();
 
 export function currentEngine(): Engine | null {
   return engine;
@@ -41,6 +43,7 @@ export function connect(chosen: Engine): void {
   chosen.start({
     event(event) {
       if (event.t === "stat") applyStat(event);
+      else if (event.t === "synced") settle(event.seq);
       else take(event);
       if (event.t === "hello") for (const callback of ready) callback();
     },
@@ -59,6 +62,8 @@ export function connect(chosen: Engine): void {
     },
     link(link) {
       useStudio.setState({ link });
+      // Commands that were not answered never will be.
+      if (link.state !== "open") for (const seq of [...syncing.keys()]) settle(seq);
     },
   });
 }
@@ -74,6 +79,8 @@ export function present(next: Stage): void {
 /** Commands about the document, which must hold the typed text by then. */
 const ON_DOCUMENT: ReadonlySet<Draft["t"]> = new Set([
   "edit",
+  "edits",
+  "swap",
   "copy",
   "move",
   "remove",
@@ -113,4 +120,29 @@ export function send(draft: Draft): number {
 export function sinceSent(seq: number): number | null {
   const at = sentAt.get(seq);
   return at === undefined ? null : performance.now() - at;
+}
+
+function settle(seq: number): void {
+  syncing.get(seq)?.();
+  syncing.delete(seq);
+}
+
+/** Resolved once the server has done all that was sent, or the connection is gone. */
+function settled(): Promise<void> {
+  return new Promise((resolve) => {
+    const seq = engine?.send({ t: "sync" }) ?? 0;
+    if (seq > 0) syncing.set(seq, resolve);
+    else resolve();
+  });
+}
+
+/** Ask the server for something made of the document as it stands after all that was typed. */
+export async function ask(path: string, request: Record<string, unknown>): Promise<Response> {
+  flushText();
+  await settled();
+  return fetch(path, {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify(request),
+  });
 }

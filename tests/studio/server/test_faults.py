@@ -172,6 +172,20 @@ def test_a_file_of_a_gigabyte_takes_no_memory(in_own_process, tmp_path):
     assert memory_of(studio) - before < 300
 
 
+def test_a_request_after_sync_reads_what_was_sent_before(studio):
+    """A request of its own connection may overtake commands, unless it waits for `synced`."""
+
+    async def scenario():
+        async with studio.page() as page:
+            for size in ("20 mm", "15 mm", "22 mm"):
+                await page.send("edit", rev=page.rev, path=RADIUS, value=size)
+                asked = await page.send("sync")
+                assert (await page.until("synced")).seq == asked
+                assert f'"{size}"' in studio.session.document.text
+
+    run(scenario())
+
+
 def test_two_tabs_edit_at_once_and_each_sees_all(studio):
     async def scenario():
         async with studio.page() as left, studio.page() as right:

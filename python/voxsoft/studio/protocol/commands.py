@@ -49,6 +49,10 @@ class Hello(Command):
     version: str = ""
 
 
+class Sync(Command):
+    """Ask for `synced` once all commands before it are done: requests beside the socket wait."""
+
+
 class Open(Command):
     """Open a document: a template, a robot, a file or run folder, an upload, or a study's trial.
 
@@ -503,6 +507,7 @@ AnyCommand = (
     | Remove
     | Rename
     | Swap
+    | Sync
     | AddBody
     | Designs
     | Materials

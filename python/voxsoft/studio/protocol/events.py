@@ -1174,6 +1174,12 @@ class Error(Event):
     hint: str = ""
 
 
+class Synced(Event):
+    """All commands up to `seq` are done."""
+
+    seq: int
+
+
 class Log(Event):
     """A line for the log."""
 
@@ -1218,5 +1224,6 @@ AnyEvent = (
     | Versions
     | VersionDifference
     | Error
+    | Synced
     | Log
 )

@@ -291,6 +291,10 @@ class Session:
         self._change(document, changes)
 
     @_execute.register
+    def _on_sync(self, command: commands.Sync, tab: Tab) -> None:
+        self.tabs.send_to(tab, events.Synced(seq=command.seq))
+
+    @_execute.register
     def _on_designs(self, command: commands.Designs, tab: Tab) -> None:
         self.tabs.send_to(tab, design_files(self.document))
 

@@ -1,19 +1,14 @@
 import { useState } from "react";
 import { Button, Select } from "../../controls/Choice";
 import type { ErrorEvent, ExportedEvent } from "../../protocol";
+import { ask } from "../../store/session";
 import { toast, useStudio } from "../../store/studio";
-import { flushText } from "../../store/typing";
 import { Glyph } from "../design/fields/Glyph";
 import { FORMATS, type Format, type Options, obstacle, request, UNITS, type Unit } from "./formats";
 import "./export.css";
 
 async function fetchFile(format: Format, options: Options): Promise<void> {
-  flushText();
-  const reply = await fetch("/export", {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: JSON.stringify(request(format, options)),
-  });
+  const reply = await ask("/export", request(format, options));
   const said: unknown = await reply.json().catch(() => null);
   if (!reply.ok) {
     const problem = said as Partial<ErrorEvent> | null;

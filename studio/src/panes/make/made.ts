@@ -3,8 +3,8 @@ import { create } from "zustand";
 import type { ErrorEvent, MoldsEvent } from "../../protocol";
 import { showPane } from "../../shell/actions";
 import { usePage } from "../../store/page";
+import { ask } from "../../store/session";
 import { toast } from "../../store/studio";
-import { flushText } from "../../store/typing";
 
 /** Limits of the printer that the pane asks for, as text with units; empty for those of the design. */
 export interface PrinterLimits {
@@ -58,14 +58,9 @@ export function request(options: MoldOptions): Record<string, unknown> {
 /** Make molds of the document as it stands; a press while they are made does nothing. */
 export async function makeMolds(of: string): Promise<void> {
   if (useMaking.getState().busy) return;
-  flushText();
   useMaking.setState({ busy: true });
   try {
-    const reply = await fetch("/molds", {
-      method: "POST",
-      headers: { "Content-Type": "application/json" },
-      body: JSON.stringify(request(useMaking.getState().options)),
-    });
+    const reply = await ask("/molds", request(useMaking.getState().options));
     const said: unknown = await reply.json().catch(() => null);
     if (!reply.ok) {
       const problem = said as Partial<ErrorEvent> | null;
