@@ -41,6 +41,8 @@ class Component:
         True for a rigid material, which is printed.
     density
         In kg/m³.
+    parts
+        Indices of its parts in the design, with others of this material.
     solid
         Its function, in the frame of the design.
     values
@@ -51,6 +53,7 @@ class Component:
     material: str
     rigid: bool
     density: float
+    parts: tuple[int, ...]
     solid: Field = field(repr=False)
     values: Floats = field(repr=False)
 
@@ -196,6 +199,7 @@ def _components(
                     material=text if isinstance(text, str) else material.model,
                     rigid=material.model == "rigid",
                     density=float(getattr(material, "density", None) or 0.0),
+                    parts=tuple(own),
                     solid=alone,
                     values=values if count == 1 else np.where(part, values, np.abs(values)),
                 )

@@ -31,8 +31,9 @@ def steps_by_hand(
         notes.append(
             f"Lay {name}, {thick} thick{cut}, into the mold before pouring, flat on its side there."
         )
-    for part in design.parts:
-        for fiber in part.fibers:
+    wound = {k for plan in plans if plan.winding is not None for k in plan.component.parts}
+    for index, part in enumerate(design.parts):
+        for fiber in () if index in wound else part.fibers:
             along = f"({', '.join(f'{each:.3g}' for each in fiber.unit)})"
             if fiber.angle is None:
                 notes.append(f"Lay thread along {along} into the wall before it is poured full.")

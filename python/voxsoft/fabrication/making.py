@@ -57,9 +57,11 @@ class Cast:
     deviation
         Largest distance of the mold from the casting's side [m].
     counted
-        Volume of the casting [m³] with lost cores, counted from its shapes, and the noise of that.
+        Volume of the casting [m³] with inserts, counted from its shapes, and the noise of that.
     shrinkage
         Part of its length that the casting loses as it cures; its mold is larger by as much.
+    before
+        Steps before it is poured.
     segments
         Triangles of each mold part, the lower first: several where the printer has no room for it.
     """
@@ -73,17 +75,18 @@ class Cast:
     deviation: float
     counted: tuple[float, float]
     shrinkage: float
+    before: tuple[str, ...]
     segments: tuple[tuple[Surface, ...], ...] = field(repr=False)
 
     @property
     def volume(self) -> float:
-        """Volume of silicone in the casting [m³]: without cores that are lost."""
-        return self.mold.surface.volume - self.casting.cores
+        """Volume of silicone in the casting [m³]: without inserts."""
+        return self.mold.surface.volume - self.casting.inserts
 
     @property
     def poured(self) -> float:
-        """Volume of silicone in the mold [m³]: without cores that are lost."""
-        return self.mold.poured - self.casting.cores
+        """Volume of silicone in the mold [m³]: without inserts."""
+        return self.mold.poured - self.casting.inserts
 
     @property
     def waste(self) -> float:
@@ -129,7 +132,7 @@ class Fabrication:
     inlets
         Holes for air tubes.
     patterns
-        Outlines of layers that lie in a plane, by the names of their files.
+        Outlines of layers that lie in a plane, and windings of thread, by the names of their files.
     walls
         Thinnest wall of each casting's component.
     described, poured
@@ -248,15 +251,22 @@ def make(
             printed += _printed(component, "rigid", body, tubes, names, printer)
     problems: list[ErrorDetail] = []
     casts: list[Cast] = []
+    patterns: dict[str, Pattern] = {}
     for each in plans:
         if each.way == "printed":
             bores = [inlet.hole() for inlet in inlets]
             printed += _printed(each.component, "body", body, bores, names, printer)
         problems += _unplanned(each, way)
+        before: tuple[str, ...] = ()
+        if each.winding is not None:
+            file = names.of(each.winding.pattern.name)
+            patterns[file] = each.winding.pattern
+            before = tuple(each.winding.steps(each.castings[0].name, f"{file}.svg"))
         for casting in each.castings:
             name = names.of(casting.name, "-lower", "-upper")
             mold = mold_of(casting.solid, casting.low, casting.high, casting.frame, printer, name)
-            cast = _cast(casting, mold, printer, shrinkage)
+            steps = before if casting.first else ()
+            cast = _cast(casting, mold, printer, shrinkage, steps)
             casts.append(cast)
             if progress is not None:
                 progress(len(casts), sum(len(other.castings) for other in plans))
@@ -286,7 +296,7 @@ def make(
         if reason is not None:
             problems.append(ErrorDetail(one.name, reason, "a finer resolution of the printer"))
     described = sum(each.volume for each in casts)
-    patterns = {names.of(each.name): each for each in patterns_of(design)}
+    patterns |= {names.of(each.name): each for each in patterns_of(design)}
     return Fabrication(
         design=design,
         printer=printer,
@@ -299,7 +309,11 @@ def make(
         described=described,
         poured=sum(each.poured for each in casts),
         problems=tuple(problems),
-        notes=(*steps_by_hand(body, plans, inlets, patterns), *_changes(casts, printer)),
+        notes=(
+            *(step for cast in casts for step in cast.before),
+            *steps_by_hand(body, plans, inlets, patterns),
+            *_changes(casts, printer),
+        ),
     )
 
 
@@ -343,10 +357,16 @@ def _printed(
     ]
 
 
-def _cast(casting: Casting, mold: Mold, printer: Printer, shrinkage: float | None) -> Cast:
+def _cast(
+    casting: Casting,
+    mold: Mold,
+    printer: Printer,
+    shrinkage: float | None,
+    before: tuple[str, ...],
+) -> Cast:
     component = casting.component
     data = casting_data(component.material)
-    mass = (mold.surface.volume - casting.cores) * component.density
+    mass = (mold.surface.volume - casting.inserts) * component.density
     total = mass * (1.0 + WASTE)
     first, second = data.parts if data is not None else (1.0, 0.0)
     share = first / (first + second)
@@ -363,6 +383,7 @@ def _cast(casting: Casting, mold: Mold, printer: Printer, shrinkage: float | Non
         deviation=proof.deviation(mold),
         counted=counted_volume(mold.casting),
         shrinkage=shrinkage,
+        before=before,
         segments=tuple(
             segments_of(part.solid, part.values, grid, part.surface, printer) for part in mold.parts
         ),

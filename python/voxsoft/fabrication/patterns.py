@@ -1,4 +1,4 @@
-"""Patterns of layers: outlines in true size, from which fabric, film or paper is cut."""
+"""Patterns in true size: outlines of layers to cut fabric, film or paper by."""
 
 from __future__ import annotations
 
@@ -23,20 +23,23 @@ _MARGIN: Final = 2
 
 @dataclass(frozen=True, eq=False)
 class Pattern:
-    """Outline of a layer that lies in a plane.
+    """Outline of a layer that lies in a plane, or of a sheet that is wrapped.
 
     Attributes
     ----------
     name
-        Name of the layer.
+        Name of the layer, or of the winding.
     axes
-        Axes of the design along the width and the height of the pattern: ``"xy"``.
+        Axes of the design along the width and the height of the pattern: ``"xy"``; for a winding
+        in words.
     outlines
         Closed polygons (n, 2) [m], from the lowest corner of the pattern; holes among them.
     size
         Width and height [m].
     area
         Area without holes [m²].
+    lines
+        Lines on it that are not cut, (n, 2) each [m].
     """
 
     name: str
@@ -44,6 +47,7 @@ class Pattern:
     outlines: tuple[Floats, ...] = field(repr=False)
     size: tuple[float, float]
     area: float
+    lines: tuple[Floats, ...] = field(default=(), repr=False)
 
 
 def patterns_of(design: Design) -> list[Pattern]:

@@ -25,7 +25,8 @@ from voxsoft.fabrication.fields import (
     Turned,
 )
 from voxsoft.fabrication.inlets import Inlet, bored, inlets_of
-from voxsoft.fabrication.sampled import Grid, Sampled, extents
+from voxsoft.fabrication.sampled import Grid, Sampled, extents, surface_of
+from voxsoft.fabrication.winding import Winding, winding_of
 
 #: Mean upright step along the outline, in samples, up to which a parting plane follows it.
 _LEVEL: Final = 1.0
@@ -57,8 +58,11 @@ class Casting:
         Axes of its mold.
     low, high
         Its exact corners in that frame [m].
-    cores
-        Volume of cores in it that are lost [m³].
+    inserts
+        Volume of solids that lie in its mold before it is poured [m³]: cores that are lost, or a
+        first layer.
+    first
+        Name of the casting that is its first layer; empty without one.
     """
 
     name: str
@@ -67,7 +71,8 @@ class Casting:
     frame: Frame
     low: Floats
     high: Floats
-    cores: float = 0.0
+    inserts: float = 0.0
+    first: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +96,8 @@ class Plan:
         the simplest was possible.
     place
         See `undercut`.
+    winding
+        Thread between its first and its second layer; None without.
     """
 
     component: Component
@@ -100,6 +107,7 @@ class Plan:
     cut: Cut | None = None
     undercut: float = 0.0
     place: Floats | None = None
+    winding: Winding | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -255,6 +263,8 @@ def _whole(body: Body, component: Component, best: _Direction) -> Plan:
     casting = _casting(
         component.name, component, component.solid, body, best.frame, component.values
     )
+    winding = winding_of(body, component)
+    castings = (casting,) if winding is None else _layered(body, component, casting, winding)
     draw = best.draw
     if draw.has_recess or (draw.sides == WITHIN).any():
         way: Way = "core"
@@ -262,7 +272,20 @@ def _whole(body: Body, component: Component, best: _Direction) -> Plan:
     else:
         way = "cast"
         why = "one flat side lets it be poured openly" if draw.is_open else "two parts release it"
-    return Plan(component, way, why, (casting,))
+    return Plan(component, way, why, castings, winding=winding)
+
+
+def _layered(
+    body: Body, component: Component, casting: Casting, winding: Winding
+) -> tuple[Casting, ...]:
+    """Return a casting after its first layer, on which thread is wound."""
+    solid = Common([component.solid, winding])
+    grid = body.grid
+    values = np.maximum(component.values, grid.values(winding))
+    name = f"{component.name}-first"
+    first = _casting(name, component, solid, body, casting.frame, values)
+    volume = surface_of(solid, grid, values).volume
+    return first, replace(casting, inserts=volume, first=name)
 
 
 def _halves(body: Body, component: Component, cut: Cut, inlets: list[Inlet], whole: Draw) -> Plan:
@@ -297,7 +320,7 @@ def _lost(
     solid = Filled(component.solid, cells, body.grid, component.values)
     casting = _casting(component.name, component, solid, body, best.frame, values)
     cores = sum(void.surface.volume for void in body.voids)
-    casting = replace(casting, cores=cores)
+    casting = replace(casting, inserts=cores)
     reason = "asked for" if is_asked else "no plane opens its chambers without undercuts"
     why = f"{reason}: a core of wax or soluble print is lost"
     return Plan(component, "lost-core", why, (casting,), None, whole.undercut, None)

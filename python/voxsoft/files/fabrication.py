@@ -69,6 +69,7 @@ def fabrication_summary(made: Fabrication, suffix: str = ".3mf") -> dict[str, An
                 "shrinkage": cast.shrinkage,
                 "thicker": cast.mold.thicker,
                 "open": cast.mold.is_open,
+                "before": list(cast.before),
             }
             for cast in made.casts
         ],
@@ -159,9 +160,10 @@ def pattern_as_svg(pattern: Pattern) -> str:
     """
     wide, tall = (1e3 * each for each in pattern.size)
     lines = []
-    for outline in pattern.outlines:
-        points = [f"{1e3 * x:.6g} {tall - 1e3 * y + 0.0:.6g}" for x, y in outline[:-1]]
-        lines.append(f"M{'L'.join(points)}Z")
+    for outline in (*pattern.outlines, *pattern.lines):
+        points = [f"{1e3 * x:.6g} {tall - 1e3 * y + 0.0:.6g}" for x, y in outline]
+        closed = bool((outline[0] == outline[-1]).all())
+        lines.append(f"M{'L'.join(points[:-1])}Z" if closed else f"M{'L'.join(points)}")
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide:.6g}mm" height="{tall:.6g}mm" '
         f'viewBox="0 0 {wide:.6g} {tall:.6g}">\n<title>{escape(pattern.name)}</title>\n'
@@ -234,7 +236,13 @@ def _mix_table(made: Fabrication) -> Iterator[str]:
 def _cast_steps(cast: Cast) -> Iterator[str]:
     name = escape(cast.casting.name)
     mold = cast.mold
-    if cast.casting.cores > 0.0:
+    for step in cast.before:
+        yield f"<li>{escape(step)}"
+    if cast.casting.first:
+        core = escape(mold.parts[-1].name)
+        yield f"<li>Put {escape(cast.casting.first)}, with its thread, into the mold of {name}, "
+        yield f"over the core of {core}."
+    elif cast.casting.inserts > 0.0:
         yield "<li>Hold each core at its place in the mold by spacers of cured silicone, as thick "
         yield "as the wall there."
     if mold.is_open:
@@ -266,8 +274,10 @@ def _joining_steps(made: Fabrication) -> Iterator[str]:
     components = {plan.component.name for plan in made.plans}
     if len(components) + sum(each.kind == "rigid" for each in made.printed) > 1:
         yield "<li>Bond the components with silicone adhesive, as they touch in the design."
+    before = {step for cast in made.casts for step in cast.before}
     for note in made.notes:
-        yield f"<li>{escape(note)}"
+        if note not in before:
+            yield f"<li>{escape(note)}"
     if any(plan.way == "lost-core" for plan in made.plans):
         yield "<li>Melt or dissolve the cores and rinse through the inlets."
     plates = [each for each in made.printed if each.kind == "plate"]

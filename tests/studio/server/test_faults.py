@@ -172,7 +172,7 @@ def test_a_file_of_a_gigabyte_takes_no_memory(in_own_process, tmp_path):
     assert memory_of(studio) - before < 300
 
 
-def test_a_request_after_sync_reads_what_was_sent_before(studio):
+def test_a_request_after_sync_reads_all_edits_before_it(studio):
     """A request of its own connection may overtake commands, unless it waits for `synced`."""
 
     async def scenario():
