@@ -24,8 +24,8 @@ def make(
         str | None,
         typer.Option(
             "--way",
-            help="cast, core, halves, lost-core or printed; default: that of the design's molds, "
-            "else the first that is possible.",
+            help="cast, core, halves, lost-core, printed, or first for the first that the shape "
+            "allows; default: that of the design's molds, else first.",
         ),
     ] = None,
     body: Annotated[
@@ -64,13 +64,13 @@ def make(
     from voxsoft import files
     from voxsoft.cli.progress import ProgressBar
     from voxsoft.comparison.core_shift import core_shift
-    from voxsoft.fabrication import WAYS, Printer, one_body
+    from voxsoft.fabrication import ASKED_WAYS, Printer, one_body
     from voxsoft.fabrication import make as make_molds
     from voxsoft.files.fabrication import fabrication_summary, write_fabrication
     from voxsoft.units import parse
 
-    if way is not None and way not in WAYS:
-        say(f"--way: {plain(way)} is not known; expected {', '.join(WAYS)}")
+    if way is not None and way not in ASKED_WAYS:
+        say(f"--way: {plain(way)} is not known; expected {', '.join(ASKED_WAYS)}")
         raise typer.Exit(USAGE)
     with errors_in_words(json=json):
         limits = dict(_limit(each) for each in printer or [])
@@ -78,7 +78,7 @@ def make(
         if body is not None:
             loaded = one_body(loaded, body)
         printers = Printer() if loaded.molds is None else loaded.molds.printer
-        wanted = next((each for each in WAYS if each == way), None)
+        wanted = next((each for each in ASKED_WAYS if each == way), None)
         with ProgressBar("molds", 1) as bar:
 
             def report(done: int, total: int) -> None:

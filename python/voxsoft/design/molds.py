@@ -14,6 +14,9 @@ from voxsoft.units import UnitOf
 #: Ways to make a robot, the simplest first.
 Way = Literal["cast", "core", "halves", "lost-core", "printed"]
 WAYS: Final[tuple[Way, ...]] = get_args(Way)
+#: Ways to ask for: one of these, or the first that the shape allows, whatever the design names.
+AskedWay = Way | Literal["first"]
+ASKED_WAYS: Final[tuple[AskedWay, ...]] = (*WAYS, "first")
 #: Shrinkage that no casting has.
 _MOST: Final = 0.1
 

@@ -10,9 +10,20 @@
 
 from __future__ import annotations
 
-from voxsoft.design.molds import WAYS, Way
+from voxsoft.design.molds import ASKED_WAYS, WAYS, AskedWay, Way
 from voxsoft.design.printer import Printer
 from voxsoft.fabrication.making import Cast, Fabrication, Printed, make
 from voxsoft.fabrication.selection import one_body
 
-__all__ = ["WAYS", "Cast", "Fabrication", "Printed", "Printer", "Way", "make", "one_body"]
+__all__ = [
+    "ASKED_WAYS",
+    "WAYS",
+    "AskedWay",
+    "Cast",
+    "Fabrication",
+    "Printed",
+    "Printer",
+    "Way",
+    "make",
+    "one_body",
+]

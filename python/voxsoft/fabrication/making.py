@@ -11,7 +11,7 @@ import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design
-from voxsoft.design.molds import WAYS, Molds, Way
+from voxsoft.design.molds import WAYS, AskedWay, Molds, Way
 from voxsoft.design.printer import Printer
 from voxsoft.errors import ErrorDetail
 from voxsoft.fabrication import proof
@@ -201,7 +201,7 @@ class Fabrication:
 def make(
     design: Design,
     *,
-    way: Way | None = None,
+    way: AskedWay | None = None,
     printer: Printer | None = None,
     shrinkage: float | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -213,7 +213,8 @@ def make(
     design
         The design, of one body.
     way, printer, shrinkage
-        Options in place of those of the design's :class:`~voxsoft.design.molds.Molds`.
+        Options in place of those of the design's :class:`~voxsoft.design.molds.Molds`; the way
+        ``"first"`` is the first that the shape allows.
     progress
         Called with the number of finished molds and that of all.
 
@@ -233,7 +234,8 @@ def make(
     ('cast', ['part-1-lower'], ())
     """
     options = design.molds or Molds()
-    way, printer = way or options.way, printer or options.printer
+    wanted = None if way == "first" else way or options.way
+    printer = printer or options.printer
     shrinkage = options.shrinkage if shrinkage is None else Molds(shrinkage=shrinkage).shrinkage
     names = _Names()
     body = Body.of(design, printer.resolution)
@@ -242,7 +244,7 @@ def make(
     printed: list[Printed] = []
     for component in body.components:
         if not component.rigid:
-            found, holes = plan(body, component, printer, way, holes)
+            found, holes = plan(body, component, printer, wanted, holes)
             plans.append(found)
     inlets = inlets_of(body, printer, None) if holes is None else holes
     tubes = [each.hole(printer.tube / 2.0 + printer.clearance) for each in inlets]
@@ -256,7 +258,7 @@ def make(
         if each.way == "printed":
             bores = [inlet.hole() for inlet in inlets]
             printed += _printed(each.component, "body", body, bores, names, printer)
-        problems += _unplanned(each, way)
+        problems += _unplanned(each, wanted)
         before: tuple[str, ...] = ()
         if each.winding is not None:
             file = names.of(each.winding.pattern.name)
@@ -279,8 +281,8 @@ def make(
         Printed(names.of(plate.name), "plate", plate.surface)
         for plate in plates_of(body, inlets, printer)
     ]
-    if way is not None and plans and all(each.way not in (way, "printed") for each in plans):
-        what = f'"{way}" was asked for, and the way is {plans[0].way}: {plans[0].why}'
+    if wanted is not None and plans and all(each.way not in (wanted, "printed") for each in plans):
+        what = f'"{wanted}" was asked for, and the way is {plans[0].way}: {plans[0].why}'
         problems.append(ErrorDetail("way", what, f'leave it out, or take "{plans[0].way}"'))
     reached = {each.chamber for each in inlets}
     for void in body.voids:

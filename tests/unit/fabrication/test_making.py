@@ -256,6 +256,9 @@ def test_a_way_that_is_not_possible_says_so():
     (problem, *_) = make(chambered(), way="cast", printer=PRINTER).problems
     assert "cannot be cast" in problem.what
     assert make(chambered(), way="lost-core", printer=PRINTER).way == "lost-core"
+    lost = chambered(molds=vs.design.Molds(way="lost-core"))
+    assert make(lost, printer=PRINTER).way == "lost-core"
+    assert make(lost, way="first", printer=PRINTER).way == make(chambered(), printer=PRINTER).way
 
 
 def test_an_open_tube_has_a_core_and_a_rigid_end_is_printed():

@@ -9,7 +9,7 @@ from typing import Any
 
 from voxsoft.design import Design
 from voxsoft.errors import ErrorDetail
-from voxsoft.fabrication import WAYS, Fabrication, Printer, make, one_body
+from voxsoft.fabrication import ASKED_WAYS, Fabrication, Printer, make, one_body
 from voxsoft.files.fabrication import write_fabrication
 from voxsoft.studio.outputs.archive import archive
 from voxsoft.studio.protocol import events
@@ -50,7 +50,7 @@ def make_molds(design: Design, asked: Mapping[str, Any], folder: Path) -> Molds:
     limits = {key: value for key, value in (asked.get("printer") or {}).items() if value}
     made = make(
         design,
-        way=next((way for way in WAYS if way == asked.get("way")), None),
+        way=next((way for way in ASKED_WAYS if way == asked.get("way")), None),
         printer=printer.replace(**limits),
         shrinkage=parse(str(shrinkage), "number") if shrinkage else None,
     )

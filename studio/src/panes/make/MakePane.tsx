@@ -8,7 +8,7 @@ import type { MoldsEvent } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import type { Schema } from "../design/fields/schema";
 import { choose, makeMolds, type PrinterLimits, useMaking } from "./made";
-import { WAYS } from "./ways";
+import { FIRST, WAYS } from "./ways";
 import "./make.css";
 
 interface Limit {
@@ -75,6 +75,7 @@ export default function MakePane() {
           value={options.way}
           options={[
             { value: "", label: usual.way },
+            ...(usual.way === FIRST ? [] : [{ value: "first", label: FIRST }]),
             ...Object.entries(WAYS).map(([value, label]) => ({ value, label })),
           ]}
           onChange={(way) => choose({ way })}
@@ -137,7 +138,7 @@ function useUsual() {
   const limits = Object.fromEntries(LIMITS.map((limit) => [limit.key, shown(limit)]));
   return {
     limits: limits as Readonly<Record<keyof PrinterLimits, string>>,
-    way: molds?.way ? (WAYS[molds.way] ?? molds.way) : "the first that the shape allows",
+    way: molds?.way ? (WAYS[molds.way] ?? molds.way) : FIRST,
     shrinkage: molds?.shrinkage == null ? "of each silicone" : `${molds.shrinkage * 100} %`,
   };
 }

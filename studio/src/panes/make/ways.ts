@@ -7,3 +7,6 @@ export const WAYS: Readonly<Record<string, string>> = {
   "lost-core": "Cast around a core that is lost",
   printed: "Printed directly",
 };
+
+/** The way that is taken where none is asked for. */
+export const FIRST = "the first that the shape allows";
