@@ -65,6 +65,13 @@ def run(
             help="How many natural frequencies of small vibrations about the equilibrium to find.",
         ),
     ] = 0,
+    frames: Annotated[
+        str | None,
+        typer.Option(
+            "--frames",
+            help='Keep the moving body every "20 ms", for ParaView: voxsoft export RUN it.pvd.',
+        ),
+    ] = None,
     json: Json = False,
 ) -> None:
     """Simulate a design and write a run folder.
@@ -85,6 +92,7 @@ def run(
             over=over,
             figure=figure,
             frequencies=frequencies,
+            frames=frames,
         )
         folder = out or Path("runs") / f"{folder_name(loaded.name)}-{loaded.hash[:8]}"
         with JobBar() as bar:

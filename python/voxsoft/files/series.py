@@ -21,6 +21,7 @@ from voxsoft.design import Design
 from voxsoft.errors import ErrorDetail, FileError
 from voxsoft.files.atomic import replace_whole, write_atomically
 from voxsoft.files.meshes import read_mesh_file, write_mesh
+from voxsoft.files.motion_frames import FRAMES, MotionFrames, read_frames
 from voxsoft.files.path_states import read_states
 from voxsoft.files.run_folder import fields_in, make_folder, read_summary
 from voxsoft.files.scenes.scene import pose_at, poses_of_run
@@ -108,7 +109,7 @@ class Series:
         """
         if isinstance(body, Result):
             if len(body.recording.frames):
-                return cls._of_frames(body)
+                return cls._of_frames(MotionFrames.of(body), body.design, body.mesh)
             return cls._of_results([body], (body.time or 1.0,))
         if isinstance(body, LoadPath):
             times, lost = times_of(body.over.key, body.values)
@@ -120,7 +121,7 @@ class Series:
 
     @classmethod
     def of_run(cls, folder: Path, design: Design) -> Self:
-        """Make a series of a run folder: all equilibria of a path, else its one result.
+        """Make a series of a run folder: all equilibria of a path or frames, else its one result.
 
         Parameters
         ----------
@@ -154,11 +155,16 @@ class Series:
                 )
 
             return cls(times, equilibrium, _objects_of(states.design(0), mesh), lost)
+        summary = read_summary(folder)
+        mesh = Setup.of(design, allow_loose=True, refine=design.solver.refine).mesh
+        frames = read_frames(folder, str(summary.get("hash")))
+        if frames is not None:
+            frames.check(mesh, folder / FRAMES)
+            return cls._of_frames(frames, design, mesh)
         body = read_mesh_file(folder / "result.vtu")
         poses = poses_of_run(folder)
         found = SeriesState(body.mesh, body.point_data, body.cell_data, body.regions, poses)
-        mesh = Setup.of(design, allow_loose=True, refine=design.solver.refine).mesh
-        time = float(read_summary(folder).get("time") or 1.0)
+        time = float(summary.get("time") or 1.0)
         return cls((time,), lambda _: found, _objects_of(design, mesh))
 
     @classmethod
@@ -177,8 +183,7 @@ class Series:
         return cls(times, state, _objects_of(results[0].design, results[0].mesh), lost)
 
     @classmethod
-    def _of_frames(cls, result: Result) -> Self:
-        recording, mesh, design = result.recording, result.mesh, result.design
+    def _of_frames(cls, frames: MotionFrames, design: Design, mesh: Mesh) -> Self:
         regions = named_regions(design, mesh)
         lost = tuple(
             ErrorDetail(feature, f"stress and stretch over time are left out: stress {reason}")
@@ -187,7 +192,7 @@ class Series:
         )
 
         def state(number: int) -> SeriesState:
-            positions = recording.frames[number]
+            positions = frames.positions[number]
             points: dict[str, Floats] = {"displacement": positions - mesh.vertices}
             cells: dict[str, Floats] = {}
             if not lost:
@@ -196,11 +201,11 @@ class Series:
                 cells = measured.cell_data(mesh)
             poses = {
                 name: pose_at(at[number], turn[number])
-                for name, (at, turn) in recording.objects.items()
+                for name, (at, turn) in frames.objects.items()
             }
             return SeriesState(mesh, points, cells, regions, poses)
 
-        times = tuple(map(float, recording.times))
+        times = tuple(map(float, frames.times))
         return cls(times, state, _objects_of(design, mesh), lost)
 
 

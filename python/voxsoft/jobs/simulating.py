@@ -15,6 +15,7 @@ from voxsoft.comparison.path_bars import path_error_bars
 from voxsoft.design import Design, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.files.figures import save_figure, save_thumbnail
+from voxsoft.files.motion_frames import FRAMES, write_frames
 from voxsoft.files.path_states import STATES, write_states
 from voxsoft.files.run_folder import Unwritten, make_folder, write_summary
 from voxsoft.jobs.events import Listener, Progress
@@ -54,7 +55,12 @@ def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[
     check_solver(design)
     method = method_of(design, design.solver)
     setup = Setup.of(design, allow_loose=not method.to_rest, refine=design.solver.refine)
-    result = simulation.simulate(setup, progress=_reporting(setup, notify))
+    result = simulation.simulate(
+        setup,
+        record_interval=spec.frames,
+        frames=spec.frames is not None,
+        progress=_reporting(setup, notify),
+    )
     unwritten = Unwritten(folder)
     _write(spec, result, folder, unwritten)
     found, no_modes = _modes(spec, result)
@@ -101,6 +107,9 @@ def _write(
         write_job(spec.replace(kept=False), folder)  # from now on the folder holds a solved state
     with unwritten.attempt("result.vtu"):
         files.write_run(result, folder, more=more)
+    if spec.frames is not None:
+        with unwritten.attempt(FRAMES):
+            write_frames(result, folder)
     with unwritten.attempt("thumbnail"):
         save_thumbnail(result, folder)
     if not spec.figure:

@@ -19,6 +19,7 @@ from voxsoft.jobs.source import DesignSource, MeasuredTable
 from voxsoft.records import FrozenDict, Record
 from voxsoft.records.table import Table
 from voxsoft.study.space import Choices, Range
+from voxsoft.units import PositiveTime
 
 Scalar = bool | int | float | str
 Bounds = tuple[float | str, float | str]
@@ -65,6 +66,8 @@ class RunSpec(JobSpec):
         of a path.
     frequencies
         Number of natural frequencies to find at the end, with error bars; default: none.
+    frames
+        Interval at which the body is kept over time, in ``frames.npz``; default: at the end alone.
     kept
         True if the folder holds the state on the studio's screen, which no job repeats.
 
@@ -80,7 +83,15 @@ class RunSpec(JobSpec):
     over: str | None = None
     figure: bool = False
     frequencies: int = Field(0, ge=0)
+    frames: PositiveTime | None = None
     kept: bool = False
+
+    @model_validator(mode="after")
+    def _keeps_all_of_a_path(self) -> Self:
+        if self.over is not None and self.frames is not None:
+            what = "are of a motion over time, and a path keeps all of its states"
+            raise StudyError("frames", what, "leave them out")
+        return self
 
 
 class Stage(Record):

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.errors import FileError
+from voxsoft.errors import FileError, StudyError
 from voxsoft.files import export, write_run, write_series
+from voxsoft.files.motion_frames import FRAMES, write_frames
 from voxsoft.files.path_states import STATES, write_states
 from voxsoft.jobs import RunSpec, run_job
 
@@ -196,6 +197,41 @@ def test_a_motion_has_its_frames(tmp_path):
         np.testing.assert_allclose(points + arrays["displacement"], frame, atol=1e-15)
     expected = result.fields.cell_data(result.mesh)["stress"]
     np.testing.assert_allclose(arrays["stress in cells"], expected, rtol=1e-6, atol=1e-6)
+
+
+def test_a_run_folder_keeps_the_frames_that_were_asked_for(tmp_path):
+    solver = {"method": "dynamics", "end_time": "20 ms", "time_step": "2 ms"}
+    made = design(loads=[{"kind": "gravity"}], solver=solver)
+    folder = tmp_path / "run"
+    result = run_job(RunSpec(design=made, frames="5 ms"), folder).found
+    assert export(folder, tmp_path / "kept.pvd") == ()
+    recorded = vs.simulate(made, frames=True, record_interval=0.005)
+    write_series(tmp_path / "recorded.pvd", recorded)
+    found, due = (listed(tmp_path / f"{name}.pvd") for name in ("kept", "recorded"))
+    assert [row[:2] for row in found] == [row[:2] for row in due]
+    assert [row[0] for row in found[::2]] == pytest.approx(recorded.recording.times)
+    for (_, _, one), (_, _, other) in zip(found, due, strict=True):
+        assert one.read_bytes() == other.read_bytes()
+    points, arrays = arrays_of(found[-2][2])
+    np.testing.assert_allclose(points + arrays["displacement"], result.positions, atol=1e-12)
+
+
+def test_frames_of_another_run_are_refused(tmp_path):
+    solver = {"method": "dynamics", "end_time": "4 ms", "time_step": "2 ms"}
+    made = design(objects=[], contact={}, loads=[{"kind": "gravity"}], solver=solver)
+    run_job(RunSpec(design=made, frames="2 ms"), tmp_path / "run")
+    faster = made.replace(solver={**solver, "time_step": "1 ms"})
+    write_frames(vs.simulate(faster, frames=True), tmp_path / "run")
+    with pytest.raises(FileError, match="frames of another design"):
+        export(tmp_path / "run", tmp_path / "a.pvd")
+    (tmp_path / "run" / FRAMES).write_bytes(b"PK damaged")
+    with pytest.raises(FileError, match="is damaged"):
+        export(tmp_path / "run", tmp_path / "a.pvd")
+
+
+def test_a_path_takes_no_frames():
+    with pytest.raises(StudyError, match="a path keeps all of its states"):
+        RunSpec(design=design(), over=OVER, frames="2 ms")
 
 
 def test_stress_that_frames_do_not_tell_is_left_out(tmp_path):
