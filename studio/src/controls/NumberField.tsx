@@ -8,6 +8,7 @@ import {
 } from "react";
 import { PLAIN } from "./dimension";
 import { type Amounts, writtenFormula } from "./formula";
+import { keysToPicture } from "./keys";
 import { factorOf, formatNumber, parseQuantity, shownUnit, unitText } from "./units";
 import { unitOf } from "./unitTable";
 
@@ -59,18 +60,20 @@ export function NumberField(props: NumberFieldProps) {
   const clamp = (x: number) => Math.min(max ?? Infinity, Math.max(min ?? -Infinity, x));
   const round = (x: number) => Number((Math.round(x / step) * step).toPrecision(12));
 
-  const commit = (text: string) => {
+  /** Take a text; true unless it is refused. */
+  const commit = (text: string): boolean => {
     const due = unitOf(unit)?.dimension ?? PLAIN;
     const written = props.formulas && writtenFormula(text, due, props.formulas.parameters);
     const read = written ?? parseQuantity(text, unit);
     if ("problem" in read) {
       setProblem(read.problem);
-      return;
+      return false;
     }
     setDraft(null);
     setProblem(null);
     if ("formula" in read) props.formulas?.take(read.formula);
     else if (read.value !== value) change(read.value, true);
+    return true;
   };
 
   const nudge = (count: number) => {
@@ -155,8 +158,9 @@ export function NumberField(props: NumberFieldProps) {
             onFocus={(event) => event.target.select()}
             onBlur={() => draft !== null && commit(draft)}
             onKeyDown={(event) => {
-              if (event.key === "Enter") commit(draft ?? shown);
-              else if (event.key === "Escape") setDraft(null);
+              if (event.key === "Enter") {
+                if (commit(draft ?? shown)) keysToPicture(event.currentTarget);
+              } else if (event.key === "Escape") setDraft(null);
               else if (event.key === "ArrowUp") nudge(event.shiftKey ? 10 : 1);
               else if (event.key === "ArrowDown") nudge(event.shiftKey ? -10 : -1);
               else return;

@@ -1,4 +1,5 @@
 import { type ReactNode, useId, useState } from "react";
+import { keysToPicture } from "./keys";
 
 export interface TextFieldProps {
   label: string;
@@ -38,16 +39,18 @@ export function TextField(props: TextFieldProps) {
   };
   const note = refusal ?? props.problem;
 
-  const commit = () => {
-    if (draft === null) return;
+  /** Take the text; true unless it is refused. */
+  const commit = (): boolean => {
+    if (draft === null) return true;
     if (draft.trim() === props.value.trim()) {
       setDraft(null);
       setRefusal(null);
-      return;
+      return true;
     }
     const wrong = props.onCommit(draft);
     setRefusal(wrong);
     if (wrong === null) setDraft(null);
+    return wrong === null;
   };
 
   const input = (
@@ -67,8 +70,9 @@ export function TextField(props: TextFieldProps) {
         onChange={(event) => setDraft(event.target.value)}
         onBlur={commit}
         onKeyDown={(event) => {
-          if (event.key === "Enter") commit();
-          else if (event.key === "Escape") {
+          if (event.key === "Enter") {
+            if (commit()) keysToPicture(event.currentTarget);
+          } else if (event.key === "Escape") {
             setDraft(null);
             setRefusal(null);
           } else if (props.onNudge && draft === null && event.key === "ArrowUp") {

@@ -5,7 +5,7 @@ import { browseMaterials } from "../materials/browse";
 import { Bodies } from "./bodies/Bodies";
 import { ContactSection, Objects } from "./bodies/Objects";
 import { edit } from "./edits";
-import { Adder, EntryList, EntryMap } from "./fields/Entries";
+import { Adder, EntryList, EntryMap, type Table } from "./fields/Entries";
 import { Glyph } from "./fields/Glyph";
 import { SchemaField, TableFields } from "./fields/SchemaField";
 import {
@@ -88,6 +88,7 @@ export default function DesignPane() {
             section="clamps"
             title="Clamps"
             what="a clamp"
+            begin={atTheFoot}
             empty={
               several
                 ? "None of its own: the bodies have theirs."
@@ -151,6 +152,14 @@ function Faults() {
   );
 }
 
+/** A new clamp at the lowest layer of the body, which is where most stand. */
+function atTheFoot(clamp: Table): Table {
+  const low = useStudio.getState().body?.bounds[0][2];
+  if (low === undefined) return clamp;
+  const level = low === 0 ? 0 : `${Number((1000 * low).toFixed(6))} mm`;
+  return { ...clamp, region: { z: [level, level] } };
+}
+
 /** Lists that have their own place and words in the form. */
 const PLACED = ["bodies", "parts", "layers", "objects", "clamps", "loads"];
 
@@ -160,7 +169,8 @@ function OtherLists(props: { root: Schema }) {
   return listSections(root)
     .filter((section) => !PLACED.includes(section))
     .map((section) => {
-      const what = `a ${single(section).toLowerCase()}`;
+      const word = single(section).toLowerCase();
+      const what = `${/^[aeiou]/.test(word) ? "an" : "a"} ${word}`;
       const schema = resolve(root, root.properties?.[section]?.items ?? {});
       return (
         <EntryList

@@ -1,5 +1,5 @@
 // Actions of the mouse: turn, move, zoom, pull, pick, measure.
-import { useFace } from "../../store/face";
+import { chooseFace, useFace } from "../../store/face";
 import { send } from "../../store/session";
 import { useStudio } from "../../store/studio";
 import { setView, useView } from "../../store/view";
@@ -131,7 +131,10 @@ export function listen(view: Viewport): void {
       view.grabs.end(false);
       gesture = null;
     } else if (useView.getState().tape) setView({ tape: false });
-    else if (event.target instanceof HTMLInputElement) setView({ chosen: null });
+    else if (useStudio.getState().picked || useFace.getState().face) {
+      chooseFace(null);
+      useStudio.setState({ picked: null });
+    } else if (event.target instanceof HTMLInputElement) setView({ chosen: null });
     else setView({ chosen: null, shape: null });
     view.request();
   });

@@ -235,9 +235,11 @@ export function EntryList(props: {
   what: string;
   empty: string;
   note?: string;
+  /** Fits the first value of a new entry to the body. */
+  begin?(value: Table): Table;
 }) {
   const { root, source, diagnostics } = useForm();
-  const { section } = props;
+  const { section, begin = (value: Table) => value } = props;
   const schema = root.properties?.[section]?.items;
   if (!schema) return null;
   const values = (source[section] as Table[] | undefined) ?? [];
@@ -248,7 +250,7 @@ export function EntryList(props: {
         <Adder
           what={props.what}
           schema={schema}
-          onAdd={(value) => edit([section, values.length], value)}
+          onAdd={(value) => edit([section, values.length], begin(value as Table))}
         />
       }
     >

@@ -204,7 +204,7 @@ export function listSections(root: Schema): readonly string[] {
 
 /** Name of one entry of a list: "Clamp" for "clamps", "Body" for "bodies". */
 export function single(section: string): string {
-  return labelOf(section.replace(/ies$/, "ys").slice(0, -1));
+  return labelOf(section.replace(/ies$/, "y").replace(/([^s])s$/, "$1"));
 }
 
 /** A key as a label: "top_radius" becomes "Top radius". */

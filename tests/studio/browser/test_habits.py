@@ -1,0 +1,69 @@
+"""Habits of designers who come from other programs, each of which met a trap once."""
+
+import pytest
+
+pytestmark = pytest.mark.browser
+
+HIGH = """
+schema = "voxsoft/1"
+name = "high"
+voxel_size = "5 mm"
+
+[shapes]
+body = { kind = "box", size = ["20 mm", "10 mm", "30 mm"], corner = [0, 0, "-7.5 mm"] }
+
+[[parts]]
+shape = "body"
+material = "ecoflex-00-30-lattice"
+
+[[loads]]
+kind = "gravity"
+"""
+
+
+def test_keys_go_to_the_picture_after_enter(served, open_tab):
+    tab = open_tab(served.address, mode="design", symbols=False)
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    size = tab.find("parameter-length").get_by_role("textbox", name="length")
+    size.fill("50 mm")
+    size.press("Enter")
+    # Without the pointer in the picture the field keeps them: text goes on by the keyboard.
+    assert size.evaluate("field => field === document.activeElement")
+    tab.page.mouse.move(*tab.middle())
+    tab.until("document.activeElement?.tagName === 'CANVAS'")
+    tab.page.keyboard.press("1")
+    assert size.input_value() == "50 mm"
+    # A field that was typed into again keeps its keys, wherever the pointer goes.
+    size.click()
+    size.press("Enter")
+    size.press_sequentially("1")
+    tab.page.mouse.move(*tab.middle())
+    assert size.evaluate("field => field === document.activeElement")
+    size.press("Escape")
+
+
+def test_escape_closes_the_card_of_a_place(served, open_tab):
+    tab = open_tab(served.address, mode="design", symbols=False)
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    tab.page.mouse.click(*tab.middle())
+    tab.find("face-verbs").wait_for()
+    tab.page.locator(".picked").wait_for()
+    tab.page.keyboard.press("Escape")
+    tab.find("face-verbs").wait_for(state="detached")
+    tab.page.locator(".picked").wait_for(state="detached")
+
+
+def test_a_clamp_of_the_form_holds_the_lowest_layer(serving, tmp_path, open_tab):
+    server = serving(tmp_path, HIGH, "high.toml")
+    try:
+        tab = open_tab(server.address, mode="design", symbols=False)
+        tab.find("text-editor").locator(".cm-content").wait_for()
+        tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+        tab.page.get_by_role("button", name="Add a clamp").click()
+        tab.find("clamps-0").get_by_text("z: [-7.5 mm, -7.5 mm]").wait_for()
+        labels = tab.page.locator("[aria-label^='Add a']").evaluate_all(
+            "all => all.map(each => each.ariaLabel)"
+        )
+        assert {"Add a refine", "Add a symmetry", "Add an activation"} <= set(labels)
+    finally:
+        server.stop()
