@@ -6,12 +6,13 @@ import { writtenUnit } from "../../controls/kinds";
 import { NumberField } from "../../controls/NumberField";
 import { RangeRow } from "../../controls/RangeRow";
 import type { FitRange } from "../../protocol";
-import { onReady, send } from "../../store/session";
+import { onReady } from "../../store/session";
 import { useStudio } from "../../store/studio";
 import { openHere } from "../design/edits";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
-import { JobChooser, useNewJob } from "../study/StudyPane";
+import { JobChooser } from "../study/StudyPane";
+import { useStart } from "../study/useStart";
 import { useCalibration } from "./current";
 import { askAgain, type Bound, useCalibrateDraft } from "./draft";
 import { Result } from "./Result";
@@ -28,7 +29,7 @@ export default function CalibratePane() {
   const draft = useCalibrateDraft();
   const form = useFormOfDocument();
   const current = useCalibration();
-  const expect = useNewJob("calibrate");
+  const { start, starting } = useStart("calibrate");
 
   useEffect(() => {
     return onReady(askAgain);
@@ -54,10 +55,6 @@ export default function CalibratePane() {
   const trouble = !document.valid
     ? "Fix the errors of the design first."
     : obstacle(draft, measured, constants);
-  const start = () => {
-    expect();
-    send({ t: "job_start", spec: calibrateSpec(draft, constants) });
-  };
   return (
     <div className="pane calibrate" data-testid="calibrate-form">
       {current?.job && <JobCard job={current.job} />}
@@ -150,7 +147,12 @@ export default function CalibratePane() {
       </Section>
       <div className="start">
         {trouble && <p className="muted">{trouble}</p>}
-        <Button kind="primary" testId="calibrate-start" disabled={trouble !== null} onClick={start}>
+        <Button
+          kind="primary"
+          testId="calibrate-start"
+          disabled={trouble !== null || starting}
+          onClick={() => start(calibrateSpec(draft, constants))}
+        >
           Fit the material
         </Button>
       </div>

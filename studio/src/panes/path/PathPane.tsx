@@ -6,12 +6,11 @@ import { NumberField } from "../../controls/NumberField";
 import { Plot } from "../../controls/Plot";
 import { factorOf, shownUnit, unitText } from "../../controls/units";
 import type { PathColumn, PathEvent } from "../../protocol";
-import { send } from "../../store/session";
 import { toast, useStudio } from "../../store/studio";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
 import { useJob } from "../study/current";
-import { useNewJob } from "../study/StudyPane";
+import { useStart } from "../study/useStart";
 import { type Changeable, changeable, overText, stiffnessNote, unitOfValue } from "./lines";
 import { type Measured, misfit, readMeasured, together } from "./measured";
 import "../design/design.css";
@@ -73,16 +72,12 @@ function Setup(props: {
   const [key, setKey] = useState("");
   const [range, setRange] = useState<readonly [number, number] | null>(null);
   const [count, setCount] = useState(POINTS);
-  const expect = useNewJob("run");
+  const { start, starting } = useStart("run");
   const what = choices.find((one) => one.key === key) ?? (choices[0] as Changeable);
   const [from, to] = range ?? [what.start, what.value];
-  const start = () => {
-    expect();
+  const follow = () => {
     const name = `${what.label} along a path`;
-    send({
-      t: "job_start",
-      spec: { kind: "run", name, solver: {}, over: overText(what, from, to, count) },
-    });
+    start({ kind: "run", name, solver: {}, over: overText(what, from, to, count) });
   };
   const note = props.note(what.key);
   const trouble = !props.valid
@@ -127,7 +122,12 @@ function Setup(props: {
         </p>
       )}
       {trouble && <p className="muted">{trouble}</p>}
-      <Button kind="primary" testId="path-start" disabled={trouble !== null} onClick={start}>
+      <Button
+        kind="primary"
+        testId="path-start"
+        disabled={trouble !== null || starting}
+        onClick={follow}
+      >
         Follow
       </Button>
     </>

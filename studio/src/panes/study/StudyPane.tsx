@@ -1,5 +1,4 @@
 // Set a study up, start it, and see how far it is.
-import { useEffect, useRef } from "react";
 import { Button, Empty, Section, Select } from "../../controls/Choice";
 import { formatKind } from "../../controls/kinds";
 import { NumberField } from "../../controls/NumberField";
@@ -7,7 +6,6 @@ import { RangeRow } from "../../controls/RangeRow";
 import { TextField } from "../../controls/TextField";
 import type { JobEvent } from "../../protocol";
 import { usePage } from "../../store/page";
-import { send } from "../../store/session";
 import { useStudio } from "../../store/studio";
 import { FormContext } from "../design/form";
 import { Goals } from "../design/Goals";
@@ -16,24 +14,9 @@ import { JobCard } from "../jobs/JobCard";
 import { jobsOf, useJob, useStudy } from "./current";
 import { changeRange, toggleSweep, useStudyDraft } from "./draft";
 import { type Choice, choices, countOf, gridSize, obstacle, samplerOf, studySpec } from "./setup";
+import { useStart } from "./useStart";
 import "../design/design.css";
 import "./study.css";
-
-/** Show a job that was started here as soon as it is known. */
-export function useNewJob(kind: JobEvent["kind"]): () => void {
-  const jobs = useStudio((state) => state.jobs);
-  const before = useRef<ReadonlySet<string> | null>(null);
-  useEffect(() => {
-    if (before.current === null) return;
-    const fresh = jobsOf(jobs, kind).find((job) => !before.current?.has(job.id));
-    if (!fresh) return;
-    before.current = null;
-    usePage.setState({ job: fresh.id });
-  }, [jobs, kind]);
-  return () => {
-    before.current = new Set(Object.keys(useStudio.getState().jobs));
-  };
-}
 
 export function JobChooser(props: { kind: JobEvent["kind"]; label: string }) {
   const jobs = useStudio((state) => state.jobs);
@@ -63,7 +46,7 @@ export default function StudyPane() {
   const draft = useStudyDraft();
   const form = useFormOfDocument();
   const job = useJob("study");
-  const expect = useNewJob("study");
+  const { start, starting } = useStart("study");
   const past = useStudy()?.id ?? null;
   if (!document || !form) {
     return (
@@ -81,10 +64,6 @@ export default function StudyPane() {
   const grid = gridSize(chosen);
   const sampler = samplerOf(chosen, draft);
   const designs = sampler === "grid" ? grid : draft.budget;
-  const start = () => {
-    expect();
-    send({ t: "job_start", spec: studySpec(all, draft) });
-  };
   return (
     <div className="pane study" data-testid="study-form">
       {job && (past === null || past === job.id) && <JobCard job={job} />}
@@ -164,7 +143,12 @@ export default function StudyPane() {
       </Section>
       <div className="start">
         {trouble && <p className="muted">{trouble}</p>}
-        <Button kind="primary" testId="study-start" disabled={trouble !== null} onClick={start}>
+        <Button
+          kind="primary"
+          testId="study-start"
+          disabled={trouble !== null || starting}
+          onClick={() => start(studySpec(all, draft))}
+        >
           {designs ? `Try ${designs.toLocaleString("en")} designs` : "Start"}
         </Button>
       </div>
