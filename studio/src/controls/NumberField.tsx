@@ -9,6 +9,7 @@ import {
 import { PLAIN } from "./dimension";
 import { type Amounts, writtenFormula } from "./formula";
 import { keysToPicture } from "./keys";
+import { isOnStep, stepToward } from "./slide";
 import { factorOf, formatNumber, parseQuantity, shownUnit, unitText } from "./units";
 import { unitOf } from "./unitTable";
 
@@ -133,12 +134,17 @@ export function NumberField(props: NumberFieldProps) {
             aria-label={`${label} slider`}
             min={min / factor}
             max={max / factor}
-            step={step / factor}
+            // The browser would draw a value between two steps at the next one.
+            step={isOnStep(value, min, step) ? step / factor : "any"}
             value={value / factor}
             disabled={props.disabled}
-            onChange={(event) =>
-              change(clamp(Number((Number(event.target.value) * factor).toPrecision(12))), false)
-            }
+            onChange={(event) => {
+              const next = Number((Number(event.target.value) * factor).toPrecision(12));
+              change(
+                clamp(isOnStep(value, min, step) ? next : stepToward(next, value, min, step)),
+                false,
+              );
+            }}
             onPointerUp={settle}
             onKeyUp={settle}
           />
