@@ -83,6 +83,9 @@ function modeOf(view: View): "surface" | "solid" | "tets" {
   return opened && view.appearance !== "wireframe" && !view.cavities ? "solid" : "surface";
 }
 
+/** Component of the direction to the eye across a section below which the section is seen edge on. */
+const EDGE_ON = 0.05;
+
 export class Viewport {
   readonly element = document.createElement("div");
   readonly rig = new CameraRig();
@@ -951,7 +954,16 @@ export class Viewport {
 
   look(view: StandardView): void {
     this.rig.look(view);
+    const { section } = useView.getState();
+    if (section !== "off" && section !== "free") this.cutAcross(section);
     this.request();
+  }
+
+  /** Cut the body across an axis, open on the side that faces the eye; edge on, as it is. */
+  cutAcross(section: "x" | "y" | "z"): void {
+    const along = this.rig.aimedEye[section];
+    if (Math.abs(along) > EDGE_ON) setView({ section, sectionFlipped: along < 0 });
+    else setView({ section });
   }
 
   /** Cut the body open on the side that faces the eye, or close it again. */
@@ -960,9 +972,9 @@ export class Viewport {
       setView({ section: "off" });
       return;
     }
-    const eye = this.rig.toEye;
-    const section = Math.abs(eye.x) > Math.abs(eye.y) ? "x" : "y";
-    setView({ section, sectionFlipped: eye[section] < 0, sectionAt: 0.5 });
+    const eye = this.rig.aimedEye;
+    setView({ sectionAt: 0.5 });
+    this.cutAcross(Math.abs(eye.x) > Math.abs(eye.y) ? "x" : "y");
   }
 
   // ---- readings for tests and measurements ----

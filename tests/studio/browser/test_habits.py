@@ -67,3 +67,19 @@ def test_a_clamp_of_the_form_holds_the_lowest_layer(serving, tmp_path, open_tab)
         assert {"Add a refine", "Add a symmetry", "Add an activation"} <= set(labels)
     finally:
         server.stop()
+
+
+def test_a_section_is_open_on_the_side_of_the_eye(served, open_tab):
+    tab = open_tab(served.address, mode="design", symbols=False)
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    tab.find("section").click()
+    tab.page.get_by_label("Section axis").select_option("y")
+    other = tab.page.get_by_role("button", name="Other side")
+    # From the front, whose eye is at smaller y, and from the back.
+    for view, flipped in (("Front", "true"), ("Back", "false"), ("Front", "true")):
+        tab.page.keyboard.press("Control+k")
+        tab.page.keyboard.type(f"{view} view")
+        tab.page.keyboard.press("Enter")
+        other.and_(tab.page.locator(f"[aria-pressed={flipped}]")).wait_for()
+    other.click()
+    other.and_(tab.page.locator("[aria-pressed=false]")).wait_for()

@@ -137,7 +137,7 @@ export function ViewBar(props: { view: Viewport }) {
         {open === "more" && <More />}
         {open === "film" && <Film view={props.view} close={() => setOpen(null)} />}
       </div>
-      {view.section !== "off" && <SectionTools />}
+      {view.section !== "off" && <SectionTools view={props.view} />}
     </div>
   );
 }
@@ -208,7 +208,7 @@ const AXES: { value: SectionAxis; label: string }[] = [
   { value: "z", label: "across z" },
 ];
 
-function SectionTools() {
+function SectionTools(props: { view: Viewport }) {
   const { section, sectionAt, sectionFlipped } = useView();
   const axes = section === "free" ? [...AXES, { value: "free", label: "turned" }] : AXES;
   return (
@@ -218,7 +218,9 @@ function SectionTools() {
         label="Section axis"
         value={section}
         options={axes}
-        onChange={(value) => setView({ section: value as SectionAxis })}
+        onChange={(value) => {
+          if (value === "x" || value === "y" || value === "z") props.view.cutAcross(value);
+        }}
       />
       <input
         className="slider"

@@ -61,6 +61,17 @@ export class CameraRig {
     return direction(this.pose.azimuth, this.pose.elevation);
   }
 
+  /** Pose at the end of the flight, from which the next one starts out. */
+  private get aim(): Pose {
+    const { target, ...rest } = this.flight?.to ?? this.pose;
+    return { ...rest, target: target.clone() };
+  }
+
+  /** From the target to the eye, at the end of the flight. */
+  get aimedEye(): Vector3 {
+    return direction(this.aim.azimuth, this.aim.elevation);
+  }
+
   get orientation(): Quaternion {
     return this.camera.quaternion;
   }
@@ -120,19 +131,20 @@ export class CameraRig {
   look(view: StandardView): void {
     this.steered = true;
     const [azimuth, elevation] = STANDARD_VIEWS[view];
-    this.fly({ ...this.pose, target: this.pose.target.clone(), azimuth, elevation });
+    this.fly({ ...this.aim, azimuth, elevation });
   }
 
   turnAbout(point: Vector3): void {
     this.steered = true;
-    this.fly({ ...this.pose, target: point.clone() });
+    this.fly({ ...this.aim, target: point.clone() });
   }
 
   /** Turn about a point, from no farther than some meters. */
   closeTo(point: Vector3, most: number): void {
     this.steered = true;
-    const distance = most > 0 ? Math.min(this.pose.distance, most) : this.pose.distance;
-    this.fly({ ...this.pose, target: point.clone(), distance });
+    const aim = this.aim;
+    const distance = most > 0 ? Math.min(aim.distance, most) : aim.distance;
+    this.fly({ ...aim, target: point.clone(), distance });
   }
 
   fit(box: Box3, at_once = false): void {
@@ -141,7 +153,7 @@ export class CameraRig {
     const radius = Math.max(1e-5, box.getSize(new Vector3()).length() / 2);
     const narrow = Math.min(1, this.width / this.height);
     const distance = (1.12 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / narrow;
-    const to: Pose = { ...this.pose, target: box.getCenter(new Vector3()), distance };
+    const to: Pose = { ...this.aim, target: box.getCenter(new Vector3()), distance };
     if (at_once) {
       this.flight = null;
       this.pose = to;
