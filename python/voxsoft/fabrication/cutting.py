@@ -79,7 +79,10 @@ def best_cut(values: Floats, grid: Grid, ends: Floats, held: Floats, center: Flo
         least = planes.areas[fit].min()
         small = fit & (planes.areas <= (1.0 + _EQUAL) * least)
         heights = planes.heights[small]
+        # A chamber may be closed by another component: a plane at its end there cuts nothing off.
+        within = planes.heights[planes.areas > 0.0]
         marks = np.unique(ends[:, :, axis])
+        marks = marks[(marks > within[0] + grid.step) & (marks < within[-1] - grid.step)]
         middle = float(center[axis])
         flat = np.isin(np.arange(len(heights)), _beside(heights, marks, grid.step))
         away = heights - (held[axis] if np.isfinite(held[axis]) else middle)

@@ -261,6 +261,28 @@ def test_a_way_that_is_not_possible_says_so():
     assert make(lost, way="first", printer=PRINTER).way == make(chambered(), printer=PRINTER).way
 
 
+@pytest.mark.long
+def test_a_tube_between_rigid_ends_can_be_cut_in_halves():
+    tube = vs.Cylinder(radius=8 * mm, height=20 * mm) - vs.Cylinder(radius=5 * mm, height=20 * mm)
+    foot = vs.Cylinder(radius=8 * mm, height=3 * mm, base=(0, 0, -3 * mm))
+    lid = vs.Cylinder(radius=8 * mm, height=3 * mm, base=(0, 0, 20 * mm))
+    parts = [
+        vs.Part(shape=tube, material="ecoflex-00-30", name="tube"),
+        vs.Part(shape=foot | lid, material=vs.Rigid(), name="ends"),
+    ]
+    made = make(chambered(parts=parts, clamps=[], probes={}), way="halves", printer=PRINTER)
+    assert made.way == "halves"
+    assert made.problems == ()
+    volumes = [cast.volume for cast in made.casts]
+    # Neither half is empty, and both together are the tube.
+    assert min(volumes) > 0.3 * sum(volumes)
+    (inlet,) = made.inlets
+    hole = np.pi * inlet.radius**2 * 3 * mm
+    tube_alone = np.pi * (8**2 - 5**2) * 20 * mm**3
+    # Sampled sides are within 0.1 %, and the curved ends of the hole are a tenth of it.
+    assert sum(volumes) == pytest.approx(tube_alone - hole, rel=2e-3)
+
+
 def test_an_open_tube_has_a_core_and_a_rigid_end_is_printed():
     tube = vs.Cylinder(radius=8 * mm, height=20 * mm) - vs.Cylinder(radius=5 * mm, height=20 * mm)
     end = vs.Cylinder(radius=8 * mm, height=4 * mm, base=(0, 0, 20 * mm))
