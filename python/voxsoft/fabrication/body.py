@@ -47,6 +47,8 @@ class Component:
         Its function, in the frame of the design.
     values
         Its samples on the grid of the body, negative inside [m].
+    others
+        Function of all parts of other materials; None without any.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Component:
     parts: tuple[int, ...]
     solid: Field = field(repr=False)
     values: Floats = field(repr=False)
+    others: Field | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,6 +190,8 @@ def _components(
         values = joined if len(own) == len(shapes) else grid.values(solid)
         labels, count = ndimage.label(values < 0.0)
         title = " and ".join(names[k] for k in own)
+        rest = [shape for k, shape in enumerate(shapes) if k not in own]
+        others = Parts(rest) if rest else None
         text = design.parts[index].material
         for number in range(1, count + 1):
             part = labels == number
@@ -202,6 +207,7 @@ def _components(
                     parts=tuple(own),
                     solid=alone,
                     values=values if count == 1 else np.where(part, values, np.abs(values)),
+                    others=others,
                 )
             )
     return found
@@ -233,21 +239,51 @@ class Filled:
         Positions of samples.
     values
         Values of the solid at all samples, (nx, ny, nz) [m].
+    others
+        Other solids, which close these spaces together with it: the fill ends at their sides.
     """
 
     of: Field
     cells: Bools
     grid: Grid
     values: Floats
+    others: Field | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "cells", _reached(self.cells, self.values >= 0.0))
 
     def evaluate(self, points: Floats) -> Floats:
         """Return values [m] at points (n, 3) [m]."""
-        full = self.cells[self.grid.nearest(points)]
+        where = self.grid.nearest(points)
+        full = self.cells[where]
         values = np.full(len(points), -self.grid.step)
         values[~full] = self.of.evaluate(points[~full])
+        if self.others is None:
+            return values
+        near = self._beside[where]
+        aside = -self.others.evaluate(points[near])
+        # In another solid that is the distance to the fill; in the fill, less that to its side.
+        is_full = full[near]
+        values[near] = np.where(
+            is_full,
+            np.maximum(values[near], aside),
+            np.where(aside > 0.0, np.minimum(values[near], aside), values[near]),
+        )
+        return values
+
+    @cached_property
+    def _beside(self) -> Bools:
+        """Samples of the fill, and those up to two steps away from it."""
+        from scipy import ndimage
+
+        found: Bools = ndimage.binary_dilation(self.cells, np.ones((3, 3, 3), dtype=bool), 2)
+        return found
+
+    def sampled(self) -> Floats:
+        """Return its values at all samples, (nx, ny, nz) [m]."""
+        values = np.where(self.cells, -self.grid.step, self.values)
+        if self.others is not None:
+            values[self._beside] = self.evaluate(self.grid.points(np.argwhere(self._beside)))
         return values
 
 

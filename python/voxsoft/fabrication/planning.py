@@ -316,9 +316,8 @@ def _lost(
     body: Body, component: Component, best: _Direction, whole: Draw, *, is_asked: bool
 ) -> Plan:
     cells = np.any([void.cells for void in body.voids], axis=0)
-    values = np.where(cells, -np.abs(component.values), component.values)
-    solid = Filled(component.solid, cells, body.grid, component.values)
-    casting = _casting(component.name, component, solid, body, best.frame, values)
+    solid = Filled(component.solid, cells, body.grid, component.values, component.others)
+    casting = _casting(component.name, component, solid, body, best.frame, solid.sampled())
     cores = sum(void.surface.volume for void in body.voids)
     casting = replace(casting, inserts=cores)
     reason = "asked for" if is_asked else "no plane opens its chambers without undercuts"

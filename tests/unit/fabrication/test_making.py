@@ -261,8 +261,8 @@ def test_a_way_that_is_not_possible_says_so():
     assert make(lost, way="first", printer=PRINTER).way == make(chambered(), printer=PRINTER).way
 
 
-@pytest.mark.long
-def test_a_tube_between_rigid_ends_can_be_cut_in_halves():
+def closed_tube() -> vs.Design:
+    """Tube of 8 and 5 mm, 20 mm long, between rigid ends."""
     tube = vs.Cylinder(radius=8 * mm, height=20 * mm) - vs.Cylinder(radius=5 * mm, height=20 * mm)
     foot = vs.Cylinder(radius=8 * mm, height=3 * mm, base=(0, 0, -3 * mm))
     lid = vs.Cylinder(radius=8 * mm, height=3 * mm, base=(0, 0, 20 * mm))
@@ -270,7 +270,12 @@ def test_a_tube_between_rigid_ends_can_be_cut_in_halves():
         vs.Part(shape=tube, material="ecoflex-00-30", name="tube"),
         vs.Part(shape=foot | lid, material=vs.Rigid(), name="ends"),
     ]
-    made = make(chambered(parts=parts, clamps=[], probes={}), way="halves", printer=PRINTER)
+    return chambered(parts=parts, clamps=[], probes={})
+
+
+@pytest.mark.long
+def test_a_tube_between_rigid_ends_can_be_cut_in_halves():
+    made = make(closed_tube(), way="halves", printer=PRINTER)
     assert made.way == "halves"
     assert made.problems == ()
     volumes = [cast.volume for cast in made.casts]
@@ -281,6 +286,17 @@ def test_a_tube_between_rigid_ends_can_be_cut_in_halves():
     tube_alone = np.pi * (8**2 - 5**2) * 20 * mm**3
     # Sampled sides are within 0.1 %, and the curved ends of the hole are a tenth of it.
     assert sum(volumes) == pytest.approx(tube_alone - hole, rel=2e-3)
+
+
+@pytest.mark.long
+def test_a_core_that_is_lost_ends_at_rigid_ends():
+    made = make(closed_tube(), way="lost-core", printer=PRINTER)
+    assert made.way == "lost-core"
+    assert made.problems == ()
+    (cast,) = made.casts
+    assert cast.volume == pytest.approx(np.pi * (8**2 - 5**2) * 20 * mm**3, rel=5e-3)
+    (core,) = [each for each in made.printed if each.kind == "core"]
+    assert core.surface.volume == pytest.approx(np.pi * 5**2 * 20 * mm**3, rel=5e-3)
 
 
 def test_an_open_tube_has_a_core_and_a_rigid_end_is_printed():
