@@ -80,6 +80,7 @@ def test_walls_that_are_not_round_tubes_of_thread_have_no_first_layer(design: vs
     assert wound(design) is None
 
 
+@pytest.mark.long
 def test_a_wound_tube_is_cast_in_two_layers_around_its_thread(tmp_path: Path):
     design = vs.load(ROOT / "examples/wound_tube.toml")
     made = make(design)
