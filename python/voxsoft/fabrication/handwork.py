@@ -13,22 +13,15 @@ from voxsoft.fabrication.planning import Plan
 from voxsoft.units import format_quantity
 
 
-def steps_by_hand(
-    body: Body, plans: list[Plan], inlets: list[Inlet], patterns: Mapping[str, Pattern]
-) -> list[str]:
-    """Return the steps that no mold does: holes to be punched, layers, threads, tendons."""
-    design, notes = body.design, []
-    for inlet in inlets:
-        at = ", ".join(f"{1e3 * each + 0.0:.3g}" for each in inlet.at)
-        wide = f"{2e3 * inlet.radius:.2g} mm"
-        if not _is_molded(inlet, body, plans):
-            notes.append(f"Punch the inlet of {inlet.chamber}: {wide} wide, at ({at}) mm.")
+def steps_before(body: Body, plans: list[Plan], patterns: Mapping[str, Pattern]) -> list[str]:
+    """Return the steps before molds are poured: layers, threads and tubes of tendons laid in."""
+    design, steps = body.design, []
     for number, layer in enumerate(design.layers, 1):
         name = layer.name or f"layer {number}"
         thick = format_quantity(layer.thickness, "length")
         file = next((file for file, each in patterns.items() if each.name == name), None)
         cut = "" if file is None else f", cut by {file}.svg"
-        notes.append(
+        steps.append(
             f"Lay {name}, {thick} thick{cut}, into the mold before pouring, flat on its side there."
         )
     wound = {k for plan in plans if plan.winding is not None for k in plan.component.parts}
@@ -36,16 +29,27 @@ def steps_by_hand(
         for fiber in () if index in wound else part.fibers:
             along = f"({', '.join(f'{each:.3g}' for each in fiber.unit)})"
             if fiber.angle is None:
-                notes.append(f"Lay thread along {along} into the wall before it is poured full.")
+                steps.append(f"Lay thread along {along} into the wall before it is poured full.")
             else:
-                notes.append(
+                steps.append(
                     f"Wind thread at {np.degrees(fiber.angle):.3g} deg to the axis {along} on the "
                     "first layer of the wall, before the second is poured."
                 )
     for number, tendon in enumerate(design.tendons, 1):
         name = tendon.name or f"tendon {number}"
-        notes.append(f"Span a tube for {name} through the mold before pouring.")
-    return notes
+        steps.append(f"Span a tube for {name} through the mold before pouring.")
+    return steps
+
+
+def steps_after(body: Body, plans: list[Plan], inlets: list[Inlet]) -> list[str]:
+    """Return the steps after the cure that no mold does: holes to be punched."""
+    steps = []
+    for inlet in inlets:
+        if not _is_molded(inlet, body, plans):
+            at = ", ".join(f"{1e3 * each + 0.0:.3g}" for each in inlet.at)
+            wide = f"{2e3 * inlet.radius:.2g} mm"
+            steps.append(f"Punch the inlet of {inlet.chamber}: {wide} wide, at ({at}) mm.")
+    return steps
 
 
 def _is_molded(inlet: Inlet, body: Body, plans: list[Plan]) -> bool:

@@ -17,7 +17,7 @@ from voxsoft.errors import ErrorDetail
 from voxsoft.fabrication import proof
 from voxsoft.fabrication.body import Body, Component
 from voxsoft.fabrication.fields import Floats, Frame
-from voxsoft.fabrication.handwork import steps_by_hand
+from voxsoft.fabrication.handwork import steps_after, steps_before
 from voxsoft.fabrication.inlets import Inlet, bored, inlets_of
 from voxsoft.fabrication.mold import Mold, mold_of
 from voxsoft.fabrication.patterns import Pattern, patterns_of
@@ -140,9 +140,10 @@ class Fabrication:
         space in their molds [m³].
     problems
         Proofs that failed; empty for molds that can be made and used.
+    before
+        Steps by hand before molds are poured: layers, threads and tubes of tendons laid in.
     notes
-        Steps that are left to the hand: holes to be punched, layers, threads, tendons; and
-        differences between the castings and the design.
+        These, all other steps by hand, and differences between the castings and the design.
     """
 
     design: Design
@@ -156,6 +157,7 @@ class Fabrication:
     described: float
     poured: float
     problems: tuple[ErrorDetail, ...]
+    before: tuple[str, ...] = field(repr=False)
     notes: tuple[str, ...] = field(repr=False)
 
     @property
@@ -299,6 +301,7 @@ def make(
             problems.append(ErrorDetail(one.name, reason, "a finer resolution of the printer"))
     described = sum(each.volume for each in casts)
     patterns |= {names.of(each.name): each for each in patterns_of(design)}
+    laid_in = tuple(steps_before(body, plans, patterns))
     return Fabrication(
         design=design,
         printer=printer,
@@ -311,9 +314,11 @@ def make(
         described=described,
         poured=sum(each.poured for each in casts),
         problems=tuple(problems),
+        before=laid_in,
         notes=(
+            *laid_in,
             *(step for cast in casts for step in cast.before),
-            *steps_by_hand(body, plans, inlets, patterns),
+            *steps_after(body, plans, inlets),
             *_changes(casts, printer),
         ),
     )

@@ -187,6 +187,7 @@ def _sheet(made: Fabrication, suffix: str) -> Iterator[str]:
     yield from _print_table(made, suffix)
     yield from _mix_table(made)
     yield "<h2>Steps</h2><ol>"
+    yield from (f"<li>{escape(step)}" for step in made.before)
     for cast in made.casts:
         yield from _cast_steps(cast)
     yield from _joining_steps(made)
@@ -274,7 +275,7 @@ def _joining_steps(made: Fabrication) -> Iterator[str]:
     components = {plan.component.name for plan in made.plans}
     if len(components) + sum(each.kind == "rigid" for each in made.printed) > 1:
         yield "<li>Bond the components with silicone adhesive, as they touch in the design."
-    before = {step for cast in made.casts for step in cast.before}
+    before = {*made.before, *(step for cast in made.casts for step in cast.before)}
     for note in made.notes:
         if note not in before:
             yield f"<li>{escape(note)}"
@@ -305,7 +306,7 @@ def _proof_table(made: Fabrication) -> Iterator[str]:
     yield "</table><p class=quiet>Each part is one closed solid, leaves along its direction "
     yield "without meeting the casting, and is nowhere thinner than the wall of the printer.</p>"
     for wall in made.walls:
-        at = ", ".join(f"{1e3 * each + 0.0:.3g}" for each in wall.place)
+        at = ", ".join(f"{round(1e3 * each, 1) + 0.0:g}" for each in wall.place)
         yield f"<p class=quiet>The thinnest wall of {escape(wall.component)} is "
         yield f"{1e3 * wall.thickness:.3g} mm thick, at ({at}) mm.</p>"
     yield "<p class=quiet>Stretch while a casting leaves its mold is not computed: no part has "

@@ -175,6 +175,20 @@ def test_a_lost_core_is_placed_before_its_casting_is_poured(tmp_path):
     assert places == sorted(places)
 
 
+def test_tubes_and_layers_are_laid_in_before_the_first_casting_is_poured(tmp_path):
+    felt = vs.Layer(region=vs.Region(z=(0, 0)), young=30e6, thickness=0.3 * mm, name="felt")
+    way = vs.Tendon(
+        name="pull", through=[(1 * mm, 7 * mm, 5 * mm), (19 * mm, 7 * mm, 5 * mm)], tension=1
+    )
+    design = soft(box((0, 0, 0), (20, 14, 10)), layers=[felt], tendons=[way])
+    write_fabrication(make(design), tmp_path)
+    sheet = (tmp_path / "sheet.html").read_text("utf-8")
+    steps = ["Lay felt", "Span a tube for pull", "Pour soft", "push the casting out"]
+    places = [sheet.index(step) for step in steps]
+    assert places == sorted(places)
+    assert [sheet.count(step) for step in steps[:2]] == [1, 1]
+
+
 def test_the_place_of_a_thin_film_is_in_the_frame_of_the_design():
     block = box((100, 0, 0), (112, 8, 6)) | box((112, 0, 0), (118, 8, 0.4))
     problems = make(soft(block)).problems
