@@ -248,8 +248,16 @@ def surface_of(solid: Field, grid: Grid, values: Floats | None = None) -> Surfac
     (True, 1.0)
     """
     values = grid.values(solid) if values is None else values
+    blunt = traced(grid, values)
+    if not len(blunt.triangles):
+        return blunt
+    sharp, corners = sharpened(solid, blunt.vertices, blunt.triangles, grid.step, _SETTLED)
+    return Surface(sharp, corners.astype(np.int64))
+
+
+def traced(grid: Grid, values: Floats) -> Surface:
+    """Return the surface that marching cubes trace between samples, whose edges are cut."""
     vertices, triangles = contour(_off_zero(values, grid.step), np.array(grid.first), grid.step)
     if not len(triangles):
         return Surface(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
-    sharp, corners = sharpened(solid, vertices, triangles, grid.step, _SETTLED)
-    return Surface(sharp, corners.astype(np.int64))
+    return Surface(vertices, triangles.astype(np.int64))

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from voxsoft.design import Design
 from voxsoft.fabrication.body import Body, Component
 from voxsoft.fabrication.fields import Field, Floats
-from voxsoft.fabrication.sampled import Grid, Sampled, Surface, surface_of
+from voxsoft.fabrication.sampled import Grid, Sampled, Surface, traced
 
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
@@ -32,7 +32,10 @@ _SMOOTH: Final = 0.97
 #: Steps of a ray, and distances between which normals are taken, in steps of the grid.
 _STRIDE: Final = 0.25
 _NORMAL: Final = 0.02
-#: Halvings of a stride at the end of a ray, and of the way from a triangle to the surface.
+#: Rounds in which the end of a ray is found within a stride, its distance from the surface [m]
+#: that counts as none, and halvings where it is farther.
+_ROUNDS: Final = 6
+_SETTLED: Final = 1e-10
 _HALVINGS: Final = 30
 #: Most rays, and how many are followed exactly at once.
 _MOST: Final = 20_000
@@ -78,7 +81,8 @@ def thinnest_wall(component: Component, grid: Grid) -> Wall | None:
     >>> round(thinnest_wall(body.components[0], body.grid).thickness * 1e3, 4)
     2.3
     """
-    surface = surface_of(component.solid, grid, component.values)
+    # Edges need not be restored: no ray begins there.
+    surface = traced(grid, component.values)
     solid = Sampled(component.solid, grid, component.values)
     rays = _rays(surface, grid, component.values)
     best: Wall | None = None
@@ -178,12 +182,32 @@ def _walls(solid: Field, rays: _Rays, step: float) -> Iterator[tuple[float, Floa
 def _crossed(
     solid: Field, points: Floats, normals: Floats, inside: Floats, outside: Floats
 ) -> Floats:
-    """Return the depths [m] below points, along rays, where they leave the solid."""
-    for _ in range(_HALVINGS):
-        middle = (inside + outside) / 2.0
-        within = solid.evaluate(points - middle[:, None] * normals) < 0.0
+    """Return the depths [m] below points, along rays, where they leave the solid.
+
+    False position with the rule of Illinois: distances along a ray are nearly straight. Halvings
+    do the rest where they are not.
+    """
+    low = solid.evaluate(points - inside[:, None] * normals)
+    high = solid.evaluate(points - outside[:, None] * normals)
+    kept = np.zeros(len(points), dtype=np.int8)
+    for _ in range(_ROUNDS):
+        middle = inside + (outside - inside) * low / np.minimum(low - high, -1e-300)
+        values = solid.evaluate(points - middle[:, None] * normals)
+        within = values < 0.0
+        high = np.where(within, np.where(kept == 1, high / 2.0, high), values)
+        low = np.where(within, values, np.where(kept == -1, low / 2.0, low))
+        kept = np.where(within, 1, -1).astype(np.int8)
         inside, outside = np.where(within, middle, inside), np.where(within, outside, middle)
-    return (inside + outside) / 2.0
+    found: Floats = np.where(np.abs(low) < np.abs(high), inside, outside)
+    off = np.abs(solid.evaluate(points - found[:, None] * normals)) > _SETTLED
+    if off.any():
+        points, normals, inside, outside = points[off], normals[off], inside[off], outside[off]
+        for _ in range(_HALVINGS):
+            middle = (inside + outside) / 2.0
+            within = solid.evaluate(points - middle[:, None] * normals) < 0.0
+            inside, outside = np.where(within, middle, inside), np.where(within, outside, middle)
+        found[off] = (inside + outside) / 2.0
+    return found
 
 
 def _normals(solid: Field, points: Floats, step: float) -> tuple[Floats, Bools]:
