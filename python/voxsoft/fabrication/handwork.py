@@ -24,9 +24,10 @@ def steps_before(body: Body, plans: list[Plan], patterns: Mapping[str, Pattern])
         steps.append(
             f"Lay {name}, {thick} thick{cut}, into the mold before pouring, flat on its side there."
         )
-    wound = {k for plan in plans if plan.winding is not None for k in plan.component.parts}
+    # A part may be in several components, of which some are no tubes.
+    unwound = {k for plan in plans if plan.winding is None for k in plan.component.parts}
     for index, part in enumerate(design.parts):
-        for fiber in () if index in wound else part.fibers:
+        for fiber in part.fibers if index in unwound else ():
             along = f"({', '.join(f'{each:.3g}' for each in fiber.unit)})"
             if fiber.angle is None:
                 steps.append(f"Lay thread along {along} into the wall before it is poured full.")

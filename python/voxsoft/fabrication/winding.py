@@ -177,7 +177,8 @@ def winding_of(body: Body, component: Component) -> Winding | None:
         return None
     inner, outer = float(sides.min()), float(sides.max())
     off = np.minimum(sides - inner, outer - sides).max()
-    if inner <= 0.0 or off > _ROUND * body.grid.step:
+    # A solid rod has one side alone.
+    if outer - inner < body.grid.step or off > _ROUND * body.grid.step:
         return None
     return Winding(component.name, fibers, (inner + outer) / 2.0, outer - inner, high - low)
 

@@ -25,6 +25,13 @@ def tube(*angles: str, axis: str = "z", outer: vs.Shape | None = None) -> vs.Des
     return vs.Design(name="tube", voxel_size=3 * mm, parts=[part])
 
 
+def rod(angle: str) -> vs.Design:
+    fiber = vs.Fiber(axis="z", angle=angle, modulus="2 MPa")
+    solid = vs.Cylinder(radius=12 * mm, height=40 * mm)
+    part = vs.Part(shape=solid, material="ecoflex-00-30", fibers=[fiber], name="rod")
+    return vs.Design(name="rod", voxel_size=3 * mm, parts=[part])
+
+
 def wound(design: vs.Design) -> Winding | None:
     body = Body.of(design, 0.7 * mm)
     return winding_of(body, body.components[0])
@@ -73,8 +80,9 @@ def test_threads_are_as_stiff_as_the_fibers_that_they_replace(degrees: float):
         tube("30 deg", axis="x"),
         tube("30 deg", outer=vs.Box(size=(24 * mm, 24 * mm, 40 * mm), center=(0, 0, 20 * mm))),
         tube("30 deg", outer=vs.Cone(radius=12 * mm, top_radius=11 * mm, height=40 * mm)),
+        rod("30 deg"),
     ],
-    ids=["no thread", "about another axis", "square outside", "cone"],
+    ids=["no thread", "about another axis", "square outside", "cone", "solid rod"],
 )
 def test_walls_that_are_not_round_tubes_of_thread_have_no_first_layer(design: vs.Design):
     assert wound(design) is None

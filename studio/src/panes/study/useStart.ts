@@ -1,5 +1,5 @@
 // Start of a job: once for each press or double click, and shown as soon as it is known.
-import { useEffect, useRef, useState } from "react";
+import { useCallback, useEffect, useRef, useState } from "react";
 import type { JobEvent, JobStartCommand } from "../../protocol";
 import { usePage } from "../../store/page";
 import { send } from "../../store/session";
@@ -21,22 +21,23 @@ export function useStart(kind: JobEvent["kind"]): Start {
   const [starting, setStarting] = useState(false);
   // Known jobs at the press; null where no start is awaited.
   const before = useRef<ReadonlySet<string> | null>(null);
-  const end = () => {
+  const end = useCallback(() => {
     before.current = null;
     setStarting(false);
-  };
+  }, []);
   useEffect(() => {
     if (before.current === null) return;
     const fresh = jobsOf(jobs, kind).find((job) => !before.current?.has(job.id));
     if (!fresh) return;
     end();
     usePage.setState({ job: fresh.id });
-  });
+  }, [jobs, kind, end]);
   useEffect(() => {
     if (!starting) return;
+    // Of its own: news of other jobs must not begin it again.
     const timer = setTimeout(end, PATIENCE);
     return () => clearTimeout(timer);
-  });
+  }, [starting, end]);
   return {
     starting,
     start(spec) {
