@@ -48,6 +48,23 @@ def test_a_random_body_is_squeezed(seed):
         assert verdict.kind == "at half its height"
 
 
+#: Iterations by which a body is given up: four times the 511 that it takes.
+MOST = 2000
+
+
+@pytest.mark.long
+def test_iterations_of_a_body_in_contact_end():
+    from squeeze_bodies import squeezed
+
+    def count(iterations, _time, _residual):
+        assert iterations < MOST
+
+    # Exact first rounds at a point where nothing touched for a moment went in circles without end.
+    result = vs.simulate(squeezed(37), progress=count)
+    assert result.status == "ok"
+    assert result.load_factor == 1.0
+
+
 def warned(seed):
     from squeeze_bodies import squeezed
 
