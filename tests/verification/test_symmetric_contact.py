@@ -51,9 +51,16 @@ def whole_with_symmetric_objects(design: vs.Design, planes: list[Symmetry]) -> S
 
 
 def require_same(
-    design: vs.Design, planes: list[Symmetry], within: float = SAME, **settings: object
+    design: vs.Design,
+    planes: list[Symmetry],
+    within: float = SAME,
+    pressed_within: float = 0.0,
+    **settings: object,
 ) -> vs.Result:
-    """A part and the whole agree in all that a result says; returns the part's."""
+    """A part and the whole agree in all that a result says; returns the part's.
+
+    `pressed_within` is what their forces along a contact may differ by, in parts of them.
+    """
     whole = vs.simulate(whole_with_symmetric_objects(design, planes), **settings)
     part = vs.simulate(design.replace(symmetry=planes), **settings)
     assert (part.status, whole.status) == ("ok", "ok")
@@ -66,7 +73,8 @@ def require_same(
     for mine, its in zip(part.contacts, whole.contacts, strict=True):
         for name in ("force", "friction", "pressed", "pressure", "bound"):
             off = np.abs(np.subtract(getattr(mine, name), getattr(its, name))).max()
-            assert off <= forces, (mine.of, name)
+            allowed = pressed_within * pressed if name == "pressed" else forces
+            assert off <= max(forces, allowed), (mine.of, name)
         assert mine.area == pytest.approx(its.area, rel=1e-9)
         assert mine.gap == pytest.approx(its.gap, abs=within * size)
     for name, pose in whole.objects.items():
@@ -245,9 +253,14 @@ def gripper(**changes: object) -> vs.Design:
     return vs.Design(**(given | changes))
 
 
+#: A step is kept where friction is off its line by 5 % of its bounds. The sum of forces that press
+#: and rub is then off by a part of that: of p sqrt(1 + mu^2), mu^2 / (1 + mu^2) with mu = 0.8.
+SLIPPING = 0.05 * 0.8**2 / (1.0 + 0.8**2)
+
+
 @pytest.mark.parametrize("planes", [[X], pytest.param([X, Y], marks=pytest.mark.slow)])
 def test_two_fingers_that_are_images_grip(planes: list[Symmetry]) -> None:
-    part = require_same(gripper(), planes, DEFAULT)
+    part = require_same(gripper(), planes, DEFAULT, SLIPPING)
     right, left = (each for each in part.contacts if each.of[1] == "cube")
     assert right.force[2] + left.force[2] == pytest.approx(-0.0005 * 9.81, rel=1e-6)
     assert right.pressure == pytest.approx(left.pressure, rel=1e-12)

@@ -10,9 +10,10 @@ use crate::path::settings::Settings;
 
 /// Most corrections of floor and contact at one point of the path.
 const ROUNDS: usize = 100;
-/// Consecutive corrections without a new smallest change, after which the step is cut if possible: active sets that
-/// alternate need a shorter step.
+/// Consecutive corrections without a change that is smaller by a [`NOTABLE`] factor, after which the step is cut if
+/// possible: active sets that alternate need a shorter step.
 const STALE: usize = 20;
+const NOTABLE: f64 = 0.9;
 /// Tolerance of equilibria at which contact is corrected, and the fraction of the residual after the last correction
 /// that may remain; at the end corrections are checked at the requested tolerance.
 const LOOSE: f64 = 1e-3;
@@ -180,8 +181,11 @@ impl Equilibrium {
         let enough = if search.can_be_cut() { STALE } else { ROUNDS };
         while round < ROUNDS && stale < enough {
             let changed = self.forces(positions, search.point()).relative();
-            stale = if changed < least { 0 } else { stale + 1 };
-            least = least.min(changed);
+            if changed < NOTABLE * least {
+                (least, stale) = (changed, 0);
+            } else {
+                stale += 1;
+            }
             // Clamps that have yet to move do not show in the residual.
             let tolerance = if loose && round == 0 {
                 settings.tolerance.max(LOOSE)

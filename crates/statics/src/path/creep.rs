@@ -223,7 +223,7 @@ impl Path<'_, '_> {
         let mut search = AtLoad {
             point: LoadParameter::at(next),
             safe: true,
-            can_be_cut: false,
+            can_be_cut: true,
         };
         if !self.snap(&mut search, settings) {
             return false;

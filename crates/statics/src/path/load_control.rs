@@ -170,7 +170,7 @@ impl Path<'_, '_> {
                         &mut AtLoad {
                             point,
                             safe: true,
-                            can_be_cut: false,
+                            can_be_cut: true,
                         },
                         settings,
                     )
@@ -222,7 +222,7 @@ impl Path<'_, '_> {
                 let mut search = AtLoad {
                     point: self.point,
                     safe: true,
-                    can_be_cut: false,
+                    can_be_cut: true,
                 };
                 self.release(loose, &mut search, settings)
             }

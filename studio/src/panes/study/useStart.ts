@@ -34,7 +34,7 @@ export function useStart(kind: JobEvent["kind"]): Start {
   }, [jobs, kind, end]);
   useEffect(() => {
     if (!starting) return;
-    // Of its own: news of other jobs must not begin it again.
+    // An effect apart, as news of other jobs must not restart the time.
     const timer = setTimeout(end, PATIENCE);
     return () => clearTimeout(timer);
   }, [starting, end]);
