@@ -120,6 +120,14 @@ export const KINDS = {
 /** Kinds of shapes that a design file can hold. */
 export const SHAPE_KINDS = ["box", "rounded-box", "sphere", "ellipsoid", "cylinder", "tube", "cone", "capsule", "torus", "half-space", "prism", "revolve", "gyroid", "schwarz-p", "schwarz-d", "neovius", "iwp", "cubic", "bcc", "fcc", "octet", "expression", "mesh", "union", "intersection", "difference", "offset", "shell", "blend", "grade", "translate", "rotate", "scale", "mirror", "twist", "bend", "taper", "array", "polar-array"] as const;
 
+/** Ready features by name, and how each is built. */
+export const FEATURES = {
+  "bellows": "Folds between two lids, which air unfolds.",
+  "fold": "A sleeve with one fold, open at both ends.",
+  "finger": "A bar with a round tip and a room above its thick foot: it bends.",
+  "chamber-row": "A row of chambers with a duct on a foot: it bends as they swell.",
+} as const;
+
 /** Units of daily use: SI units in one, and exponents. */
 export const COMMON_UNITS = {
   "um": [1e-06, [1, 0, 0, 0, 0, 0]],
@@ -296,6 +304,19 @@ export interface AddBodyCommand {
   what: "file" | "template" | "upload";
   name: string;
   beyond?: number;
+}
+
+/**
+ * Add a ready feature to the design: its parameters and shapes, by its name.
+ *
+ * Its foot stands at a place in m; null for the origin. A design without parts gets a part, a
+ * clamp and a load with it.
+ */
+export interface AddFeatureCommand {
+  t: "add_feature";
+  seq: number;
+  name: string;
+  at?: Triple | null;
 }
 
 /** Ask for the design files beside the document. */
@@ -1509,7 +1530,27 @@ export interface TrialEvent {
   message: string;
 }
 
-/** All trials of a study so far, replacing those sent before; kinds by name tell the units. */
+/** A constraint of a study: the metric that it keeps within bounds, SI; null where open. */
+export interface Bound {
+  name: string;
+  metric: string;
+  min: number | null;
+  max: number | null;
+}
+
+/** A range of a parameter that a study has varied, SI; `step` is null for any value. */
+export interface TriedRange {
+  low: number;
+  high: number;
+  step: number | null;
+  log: boolean;
+}
+
+/**
+ * All trials of a study so far, replacing those sent before; kinds by name tell the units.
+ *
+ * `space` holds the ranges of the parameters that it varied, without lists of choices.
+ */
 export interface TrialsEvent {
   t: "trials";
   job: string;
@@ -1518,6 +1559,8 @@ export interface TrialsEvent {
   directions: string[];
   kinds: Record<string, string>;
   trials: TrialEvent[];
+  constraints: Bound[];
+  space: Record<string, TriedRange>;
 }
 
 /** A generation of a calibration: fitness, and error in m. */
@@ -1832,6 +1875,7 @@ export type AnyCommand =
   | SwapCommand
   | SyncCommand
   | AddBodyCommand
+  | AddFeatureCommand
   | DesignsCommand
   | MaterialsCommand
   | TakeCommand

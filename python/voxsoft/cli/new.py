@@ -19,6 +19,13 @@ def new(
             "--template", "-t", help="Start from: beam, cylinder, finger, pneunet or sphere."
         ),
     ] = "cylinder",
+    feature: Annotated[
+        str,
+        typer.Option(
+            "--feature",
+            help="Start from a ready feature instead: bellows, chamber-row, finger or fold.",
+        ),
+    ] = "",
     folder: Annotated[Path, typer.Option("--folder", help="Folder of the new file.")] = Path(),
     force: Annotated[bool, typer.Option("--force", help="Replace a file that exists.")] = False,
 ) -> None:
@@ -37,7 +44,10 @@ def new(
         say(f"{plain(str(path))} exists; add --force to replace it")
         raise typer.Exit(USAGE)
     with errors_in_words():
-        files.write_family(template, path, name=name)
+        if feature:
+            files.write_feature(feature, path, name=name)
+        else:
+            files.write_family(template, path, name=name)
     shown = plain(str(path))
     say(
         f"wrote {shown}; next: [bold]voxsoft check {shown}[/bold], [bold]voxsoft run {shown}[/bold]"

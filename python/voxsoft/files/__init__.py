@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from voxsoft.files.designs import load, save
     from voxsoft.files.exports import export, unit_of, write_scene, write_series
     from voxsoft.files.family_file import write_family
+    from voxsoft.files.features import write_feature
     from voxsoft.files.measured_tests import load_measurements
     from voxsoft.files.meshes import read_mesh, write_mesh
     from voxsoft.files.path_table import write_path
@@ -37,6 +38,7 @@ __all__ = [
     "write_computation",
     "write_confirmation",
     "write_family",
+    "write_feature",
     "write_mesh",
     "write_path",
     "write_run",
@@ -63,6 +65,7 @@ _HOMES = {
     "write_comparison": "voxsoft.files.comparison_report",
     "write_computation": "voxsoft.files.computations",
     "write_family": "voxsoft.files.family_file",
+    "write_feature": "voxsoft.files.features",
     "write_mesh": "voxsoft.files.meshes",
     "write_path": "voxsoft.files.path_table",
     "write_run": "voxsoft.files.run_folder",

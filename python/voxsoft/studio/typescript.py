@@ -16,6 +16,7 @@ from typing import Any, Final
 
 from msgspec import inspect as types
 
+from voxsoft.design.features import FEATURES
 from voxsoft.formats.registry import HEADINGS, WRITTEN
 from voxsoft.shapes import KINDS as SHAPES
 from voxsoft.shapes.cad_files import CAD_SUFFIXES, HINT, WHAT
@@ -86,6 +87,7 @@ def typescript() -> str:
         *(_codes(each) for each in (CloseCode, MessageKind, FrameFlag, TopologyFlag)),
         _constant("KINDS", _kinds(), "Kinds: SI unit, unit of bare numbers, exponents."),
         _constant("SHAPE_KINDS", _shape_kinds(), "Kinds of shapes that a design file can hold."),
+        _constant("FEATURES", _features(), "Ready features by name, and how each is built."),
         _constant("COMMON_UNITS", _units(), "Units of daily use: SI units in one, and exponents."),
         "export type Triple = [number, number, number];\n",
     ]
@@ -139,6 +141,10 @@ def _kinds() -> dict[str, dict[str, object]]:
 def _shape_kinds() -> tuple[str, ...]:
     """All kinds but functions of Python, which have no form in a file."""
     return tuple(kind for kind, shape in SHAPES.items() if "function" not in shape.model_fields)
+
+
+def _features() -> dict[str, str]:
+    return {feature.name: feature.sentence for feature in FEATURES}
 
 
 def _units() -> dict[str, list[object]]:

@@ -15,13 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft._shown import Shown, counted, rounded
-from voxsoft.design import Objective
+from voxsoft.design import Constraint, Objective
 from voxsoft.errors import MissingPackageError, StorageError, StudyError
 from voxsoft.metrics import METRICS
 from voxsoft.records import closest
 from voxsoft.simulation import Diagnostic, Status
+from voxsoft.study.bounds import broken_by_all
 from voxsoft.study.indexed_cavities import switched_cavities
 from voxsoft.study.plateau import alike, repeated, spans
+from voxsoft.study.space import Domain
 from voxsoft.study.trial import Trial
 from voxsoft.units import format_quantity
 
@@ -54,6 +56,10 @@ class StudyResult(Shown):
         where the family is a function, for which they are unknown.
     over
         Path that each design was followed along; None where each was solved once.
+    constraints
+        Constraints by name.
+    space
+        Range or choices of each parameter by name.
     """
 
     name: str
@@ -63,6 +69,8 @@ class StudyResult(Shown):
     parameters: tuple[str, ...]
     kinds: Mapping[str, str] = field(default_factory=dict)
     over: str | None = None
+    constraints: Mapping[str, Constraint] = field(default_factory=dict)
+    space: Mapping[str, Domain] = field(default_factory=dict)
 
     def _lines(self) -> Iterator[str]:
         found = [f"{number:,} {status}" for status, number in self.counts.items() if number]
@@ -98,8 +106,12 @@ class StudyResult(Shown):
 
     @cached_property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Warnings against comparing trials: they are one body, or a cavity index switches."""
-        return (*switched_cavities(self.trials), *repeated(self.trials))
+        """Warnings: designs are one body, a cavity index switches, or none is allowed."""
+        return (
+            *switched_cavities(self.trials),
+            *repeated(self.trials),
+            *broken_by_all(self.trials, self.constraints),
+        )
 
     @cached_property
     def distinct(self) -> int:

@@ -384,6 +384,8 @@ class Study:
             tuple(self.space),
             self._kinds,
             self.over,
+            self.constraints,
+            self.space,
         )
 
     @property

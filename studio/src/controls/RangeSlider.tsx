@@ -1,5 +1,5 @@
 // A slider with two ends over the values that there are, drawn as small bars behind it.
-import { useMemo } from "react";
+import { type CSSProperties, useMemo } from "react";
 import "./range.css";
 
 export interface RangeSliderProps {
@@ -8,6 +8,8 @@ export interface RangeSliderProps {
   values: readonly number[];
   /** Kept range; infinite where an end is open. */
   range: readonly [number, number];
+  /** Allowed range, whose ends are marked; infinite where open. */
+  allowed?: readonly [number, number];
   /** A value in words, such as "4.2 mm". */
   text(value: number): string;
   /** Called at once while an end is dragged; null where both ends are open. */
@@ -63,6 +65,16 @@ export function RangeSlider(props: RangeSliderProps) {
           );
         })}
       </svg>
+      {props.allowed
+        ?.filter((end) => end > least && end < most)
+        .map((end) => (
+          <span
+            key={end}
+            className="range-bound"
+            title={`Allowed up to here: ${text(end)}`}
+            style={{ "--at": (end - least) / (most - least) } as CSSProperties}
+          />
+        ))}
       <span className="range-track">
         <i style={{ left: `${(low / STEPS) * 100}%`, right: `${(1 - high / STEPS) * 100}%` }} />
       </span>

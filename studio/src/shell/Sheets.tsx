@@ -68,6 +68,9 @@ function Scrim(props: { children: React.ReactNode; label: string; testId: string
   );
 }
 
+/** Score of words that are all found, above that of any letters in order. */
+const WHOLE = 100;
+
 /** Score of `query` in a title: all its letters in order, better where they begin words. */
 export function matches(query: string, title: string): number {
   const text = title.toLowerCase();
@@ -82,6 +85,17 @@ export function matches(query: string, title: string): number {
   return score + 1 / (1 + text.length);
 }
 
+/** Score of an action: by its title, or by a word for it that begins so. */
+export function scoreOf(
+  query: string,
+  { title, words = "" }: Pick<Action, "title" | "words">,
+): number {
+  const asked = query.trim().toLowerCase();
+  const known = `${title}, ${words}`.toLowerCase().split(/[^a-z0-9]+/);
+  const whole = asked.split(/\s+/).every((word) => known.some((one) => one.startsWith(word)));
+  return matches(query, title) + (whole ? WHOLE : 0);
+}
+
 function Palette() {
   const [query, setQuery] = useState("");
   const [chosen, setChosen] = useState(0);
@@ -90,7 +104,7 @@ function Palette() {
     const all = actions();
     if (!query.trim()) return all;
     return all
-      .map((action) => ({ action, score: matches(query, action.title) }))
+      .map((action) => ({ action, score: scoreOf(query, action) }))
       .filter((one) => one.score > 0)
       .sort((a, b) => b.score - a.score)
       .map((one) => one.action);

@@ -15,11 +15,22 @@ import {
 import { send } from "../store/session";
 import { showAskedPace, useStudio } from "../store/studio";
 import { setView } from "../store/view";
+import { reachActions } from "./reach";
 
 export interface Action {
   readonly id: string;
   readonly title: string;
-  readonly group: "Document" | "Simulation" | "View" | "Panes" | "Page" | "Templates";
+  readonly group:
+    | "Document"
+    | "Simulation"
+    | "View"
+    | "Form"
+    | "Export"
+    | "Panes"
+    | "Page"
+    | "Templates";
+  /** Other words for it, by which it is found too. */
+  readonly words?: string;
   /** Such as "Ctrl+K", "Shift+ArrowRight", "f". */
   readonly keys?: readonly string[];
   readonly hint?: string;
@@ -221,12 +232,12 @@ function simple(): Action[] {
     },
     {
       id: "shortcuts",
-      title: "Keyboard shortcuts",
+      title: "Help: keyboard shortcuts",
       group: "Page",
       keys: ["?"],
       run: () => openSheet("shortcuts"),
     },
-    { id: "tour", title: "Take the tour", group: "Page", run: () => openSheet("tour") },
+    { id: "tour", title: "Help: take the tour", group: "Page", run: () => openSheet("tour") },
     {
       id: "layout",
       title: "Reset the layout of this mode",
@@ -279,7 +290,7 @@ export function actions(): Action[] {
   );
   // A page that runs by itself has a body and time, and no document, modes or panes.
   if (!dock) return [...simple().filter((one) => ALONE.has(one.id)), ...viewActions];
-  return [...simple(), ...viewActions, ...modes, ...panes, ...templates];
+  return [...simple(), ...viewActions, ...reachActions(showPane), ...modes, ...panes, ...templates];
 }
 
 /** Open a document; where it takes the place of edited work, that is asked first. */

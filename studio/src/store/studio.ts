@@ -392,6 +392,8 @@ function withTrials(state: Studio, job: string, fresh: readonly TrialEvent[]): T
     objectives: known?.objectives ?? about?.objectives ?? Object.keys(last.objectives ?? {}),
     directions: known?.directions ?? about?.directions ?? [],
     kinds: known?.kinds ?? {},
+    constraints: known?.constraints ?? [],
+    space: known?.space ?? {},
     trials: [...byIndex.values()],
   };
 }

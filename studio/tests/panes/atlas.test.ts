@@ -2,8 +2,7 @@ import { describe, expect, it } from "vitest";
 import { importanceOf, mostImportant } from "../../src/panes/study/atlas/importance";
 import { longestSide, sizeIn } from "../../src/panes/study/atlas/pictures";
 import { placed } from "../../src/panes/study/atlas/places";
-import { rangeText } from "../../src/panes/study/atlas/Requirements";
-import { type Axis, axesOf, remaining } from "../../src/panes/study/trials";
+import { type Axis, axesOf, rangeText, remaining } from "../../src/panes/study/trials";
 import type { TrialEvent, TrialsEvent } from "../../src/protocol";
 
 /** Designs of two parameters, of which `wall` decides the rise and `cap` next to nothing. */
@@ -39,6 +38,8 @@ const STUDY: TrialsEvent = {
   objectives: ["rise"],
   directions: ["maximize"],
   kinds: { cap: "length", wall: "length", rise: "length", mass: "mass" },
+  constraints: [],
+  space: {},
   trials: TRIALS,
 };
 const AXES = axesOf(STUDY);
@@ -116,6 +117,8 @@ describe("a map of few columns", () => {
     expect(new Set(xs(first)).size).toBe(4);
     expect(Math.max(...xs(first))).toBeLessThan(Math.min(...xs(second)));
     expect(first?.[0]?.x).toBeCloseTo(40 + 720 / 4, 6);
+    // The place of their values is kept, to draw a line from there.
+    for (const { atX } of first ?? []) expect(atX).toBeCloseTo(40 + 720 / 4, 6);
   });
 
   it("leaves designs of as many values where they are", () => {

@@ -15,9 +15,11 @@ import {
   axesOf,
   bestFirst,
   bestSoFar,
+  brokenBy,
   frontOf,
   matchesFilter,
   rangeOf,
+  reasonOf,
   textOn,
   trialsText,
   valueOn,
@@ -135,6 +137,8 @@ const STUDY: TrialsEvent = {
   objectives: ["rise", "weight"],
   directions: ["maximize", "minimize"],
   kinds: { wall: "length", rise: "length", weight: "mass", mass: "mass" },
+  constraints: [],
+  space: {},
   trials: [
     trial(2, 0.01, 0.002),
     trial(0, 0.005, 0.001),
@@ -142,6 +146,59 @@ const STUDY: TrialsEvent = {
     trial(3, 0.015, 0.009, { feasible: false }),
   ],
 };
+
+describe("constraints", () => {
+  const limited: TrialsEvent = {
+    ...STUDY,
+    kinds: { ...STUDY.kinds, limit: "mass" },
+    constraints: [{ name: "limit", metric: "mass", min: null, max: 0.0015 }],
+    trials: STUDY.trials.map((one) => ({
+      ...one,
+      metrics: { mass: one.index / 1000, limit: one.index / 1000 },
+    })),
+  };
+  const axes = axesOf(limited);
+
+  it("are columns, in place of the metric that they bound", () => {
+    const limit = axes.find((axis) => axis.name === "limit");
+    expect(limit).toMatchObject({ role: "constraint", allowed: [-Infinity, 0.0015] });
+    expect(axes.some((axis) => axis.name === "mass")).toBe(false);
+  });
+
+  it("say why a design is not allowed", () => {
+    const [broken, kept, failed] = limited.trials;
+    expect(reasonOf(broken as TrialEvent, axes)).toBe("limit is 2 g, at most 1.5 g");
+    expect(reasonOf(kept as TrialEvent, axes)).toBe("");
+    expect(reasonOf(failed as TrialEvent, axes)).toBe("");
+  });
+
+  it("are broken by a value that is not known", () => {
+    const unknown = { ...(limited.trials[1] as TrialEvent), metrics: { limit: null } };
+    expect(brokenBy(unknown, axes).map((axis) => axis.name)).toEqual(["limit"]);
+  });
+});
+
+describe("ranges of a study", () => {
+  const tried = { wall: { low: 0.004, high: 0.006, step: 0.001, log: false } };
+
+  it("stand again where the study is shown", () => {
+    const all = choices([RANGED, parameter("cap", { min: 0, max: 1 })], DRAFT, tried);
+    expect(all.map((one) => [one.on, one.sweep.low, one.sweep.high])).toEqual([
+      [true, 0.004, 0.006],
+      [false, 0, 1],
+    ]);
+  });
+
+  it("give way to those that were typed since", () => {
+    const draft = { ...DRAFT, ranges: { wall: { high: 0.02 } } };
+    expect(choices([RANGED], draft, tried)[0]?.sweep).toMatchObject({ low: 0.004, high: 0.02 });
+  });
+
+  it("of another design do not count", () => {
+    const other = { radius: tried.wall };
+    expect(choices([RANGED], DRAFT, other)[0]?.sweep).toMatchObject({ low: 0.005, high: 0.015 });
+  });
+});
 
 describe("trials", () => {
   const axes = axesOf(STUDY);

@@ -165,6 +165,17 @@ class AddBody(Command):
     beyond: float = 0.0
 
 
+class AddFeature(Command):
+    """Add a ready feature to the design: its parameters and shapes, by its name.
+
+    Its foot stands at a place in m; null for the origin. A design without parts gets a part, a
+    clamp and a load with it.
+    """
+
+    name: ShortText
+    at: Triple | None = None
+
+
 class Designs(Command):
     """Ask for the design files beside the document."""
 
@@ -509,6 +520,7 @@ AnyCommand = (
     | Swap
     | Sync
     | AddBody
+    | AddFeature
     | Designs
     | Materials
     | Take

@@ -869,8 +869,29 @@ class Trial(Event):
     message: str = ""
 
 
+class Bound(Entry):
+    """A constraint of a study: the metric that it keeps within bounds, SI; null where open."""
+
+    name: str
+    metric: str
+    min: float | None
+    max: float | None
+
+
+class TriedRange(Entry):
+    """A range of a parameter that a study has varied, SI; `step` is null for any value."""
+
+    low: float
+    high: float
+    step: float | None
+    log: bool
+
+
 class Trials(Event):
-    """All trials of a study so far, replacing those sent before; kinds by name tell the units."""
+    """All trials of a study so far, replacing those sent before; kinds by name tell the units.
+
+    `space` holds the ranges of the parameters that it varied, without lists of choices.
+    """
 
     job: str
     parameters: list[str]
@@ -878,6 +899,8 @@ class Trials(Event):
     directions: list[str]
     kinds: dict[str, str]
     trials: list[Trial]
+    constraints: list[Bound] = field(default_factory=list)
+    space: dict[str, TriedRange] = field(default_factory=dict)
 
 
 class Generation(Event):

@@ -109,6 +109,7 @@ def trials_event(job: str, result: StudyResult) -> events.Trials:
     front = {trial.number for trial in result.pareto_front} if result.ranking else set()
     kinds = dict(result.kinds)
     kinds |= {name: METRICS[each.metric].kind for name, each in result.objectives.items()}
+    kinds |= {name: METRICS[each.metric].kind for name, each in result.constraints.items()}
     return events.Trials(
         job=job,
         parameters=list(result.parameters),
@@ -116,4 +117,15 @@ def trials_event(job: str, result: StudyResult) -> events.Trials:
         directions=[each.direction for each in result.objectives.values()],
         kinds=kinds,
         trials=[trial_event(job, trial, front=trial.number in front) for trial in result.trials],
+        constraints=[
+            events.Bound(name=name, metric=each.metric, min=each.min, max=each.max)
+            for name, each in result.constraints.items()
+        ],
+        space={
+            name: events.TriedRange(
+                low=domain.low, high=domain.high, step=domain.step, log=domain.log
+            )
+            for name, domain in result.space.items()
+            if isinstance(domain, Range)
+        },
     )

@@ -18,6 +18,7 @@ from voxsoft._folders import folder_name
 from voxsoft.design import Design
 from voxsoft.design.contact import BODY
 from voxsoft.design.document.resolution import Document as PlainDocument
+from voxsoft.design.features import feature_changes
 from voxsoft.errors import DesignError, FileError, MeasurementError, StudyError, VoxSoftError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.cards import card_name, load_card_file, save_card
@@ -289,6 +290,14 @@ class Session:
             file = Path(file.name)
         changes, _ = added(document, file.as_posix(), command.beyond)
         self._change(document, changes)
+
+    @_execute.register
+    def _on_add_feature(self, command: commands.AddFeature, tab: Tab) -> None:
+        self._author = tab
+        if self.document.source is None:
+            raise DesignError("design", "is not TOML", "fix the underlined errors")
+        _, changes = feature_changes(self.document.source, command.name, command.at)
+        self._change(self.document, changes)
 
     @_execute.register
     def _on_sync(self, command: commands.Sync, tab: Tab) -> None:

@@ -12,7 +12,7 @@ import { Goals } from "../design/Goals";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
 import { jobsOf, useJob, useStudy } from "./current";
-import { changeRange, toggleSweep, useStudyDraft } from "./draft";
+import { changeDraft, changeRange, toggleSweep, useStudyDraft } from "./draft";
 import { type Choice, choices, countOf, gridSize, obstacle, samplerOf, studySpec } from "./setup";
 import { useStart } from "./useStart";
 import "../design/design.css";
@@ -47,7 +47,8 @@ export default function StudyPane() {
   const form = useFormOfDocument();
   const job = useJob("study");
   const { start, starting } = useStart("study");
-  const past = useStudy()?.id ?? null;
+  const shown = useStudy();
+  const past = shown?.id ?? null;
   if (!document || !form) {
     return (
       <Empty title="No design to vary">
@@ -55,7 +56,7 @@ export default function StudyPane() {
       </Empty>
     );
   }
-  const all = choices(document.parameters, draft);
+  const all = choices(document.parameters, draft, shown?.study.space);
   const chosen = all.filter((one) => one.on);
   const objectives = Object.keys((form.source.objectives as object | undefined) ?? {}).length;
   const trouble = document.valid
@@ -90,7 +91,7 @@ export default function StudyPane() {
             label: one.name,
             disabled: one.single_objective && objectives > 1,
           }))}
-          onChange={(sampler) => useStudyDraft.setState({ sampler })}
+          onChange={(sampler) => changeDraft(() => ({ sampler }))}
         />
         <p className="sampler-note muted">{samplers.find((one) => one.name === sampler)?.title}</p>
         {sampler === "grid" ? (
@@ -106,7 +107,7 @@ export default function StudyPane() {
             min={1}
             max={100_000}
             step={1}
-            onChange={(budget) => useStudyDraft.setState({ budget: Math.round(budget) })}
+            onChange={(budget) => changeDraft(() => ({ budget: Math.round(budget) }))}
           />
         )}
         <Select
@@ -121,7 +122,7 @@ export default function StudyPane() {
             })),
           ]}
           onChange={(workers) =>
-            useStudyDraft.setState({ workers: workers === "" ? null : Number(workers) })
+            changeDraft(() => ({ workers: workers === "" ? null : Number(workers) }))
           }
         />
         <NumberField
@@ -130,13 +131,13 @@ export default function StudyPane() {
           value={draft.seed}
           min={0}
           step={1}
-          onChange={(seed) => useStudyDraft.setState({ seed: Math.round(seed) })}
+          onChange={(seed) => changeDraft(() => ({ seed: Math.round(seed) }))}
         />
         <TextField
           label="Name"
           value={draft.name}
           onCommit={(name) => {
-            useStudyDraft.setState({ name });
+            changeDraft(() => ({ name }));
             return null;
           }}
         />

@@ -1,5 +1,5 @@
 import type { TrialEvent } from "../../protocol";
-import { type Axis, textOn, valueOn } from "./trials";
+import { type Axis, reasonOf, textOn, valueOn } from "./trials";
 
 const MOST = 8;
 
@@ -12,7 +12,7 @@ export function TrialTip(props: { trial: TrialEvent; axes: readonly Axis[] }) {
       <strong>Design {trial.index}</strong>
       {trial.status !== "ok" && <span className="bad"> {trial.status}</span>}
       {trial.status === "ok" && !trial.feasible && (
-        <span className="bad"> breaks a constraint</span>
+        <span className="bad"> not allowed: {reasonOf(trial, props.axes)}</span>
       )}
       <dl>
         {shown.map((axis) => (

@@ -9,7 +9,18 @@ import type { TrialEvent } from "../../protocol";
 import { type CurrentStudy, useStudy } from "./current";
 import { NoStudy } from "./NoStudy";
 import { choose, comparePinned, hover, pin, useSelection } from "./selection";
-import { bestFirst, matchesFilter, textOn, trialsText, valueOn, within } from "./trials";
+import {
+  type Axis,
+  bestFirst,
+  brokenBy,
+  matchesFilter,
+  rangeText,
+  reasonOf,
+  textOn,
+  trialsText,
+  valueOn,
+  within,
+} from "./trials";
 import "./study.css";
 
 export default function TrialsPane() {
@@ -63,15 +74,18 @@ function Trials(props: { current: CurrentStudy }) {
       {
         key: "status",
         title: "Status",
-        cell: (trial) => <Status trial={trial} best={front.has(trial.index)} />,
+        cell: (trial) => <Status trial={trial} axes={axes} best={front.has(trial.index)} />,
         sort: (trial) => trial.status,
       },
       ...shown.map(
         (axis): Column<TrialEvent> => ({
           key: axis.key,
-          title: axis.role === "parameter" ? axis.name : <b>{axis.name}</b>,
+          title: <Title axis={axis} />,
           right: axis.choices === null,
-          cell: (trial) => textOn(valueOn(trial, axis), axis, 4),
+          cell: (trial) => {
+            const text = textOn(valueOn(trial, axis), axis, 4);
+            return brokenBy(trial, [axis]).length > 0 ? <span className="bad">{text}</span> : text;
+          },
           sort: (trial) => {
             const value = valueOn(trial, axis);
             return Number.isFinite(value) ? value : null;
@@ -90,7 +104,7 @@ function Trials(props: { current: CurrentStudy }) {
         title: "Note",
         cell: (trial) => (
           <span className="reason muted" title={trial.message}>
-            {trial.message}
+            {reasonOf(trial, axes) || trial.message}
           </span>
         ),
       },
@@ -149,8 +163,18 @@ function Trials(props: { current: CurrentStudy }) {
   );
 }
 
-function Status(props: { trial: TrialEvent; best: boolean }) {
-  const { trial } = props;
+function Title({ axis }: { axis: Axis }) {
+  if (axis.role === "parameter") return axis.name;
+  if (!axis.allowed) return <b>{axis.name}</b>;
+  return (
+    <>
+      <b>{axis.name}</b> <span className="muted">{rangeText(axis, axis.allowed)}</span>
+    </>
+  );
+}
+
+function Status(props: { trial: TrialEvent; axes: readonly Axis[]; best: boolean }) {
+  const { trial, axes } = props;
   if (trial.status !== "ok") {
     return (
       <span className="badge bad" title={trial.message}>
@@ -158,6 +182,12 @@ function Status(props: { trial: TrialEvent; best: boolean }) {
       </span>
     );
   }
-  if (!trial.feasible) return <span className="badge warn">not allowed</span>;
+  if (!trial.feasible) {
+    return (
+      <span className="badge warn" title={reasonOf(trial, axes)}>
+        not allowed
+      </span>
+    );
+  }
   return props.best ? <span className="badge good">best</span> : <span className="muted">ok</span>;
 }

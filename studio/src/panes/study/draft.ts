@@ -1,5 +1,8 @@
-// The study that is being set up; kept in this page until it is started.
+// Studies that are being set up, one for each document; kept between visits.
 import { create } from "zustand";
+import type { DocumentEvent } from "../../protocol";
+import { keepAs, kept } from "../../store/page";
+import { useStudio } from "../../store/studio";
 
 export interface Sweep {
   readonly low: number;
@@ -21,7 +24,10 @@ export interface StudyDraft {
   readonly ranges: Readonly<Record<string, Partial<Sweep>>>;
 }
 
-export const useStudyDraft = create<StudyDraft>(() => ({
+/** Drafts by document, the one that was changed last at the end. */
+type Drafts = Readonly<Record<string, StudyDraft>>;
+
+const NEW: StudyDraft = {
   name: "",
   sampler: null,
   budget: 60,
@@ -29,14 +35,41 @@ export const useStudyDraft = create<StudyDraft>(() => ({
   seed: 0,
   chosen: {},
   ranges: {},
-}));
+};
+const KEY = "voxsoft.studies";
+/** Documents whose drafts are kept. */
+const MOST = 30;
+
+const useDrafts = create<{ drafts: Drafts }>(() => ({ drafts: kept<Drafts>(KEY) as Drafts }));
+
+/** Name of a document among the drafts: its file, or its title where it has none yet. */
+function keyOf(document: DocumentEvent | null): string {
+  return document?.path ?? document?.name ?? "";
+}
+
+/** The draft of the open document. */
+export function useStudyDraft(): StudyDraft {
+  const key = useStudio((state) => keyOf(state.document));
+  return useDrafts(({ drafts }) => drafts[key]) ?? NEW;
+}
+
+/** Change the draft of the open document. */
+export function changeDraft(change: (draft: StudyDraft) => Partial<StudyDraft>): void {
+  const key = keyOf(useStudio.getState().document);
+  const { [key]: before, ...others } = useDrafts.getState().drafts;
+  const draft = before ?? NEW;
+  const all = Object.entries({ ...others, [key]: { ...draft, ...change(draft) } });
+  const drafts = Object.fromEntries(all.slice(-MOST));
+  useDrafts.setState({ drafts });
+  keepAs(KEY, drafts);
+}
 
 export function toggleSweep(parameter: string, on: boolean): void {
-  useStudyDraft.setState((draft) => ({ chosen: { ...draft.chosen, [parameter]: on } }));
+  changeDraft((draft) => ({ chosen: { ...draft.chosen, [parameter]: on } }));
 }
 
 export function changeRange(parameter: string, change: Partial<Sweep>): void {
-  useStudyDraft.setState((draft) => ({
+  changeDraft((draft) => ({
     ranges: { ...draft.ranges, [parameter]: { ...draft.ranges[parameter], ...change } },
   }));
 }

@@ -1,5 +1,5 @@
 // Conversion of the pane's choices to the study command.
-import type { Parameter, Sampler, SpaceRange, StudySpec } from "../../protocol";
+import type { Parameter, Sampler, SpaceRange, StudySpec, TriedRange } from "../../protocol";
 import type { StudyDraft, Sweep } from "./draft";
 
 /** A parameter that a study may vary, as it is set up now. */
@@ -22,16 +22,29 @@ function usualSweep(parameter: Parameter): Sweep {
   };
 }
 
-/** All parameters with a value of their own; those with a range are on unless switched off. */
-export function choices(parameters: readonly Parameter[], draft: StudyDraft): Choice[] {
+/**
+ * All parameters with a value of their own, with the ranges that were given by hand, else those of
+ * the shown study if it varied parameters of this design, else the usual ones. Those of the study,
+ * or with a range where there is none, are on unless switched off.
+ */
+export function choices(
+  parameters: readonly Parameter[],
+  draft: StudyDraft,
+  tried: Readonly<Record<string, TriedRange>> = {},
+): Choice[] {
+  const names = new Set(parameters.map(({ name }) => name));
+  const varied = Object.keys(tried);
+  const known = varied.length > 0 && varied.every((name) => names.has(name));
   return parameters
     .filter((parameter) => !parameter.formula)
     .map((parameter) => {
-      const sweep = { ...usualSweep(parameter), ...draft.ranges[parameter.name] };
+      const { name } = parameter;
+      const before = known ? tried[name] : undefined;
+      const sweep = { ...usualSweep(parameter), ...before, ...draft.ranges[name] };
       const ranged = parameter.min !== null && parameter.max !== null;
       return {
         parameter,
-        on: draft.chosen[parameter.name] ?? ranged,
+        on: draft.chosen[name] ?? (known ? before !== undefined : ranged),
         sweep,
         problem: problemOf(sweep),
       };

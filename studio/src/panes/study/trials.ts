@@ -8,21 +8,24 @@ import type { TrialEvent, TrialsEvent } from "../../protocol";
 export interface Axis {
   readonly key: string;
   readonly name: string;
-  readonly role: "parameter" | "objective" | "metric";
+  readonly role: "parameter" | "objective" | "constraint" | "metric";
   readonly kind: string;
   /** The values of a parameter that is no number, in order. */
   readonly choices: readonly string[] | null;
+  /** Smallest and largest allowed value of a constraint; infinite where open. */
+  readonly allowed?: readonly [number, number];
 }
 
 export function isDone(trial: TrialEvent): boolean {
   return trial.objectives !== null && Object.values(trial.objectives).every(Number.isFinite);
 }
 
-/** Parameters, then objectives, then the other metrics of a study. */
+/** Parameters, objectives, constraints, then the other metrics of a study. */
 export function axesOf(study: TrialsEvent): Axis[] {
-  const { trials, kinds } = study;
+  const { trials, kinds, constraints } = study;
+  const asked = [...study.parameters, ...study.objectives, ...constraints.map((one) => one.name)];
   const metrics = [...new Set(trials.flatMap((trial) => Object.keys(trial.metrics)))].filter(
-    (name) => !study.objectives.includes(name) && !study.parameters.includes(name),
+    (name) => !asked.includes(name) && !isRepeated(name, study),
   );
   const axis = (role: Axis["role"], name: string): Axis => ({
     key: `${role}:${name}`,
@@ -34,8 +37,50 @@ export function axesOf(study: TrialsEvent): Axis[] {
   return [
     ...study.parameters.map((name) => axis("parameter", name)),
     ...study.objectives.map((name) => axis("objective", name)),
+    ...constraints.map((one) => ({
+      ...axis("constraint", one.name),
+      allowed: [one.min ?? -Infinity, one.max ?? Infinity] as const,
+    })),
     ...metrics.map((name) => axis("metric", name)),
   ];
+}
+
+/** Check if a metric has the values of a constraint of that metric in all trials. */
+function isRepeated(name: string, { trials, constraints }: TrialsEvent): boolean {
+  return constraints.some(
+    (one) =>
+      one.metric === name && trials.every(({ metrics }) => metrics[name] === metrics[one.name]),
+  );
+}
+
+/** Constraints that a trial with a result breaks. */
+export function brokenBy(trial: TrialEvent, axes: readonly Axis[]): Axis[] {
+  if (!isDone(trial)) return [];
+  return axes.filter((axis) => {
+    if (!axis.allowed) return false;
+    const [low, high] = axis.allowed;
+    const value = valueOn(trial, axis);
+    return !(value >= low && value <= high);
+  });
+}
+
+/** Range of a quantity in words, such as "at most 90 g". */
+export function rangeText(axis: Axis, [low, high]: readonly [number, number]): string {
+  const [least, most] = [textOn(low, axis, 3), textOn(high, axis, 3)];
+  if (low === -Infinity && high === Infinity) return "any";
+  if (low === -Infinity) return `at most ${most}`;
+  if (high === Infinity) return `at least ${least}`;
+  return `${least} to ${most}`;
+}
+
+/** Reason why a trial is not allowed, such as "limit is 120 g, at most 90 g"; empty for others. */
+export function reasonOf(trial: TrialEvent, axes: readonly Axis[]): string {
+  return brokenBy(trial, axes)
+    .map((axis) => {
+      const value = textOn(valueOn(trial, axis), axis, 4);
+      return `${axis.name} is ${value}, ${rangeText(axis, axis.allowed ?? [-Infinity, Infinity])}`;
+    })
+    .join("; ");
 }
 
 function wordsOf(trials: readonly TrialEvent[], name: string): readonly string[] | null {

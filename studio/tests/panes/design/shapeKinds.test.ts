@@ -1,12 +1,12 @@
 import { expect, it } from "vitest";
 import { firstFound, foundGroups, SHAPE_GROUPS } from "../../../src/panes/design/shapes/shapeKinds";
-import { SHAPE_KINDS } from "../../../src/protocol";
+import { FEATURES, SHAPE_KINDS } from "../../../src/protocol";
 
 const all = SHAPE_GROUPS.flatMap((group) => group.kinds);
 const about = (kind: string) => (kind === "tube" ? "A cylinder with a hole along its axis." : "");
 
-it("has every kind of the schema in one group", () => {
-  expect([...all].sort()).toEqual([...SHAPE_KINDS].sort());
+it("has every kind of the schema, and every feature, in one group", () => {
+  expect([...all].sort()).toEqual([...SHAPE_KINDS, ...Object.keys(FEATURES)].sort());
 });
 
 it("finds kinds by name, by group and by description", () => {

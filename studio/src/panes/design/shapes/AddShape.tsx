@@ -3,16 +3,24 @@
 import { useRef } from "react";
 import { MESHES } from "../../../protocol";
 import { sendFile } from "../../../shell/DropZone";
+import { send } from "../../../store/session";
 import type { Schema } from "../fields/schema";
 import { ShapeIcon } from "./ShapeIcon";
 import { ShapePicker } from "./ShapePicker";
-import type { ShapeKind } from "./shapeKinds";
+import { type Addable, isFeature } from "./shapeKinds";
 import { type Spot, shapeStarter } from "./shapeStarters";
 
 type Table = Readonly<Record<string, unknown>>;
 
-/** Shapes with which most robots begin. */
-const STARTS: readonly ShapeKind[] = ["box", "cylinder", "sphere"];
+/** Shapes and features with which most robots begin. */
+const STARTS: readonly Addable[] = [
+  "box",
+  "cylinder",
+  "sphere",
+  "bellows",
+  "finger",
+  "chamber-row",
+];
 
 interface Props {
   /** Place of the new shape. */
@@ -32,7 +40,7 @@ export function AddShape(props: Props & { variants: Readonly<Record<string, Sche
         variants={props.variants}
         onChoose={(kind) => {
           if (kind === "mesh") file.current?.click();
-          else props.onAdd(shapeStarter(kind, props.spot));
+          else begin(kind, props);
         }}
       />
       <input
@@ -52,11 +60,20 @@ export function AddShape(props: Props & { variants: Readonly<Record<string, Sche
   );
 }
 
+/** Add a shape, or a ready feature, at the place of new shapes. */
+function begin(kind: Addable, { spot, onAdd }: Props): void {
+  if (isFeature(kind)) send({ t: "add_feature", name: kind, at: spot.middle });
+  else onAdd(shapeStarter(kind, spot));
+}
+
 /** First shapes of most robots, one press away, where there is no shape yet. */
 export function FirstShapes(props: Props) {
   return (
     <>
-      <p className="muted">None yet. Add a box or a cylinder, then cut, join or repeat it.</p>
+      <p className="muted">
+        None yet. Add a box or a cylinder, then cut, join or repeat it; or begin with a finished
+        feature and change its numbers.
+      </p>
       <div className="shape-starts">
         {STARTS.map((kind) => (
           <button
@@ -64,7 +81,7 @@ export function FirstShapes(props: Props) {
             type="button"
             className="shape-tile"
             data-testid={`start-${kind}`}
-            onClick={() => props.onAdd(shapeStarter(kind, props.spot))}
+            onClick={() => begin(kind, props)}
           >
             <ShapeIcon kind={kind} />
             <span>{kind}</span>

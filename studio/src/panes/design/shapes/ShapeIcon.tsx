@@ -1,5 +1,5 @@
 // A sign for each kind of shape on a grid of 24 pixels: lines, and filled areas.
-import type { ShapeKind } from "./shapeKinds";
+import type { Addable } from "./shapeKinds";
 
 const ball = (x: number, y: number, r: number) =>
   `M${x} ${y - r}a${r} ${r} 0 1 0 0 ${2 * r} ${r} ${r} 0 0 0 0-${2 * r}`;
@@ -15,7 +15,14 @@ const JOINED = "M12 6.800a6 6 0 1 0 0 10.400 6 6 0 1 0 0-10.400z";
 const CRESCENT = "M12 6.800a6 6 0 1 0 0 10.400 6 6 0 0 1 0-10.400z";
 const LENS = "M12 6.800a6 6 0 0 1 0 10.400 6 6 0 0 1 0-10.400z";
 
-const ICONS: Readonly<Record<ShapeKind, readonly [lines: string, filled?: string]>> = {
+const ICONS: Readonly<Record<Addable, readonly [lines: string, filled?: string]>> = {
+  bellows: ["M8 4h8M8 20h8M8 4 4.500 8 8 12l-3.500 4L8 20M16 4l3.500 4-3.500 4 3.500 4-3.500 4"],
+  fold: ["M8 4 4.500 12 8 20M16 4l3.500 8-3.500 8M8 4h8M8 20h8"],
+  finger: ["M3 8h13a4 4 0 0 1 0 8H3zM5.500 10.500h9.500v2H5.500z", "M5.500 10.500h9.500v2H5.500z"],
+  "chamber-row": [
+    "M3 18v-11h4.500v7h2v-7H14v7h2v-7h5v11z",
+    "M4.500 9h1.500v5H4.500zM11 9h1.500v5H11zM17.500 9h2v5h-2z",
+  ],
   box: ["M4 8l8-4 8 4v8l-8 4-8-4zM4 8l8 4 8-4M12 12v8", "M4 8l8-4 8 4-8 4z"],
   "rounded-box": [
     "M5.500 7.200 10.600 4.600a3 3 0 0 1 2.800 0l5.100 2.600a2.700 2.700 0 0 1 1.500 2.400v5a2.700 2.700 0 0 1-1.500 2.400l-5.100 2.600a3 3 0 0 1-2.800 0l-5.100-2.600A2.700 2.700 0 0 1 4 14.600v-5a2.700 2.700 0 0 1 1.500-2.400M5 8.500l5.600 2.700a3 3 0 0 0 2.800 0L19 8.500M12 12v7.500",
@@ -112,7 +119,7 @@ const ICONS: Readonly<Record<ShapeKind, readonly [lines: string, filled?: string
   ],
 };
 
-export function ShapeIcon(props: { kind: ShapeKind }) {
+export function ShapeIcon(props: { kind: Addable }) {
   const [lines, filled] = ICONS[props.kind];
   return (
     <svg className="shape-icon" viewBox="0 0 24 24" width="24" height="24" aria-hidden="true">

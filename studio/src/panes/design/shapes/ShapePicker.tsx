@@ -3,10 +3,11 @@ import { type KeyboardEvent, useEffect, useId, useRef, useState } from "react";
 import { createPortal } from "react-dom";
 import { useAway } from "../../../controls/away";
 import { Button } from "../../../controls/Choice";
+import { FEATURES } from "../../../protocol";
 import { Glyph } from "../fields/Glyph";
 import { type Schema, summary } from "../fields/schema";
 import { ShapeIcon } from "./ShapeIcon";
-import { firstFound, foundGroups, SHAPE_GROUPS, type ShapeKind } from "./shapeKinds";
+import { type Addable, firstFound, foundGroups, isFeature, SHAPE_GROUPS } from "./shapeKinds";
 import "./shapePicker.css";
 
 /** Gap between the list and its button, and the edges of the page, pixels. */
@@ -17,7 +18,7 @@ const LEAST_HEIGHT = 320;
 interface Props {
   /** The schema of each kind. */
   variants: Readonly<Record<string, Schema>>;
-  onChoose(kind: ShapeKind): void;
+  onChoose(kind: Addable): void;
 }
 
 export function ShapePicker(props: Props) {
@@ -59,13 +60,14 @@ function Kinds(props: Props & { opener: HTMLElement; onClose(refocus: boolean): 
   const list = useRef<HTMLDivElement>(null);
   const id = useId();
   const [search, setSearch] = useState("");
-  const [chosen, choose] = useState<ShapeKind>("box");
+  const [chosen, choose] = useState<Addable>("box");
   useAway(box, true, (by) => props.onClose(by === "escape"), props.opener);
-  const about = (kind: ShapeKind) => summary(props.variants[kind] ?? {});
+  const about = (kind: Addable) =>
+    isFeature(kind) ? FEATURES[kind] : summary(props.variants[kind] ?? {});
   const groups = foundGroups(search, SHAPE_GROUPS, about);
   const kinds = groups.flatMap((group) => group.kinds);
   const active = kinds.includes(chosen) ? chosen : kinds[0];
-  const optionOf = (kind: ShapeKind) => `${id}-${kind}`;
+  const optionOf = (kind: Addable) => `${id}-${kind}`;
 
   useEffect(() => {
     if (active) document.getElementById(optionOf(active))?.scrollIntoView({ block: "nearest" });
@@ -76,7 +78,7 @@ function Kinds(props: Props & { opener: HTMLElement; onClose(refocus: boolean): 
     else if (event.key === "Tab") props.onClose(true);
     else if (event.key.startsWith("Arrow") && active) {
       const next = neighbor(list.current, optionOf(active), event.key);
-      if (next) choose(next.dataset.kind as ShapeKind);
+      if (next) choose(next.dataset.kind as Addable);
     } else {
       event.stopPropagation(); // the page has other uses for letters
       return;

@@ -1,15 +1,27 @@
 // The kinds of shapes in groups, as the picker shows them.
-import type { SHAPE_KINDS } from "../../../protocol";
+import { FEATURES, type SHAPE_KINDS } from "../../../protocol";
 
 export type ShapeKind = (typeof SHAPE_KINDS)[number];
 
-export interface ShapeGroup {
-  readonly title: string;
-  readonly kinds: readonly ShapeKind[];
+/** A ready feature: several shapes with parameters. */
+export type FeatureName = keyof typeof FEATURES;
+export const FEATURE_NAMES = Object.keys(FEATURES) as FeatureName[];
+
+export function isFeature(name: string): name is FeatureName {
+  return name in FEATURES;
 }
 
-/** Every kind stands in one group. */
+/** Choices of the picker. */
+export type Addable = ShapeKind | FeatureName;
+
+export interface ShapeGroup {
+  readonly title: string;
+  readonly kinds: readonly Addable[];
+}
+
+/** Every kind stands in one group; those that most robots begin with come first. */
 export const SHAPE_GROUPS: readonly ShapeGroup[] = [
+  { title: "Ready features", kinds: FEATURE_NAMES },
   {
     title: "Solids",
     kinds: [
@@ -39,7 +51,7 @@ export const SHAPE_GROUPS: readonly ShapeGroup[] = [
 export function foundGroups(
   search: string,
   groups: readonly ShapeGroup[],
-  about: (kind: ShapeKind) => string,
+  about: (kind: Addable) => string,
 ): readonly ShapeGroup[] {
   const words = search.toLowerCase().split(/\s+/).filter(Boolean);
   const holds = (text: string) => words.every((word) => text.toLowerCase().includes(word));
@@ -52,7 +64,7 @@ export function foundGroups(
 }
 
 /** Which of the kinds that were found is chosen first: the one whose name begins as the search does. */
-export function firstFound(search: string, kinds: readonly ShapeKind[]): number {
+export function firstFound(search: string, kinds: readonly Addable[]): number {
   const wanted = search.trim().toLowerCase();
   const begins = kinds.findIndex((kind) => wanted !== "" && kind.startsWith(wanted));
   const named = kinds.findIndex((kind) => wanted !== "" && kind.includes(wanted));

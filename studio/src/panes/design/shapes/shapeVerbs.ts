@@ -135,15 +135,15 @@ export function shapeVerbs(
       label: `Mirror in ${axis} = 0, keeping it`,
       changes: become({ kind: "mirror", of: whole, normal: axis, keep: true }),
     })),
-    {
-      label: "Repeat along x",
+    ...(["x", "y", "z"] as const).map((axis, along) => ({
+      label: `Repeat along ${axis}`,
       changes: become({
         kind: "array",
         of: whole,
-        count: [3, 1, 1],
-        spacing: [written(1.5 * size[0]), "0 mm", "0 mm"],
+        count: size.map((_, i) => (i === along ? 3 : 1)),
+        spacing: size.map((side, i) => (i === along ? written(1.5 * side) : "0 mm")),
       }),
-    },
+    })),
     {
       label: "Repeat around z",
       changes: become({ kind: "polar-array", of: whole, count: 3 }),

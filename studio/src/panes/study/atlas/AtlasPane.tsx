@@ -74,7 +74,9 @@ function Atlas(props: { current: CurrentStudy }) {
     value: objective && isDone(trial) ? textOn(valueOn(trial, objective), objective, 3) : "",
     color: colors.color(trial),
     best: trial.index === best[0]?.index && isDone(trial),
-    dimmed: brushed && !(isDone(trial) && within(trial, axes, brushes)),
+    dimmed:
+      (isDone(trial) && !trial.feasible) ||
+      (brushed && !(isDone(trial) && within(trial, axes, brushes))),
     selected: trial.index === selected,
     pinned: pinned.includes(trial.index),
     hovered: trial.index === hovered,
@@ -210,6 +212,14 @@ function TrialMap(props: TrialMapProps) {
             toX={map.toX}
             toY={map.toY}
           />
+          {map.places
+            .filter((place) => place.x !== place.atX)
+            .map(({ trial, x, y, atX }) => (
+              <g key={trial.index} className="atlas-leader">
+                <line x1={atX} y1={y} x2={x} y2={y} />
+                <circle cx={atX} cy={y} r={2.5} />
+              </g>
+            ))}
         </svg>
       )}
       {ready &&

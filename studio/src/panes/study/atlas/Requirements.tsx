@@ -4,7 +4,7 @@ import { RangeSlider } from "../../../controls/RangeSlider";
 import type { TrialEvent } from "../../../protocol";
 import { Icon } from "../../../shell/icons";
 import { brush, useSelection } from "../selection";
-import { type Axis, isDone, textOn, valueOn } from "../trials";
+import { type Axis, isDone, rangeText, textOn, valueOn } from "../trials";
 
 const OPEN: readonly [number, number] = [-Infinity, Infinity];
 
@@ -38,10 +38,14 @@ export function Requirements(props: {
           <div key={axis.key} className="requirement" data-testid={`requirement-${axis.name}`}>
             <span className="requirement-name">{axis.name.replaceAll("_", " ")}</span>
             <span className="muted">{rangeText(axis, range)}</span>
+            {axis.allowed && (
+              <span className="requirement-allowed">allowed: {rangeText(axis, axis.allowed)}</span>
+            )}
             <RangeSlider
               label={axis.name}
               values={values}
               range={range}
+              {...(axis.allowed ? { allowed: axis.allowed } : {})}
               text={(value) => textOn(value, axis, 3)}
               onChange={(next) => brush(axis.key, next)}
             />
@@ -50,13 +54,4 @@ export function Requirements(props: {
       })}
     </aside>
   );
-}
-
-/** Required range of a quantity, in words. */
-export function rangeText(axis: Axis, [low, high]: readonly [number, number]): string {
-  const [least, most] = [textOn(low, axis, 3), textOn(high, axis, 3)];
-  if (low === -Infinity && high === Infinity) return "any";
-  if (low === -Infinity) return `at most ${most}`;
-  if (high === Infinity) return `at least ${least}`;
-  return `${least} to ${most}`;
 }

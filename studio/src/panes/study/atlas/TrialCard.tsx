@@ -3,7 +3,7 @@ import { Icon } from "../../../shell/icons";
 import { useStudio } from "../../../store/studio";
 import type { CurrentStudy } from "../current";
 import { choose, pin, select, take, useSelection } from "../selection";
-import { isDone, textOn, valueOn } from "../trials";
+import { isDone, reasonOf, textOn, valueOn } from "../trials";
 
 /** The chosen trial in a line, and actions with it. */
 export function TrialCard(props: { current: CurrentStudy }) {
@@ -21,7 +21,11 @@ export function TrialCard(props: { current: CurrentStudy }) {
       <div className="trial-facts">
         <strong>Design {trial.index}</strong>
         {!isDone(trial) && <span className="badge bad">{trial.status}</span>}
-        {isDone(trial) && !trial.feasible && <span className="badge warn">not allowed</span>}
+        {isDone(trial) && !trial.feasible && (
+          <>
+            <span className="badge warn">not allowed</span> {reasonOf(trial, axes)}
+          </>
+        )}
         {shown.map((axis) => (
           <span key={axis.key}>
             <span className="muted">{axis.name}</span> {textOn(valueOn(trial, axis), axis)}

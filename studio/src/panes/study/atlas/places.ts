@@ -8,6 +8,8 @@ export interface Place {
   /** Middle of the picture, pixels. */
   readonly x: number;
   readonly y: number;
+  /** Place of its values along x, pixels, from which a picture may have moved aside. */
+  readonly atX: number;
 }
 
 export interface Map2 {
@@ -58,6 +60,7 @@ export function placed(trials: readonly TrialEvent[], x: Axis, y: Axis, box: Box
     return {
       trial,
       x: Number.isFinite(atX) ? toX(atX) : box.left,
+      atX: Number.isFinite(atX) ? toX(atX) : box.left,
       y: Number.isFinite(atY) ? toY(atY) : box.bottom,
     };
   });
