@@ -3,7 +3,7 @@
 import time
 
 #: Seconds after which a missing event never comes, however busy the machine is.
-PATIENCE = 60.0
+PATIENCE = 120.0
 #: Seconds between two looks.
 _BETWEEN = 0.01
 

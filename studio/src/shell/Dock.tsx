@@ -150,6 +150,7 @@ export function Dock() {
     save();
     shown.current = mode;
     fill(dock, mode);
+    document.documentElement.dataset.layout = mode;
   }, [mode, save]);
 
   return (

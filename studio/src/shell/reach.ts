@@ -22,7 +22,8 @@ function appears(selector: string): Promise<HTMLElement | null> {
     };
     const watch = new MutationObserver(() => find() && end());
     const timer = setTimeout(end, PATIENCE);
-    watch.observe(document.body, { childList: true, subtree: true });
+    const root = document.documentElement;
+    watch.observe(root, { childList: true, subtree: true, attributeFilter: ["data-layout"] });
   });
 }
 
@@ -42,7 +43,11 @@ interface Goal {
 }
 
 async function reach(goal: Goal, show: (pane: string) => void): Promise<void> {
-  if (goal.mode && usePage.getState().mode !== goal.mode) setMode(goal.mode);
+  if (goal.mode && usePage.getState().mode !== goal.mode) {
+    setMode(goal.mode);
+    // A pane that is shown before belongs to the layout of the mode that is left.
+    if (!(await appears(`html[data-layout=${goal.mode}]`))) return;
+  }
   show(goal.pane);
   for (const selector of goal.press) {
     const control = await appears(selector);

@@ -30,7 +30,7 @@ FLAGS = [
     "--disable-sync",
 ]
 # Generous: on two busy cores a page may take long; an event comes or it does not.
-PATIENCE = 60.0
+PATIENCE = 120.0
 
 SERVE = """
 import sys
