@@ -41,7 +41,7 @@ DROPPED = {
 # ask the system for a file, end the walk's own document and are not of it.
 OFFERED = """((kinds) => {
   const away = '[data-testid=start], [data-testid=templates], [data-testid^=template-], '
-    + '[data-testid=open], input[type=file], [data-testid=take], a[href]';
+    + '[data-testid^=robot-], [data-testid=open], input[type=file], [data-testid=take], a[href]';
   const words = /open|template|new robot|choose|browse|tutorial|restore|delete|full ?screen/i;
   const offered = [];
   for (const one of document.querySelectorAll(kinds)) {
@@ -72,6 +72,12 @@ FAULT = """(() => {
   const wide = document.documentElement.scrollWidth;
   if (wide > innerWidth) return `the page is ${wide} pixels wide in a window of ${innerWidth}`;
   return '';
+})()"""
+# Place and size of the picture, or null.
+CANVAS = """(() => {
+  const { x, y, width, height } =
+    document.querySelector('.viewport canvas')?.getBoundingClientRect() ?? { width: 0 };
+  return width > 0 ? { x, y, width, height } : null;
 })()"""
 DROP = """([name, text]) => {
   const data = new DataTransfer();
@@ -201,8 +207,7 @@ class Walk:
         self.tab.page.keyboard.press(chord)
 
     def drag(self):
-        canvas = self.tab.page.locator(".viewport canvas")
-        box = canvas.bounding_box() if canvas.count() and canvas.first.is_visible() else None
+        box = self.tab.page.evaluate(CANVAS)
         if box:
             self.say("drag in the picture")
             at = [box["x"] + box["width"] * self.random.random() for _ in range(2)]
@@ -284,7 +289,7 @@ class Walk:
         page = self.tab.page
         page.keyboard.press("Escape")
         page.keyboard.press("Escape")
-        undo = self.tab.find("undo")
+        undo = page.get_by_role("button", name="Undo (Ctrl+Z)", exact=True)
         for _ in range(2000):
             known = document_of(self.server)
             if known["text"] == self.first["text"] or not known["can_undo"]:

@@ -23,10 +23,10 @@ export function LinkLamp() {
       className={`lamp ${link.state}`}
       role="status"
       data-testid="link"
-      title={link.reason || undefined}
+      title={link.reason || text}
     >
       <i />
-      {text}
+      <span className="lamp-word">{text}</span>
       {link.state === "lost" && seconds > 1 && ` in ${seconds} s`}
     </span>
   );

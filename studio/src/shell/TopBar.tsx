@@ -91,8 +91,13 @@ export function TopBar() {
         <span>Find an action</span>
         <kbd>Ctrl K</kbd>
       </button>
-      <Button disabled={!document} testId="export" onClick={() => showPane("export")}>
-        <Icon name="export" /> Export
+      <Button
+        disabled={!document}
+        testId="export"
+        title="Export"
+        onClick={() => showPane("export")}
+      >
+        <Icon name="export" /> <span className="export-word">Export</span>
       </Button>
       <Button
         icon
