@@ -31,6 +31,7 @@ def studio(
     It listens on this machine only, and the address holds a token that no one else knows. Ctrl-C
     ends it; changes that were not saved are there at the next start.
     """
+    say("Starting the studio…")  # before its imports, which take seconds on a busy machine
     from voxsoft.studio.server.process import StudioServer
 
     def ready(address: str) -> None:

@@ -1,6 +1,8 @@
 import { Empty } from "../controls/Choice";
 import { Plot } from "../controls/Plot";
+import { formatEnergy } from "../controls/units";
 import { useStudio } from "../store/studio";
+import { isStill, LastValues } from "./LastValues";
 import { seekTo } from "./seek";
 
 const ENERGY = [
@@ -22,6 +24,19 @@ export default function EnergyPane() {
     );
   }
   const [times = [], residual = [], elastic = [], kinetic = []] = history.columns;
+  if (isStill(times)) {
+    const percents = `${Number((100 * (residual.at(-1) ?? Number.NaN)).toPrecision(2))} %`;
+    return (
+      <LastValues
+        testId="last-energies"
+        rows={[
+          ["elastic energy", formatEnergy(elastic.at(-1) ?? Number.NaN)],
+          ["kinetic energy", formatEnergy(kinetic.at(-1) ?? Number.NaN)],
+          ["out of balance, of the load", percents],
+        ]}
+      />
+    );
+  }
   const percent = residual.map((x) => (x > 0 ? 100 * x : Number.NaN));
   const milli = (column: number[]) => column.map((x) => x * 1000);
   const common = { x: { label: "time [s]" }, group: "time", mark: time, onSeek: seekTo };

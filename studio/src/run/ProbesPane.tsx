@@ -1,7 +1,8 @@
 import { Empty } from "../controls/Choice";
 import { Plot, type Series } from "../controls/Plot";
-import { factorOf, shownUnit, unitText } from "../controls/units";
+import { factorOf, formatQuantity, shownUnit, unitText } from "../controls/units";
 import { useStudio } from "../store/studio";
+import { isStill, LastValues } from "./LastValues";
 import { seekTo } from "./seek";
 
 const COLORS = [
@@ -33,6 +34,14 @@ export default function ProbesPane() {
     );
   }
   const si = history.units[FIRST_PROBE] ?? "m";
+  const [times = []] = history.columns;
+  if (isStill(times)) {
+    const last = names.map((name, i): readonly [string, string] => [
+      name,
+      formatQuantity(history.columns[FIRST_PROBE + i]?.at(-1) ?? Number.NaN, si),
+    ]);
+    return <LastValues testId="last-probes" rows={last} />;
+  }
   const unit = shownUnit(si);
   const factor = factorOf(unit);
   const series: Series[] = names.map((name, i) => ({

@@ -83,3 +83,17 @@ def test_a_section_is_open_on_the_side_of_the_eye(served, open_tab):
         other.and_(tab.page.locator(f"[aria-pressed={flipped}]")).wait_for()
     other.click()
     other.and_(tab.page.locator("[aria-pressed=false]")).wait_for()
+
+
+def test_a_body_that_was_solved_has_numbers_in_place_of_a_vertical_line(tab):
+    tab.find("rest").click()
+    tab.until("voxsoft.state === 'at-rest'")
+    values = tab.find("last-probes")
+    values.get_by_text("mm").first.wait_for()
+    assert tab.find("plot-probes").count() == 0
+    # Time that runs is plotted again.
+    tab.find("reset").click()
+    tab.find("play").click()
+    tab.find("plot-probes").wait_for()
+    tab.find("play").click()
+    assert tab.errors == []

@@ -1,4 +1,4 @@
-"""Narrow windows, as of a page at 150 %: nothing wraps out of sight, and numbers keep their units."""
+"""Narrow windows, as of a page at 150 %: nothing wraps out of sight, numbers keep units."""
 
 import pytest
 
@@ -10,7 +10,7 @@ name = "a-design-with-a-rather-long-name"
 voxel_size = "5 mm"
 
 [shapes]
-body = { kind = "box", size = ["40.25 mm", "10.75 mm", "10.5 mm"], center = ["19.95 mm", "0 mm", "-27.3 mm"] }
+body = { kind = "box", size = ["40.25 mm", "10 mm", "10 mm"], center = ["19.95 mm", 0, "-27.3 mm"] }
 
 [[parts]]
 shape = "body"
