@@ -865,18 +865,25 @@ export interface HistoryLine {
 /**
  * The document as it stands; `design` is that of the last text that was good (or null).
  *
+ * `id` tells it from other documents that were open, `hash` its present design from earlier ones.
  * `dirty`: it differs from the text opened or saved last. `folder` is where it would be saved.
- * `histories` are those of the last text that was good.
+ * `empty`: nothing is described yet, so that it is no design, and has no fault either.
+ * `before` and `after` name documents with unsaved changes that were open before and after it;
+ * undo and redo come there only where they are asked to go beyond its own changes. `histories` are
+ * those of the last text that was good.
  */
 export interface DocumentEvent {
   t: "document";
   rev: number;
+  id: string;
+  hash: string;
   text: string;
   name: string;
   path: string | null;
   folder: string;
   dirty: boolean;
   valid: boolean;
+  empty: boolean;
   parameters: Parameter[];
   design: Record<string, unknown> | null;
   source: Record<string, unknown> | null;
@@ -1494,6 +1501,19 @@ export interface JobEvent {
   directions: string[];
 }
 
+/**
+ * The design that a job is of: its name, its hash, and the document that it was started from.
+ *
+ * `document` is empty for a job of an earlier studio.
+ */
+export interface SubjectEvent {
+  t: "subject";
+  job: string;
+  document: string;
+  design: string;
+  hash: string;
+}
+
 /** A trial of a study; `objectives` is null where it has no result. */
 export interface TrialEvent {
   t: "trial";
@@ -1895,6 +1915,7 @@ export type AnyEvent =
   | PlotEvent
   | PickedEvent
   | JobEvent
+  | SubjectEvent
   | TrialEvent
   | TrialsEvent
   | GenerationEvent

@@ -84,6 +84,11 @@ export function setMode(mode: Mode): void {
   usePage.setState({ mode });
 }
 
+/** Choose the study or calibration of which the panes speak. */
+export function setJob(job: string | null): void {
+  usePage.setState({ job });
+}
+
 export function openSheet(sheet: Sheet, pending: Pending | null = null): void {
   usePage.setState({ sheet, pending });
 }

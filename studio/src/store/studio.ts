@@ -28,6 +28,7 @@ import type {
   SavedEvent,
   StartEvent,
   StatEvent,
+  SubjectEvent,
   TrialEvent,
   TrialsEvent,
   VersionDifferenceEvent,
@@ -86,6 +87,8 @@ export interface Studio {
   moments: ReadonlyMap<number, Moment>;
   picked: PickedEvent | null;
   jobs: Readonly<Record<string, JobEvent>>;
+  /** Designs of jobs, by job. */
+  subjects: Readonly<Record<string, SubjectEvent>>;
   trials: Readonly<Record<string, TrialsEvent>>;
   generations: Readonly<Record<string, readonly GenerationEvent[]>>;
   overlays: Readonly<Record<string, OverlayEvent>>;
@@ -135,6 +138,7 @@ export const useStudio = create<Studio>(() => ({
   moments: new Map(),
   picked: null,
   jobs: {},
+  subjects: {},
   trials: {},
   generations: {},
   overlays: {},
@@ -267,6 +271,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "job":
       set((state) => ({ jobs: { ...state.jobs, [event.id]: event } }));
+      break;
+    case "subject":
+      set((state) => ({ subjects: { ...state.subjects, [event.job]: event } }));
       break;
     case "trials":
       set((state) => ({ trials: { ...state.trials, [event.job]: event } }));

@@ -296,3 +296,39 @@ class TestWhatIsNotSaved:
         assert written.read_text() == opened.text
         opened.edit(["name"], "another")
         assert opened.event().name == "my-chamber.toml"
+
+
+def test_a_text_that_describes_nothing_yet_is_empty_and_no_fault(tmp_path):
+    begun = template_document("empty", tmp_path)
+    assert begun.empty
+    assert not begun.valid
+    assert begun.event().diagnostics == []
+    shapes = {"ball": {"kind": "sphere", "radius": "20 mm"}}
+    begun.edit(["shapes"], shapes, now=0.0)
+    # A shape without a part is a fault: somebody has begun.
+    assert not begun.empty
+    assert [each.where for each in begun.diagnostics] == ["parts"]
+    begun.edit(["parts", 0], {"shape": "ball", "material": "ecoflex-00-30"}, now=9.0)
+    assert begun.valid
+    assert begun.event().hash
+    begun.undo()
+    begun.undo()
+    assert begun.empty
+    assert begun.design is None
+    begun.replace(begun.text.replace("5 mm", "5"))
+    assert not begun.empty
+    assert {each.where for each in begun.diagnostics} == {"voxel_size", "parts"}
+
+
+def test_a_file_has_one_id_and_new_documents_have_others(tmp_path):
+    first, second = document(), document()
+    assert first.id != second.id
+    first.save(tmp_path / "cylinder.toml")
+    opened = DesignDocument.of_file(tmp_path / "cylinder.toml")
+    assert opened.id == DesignDocument.of_file(tmp_path / "cylinder.toml").id
+    kept = opened.id
+    opened.edit(["parameters", "radius", "value"], "20 mm")
+    assert opened.id == kept
+    assert opened.hash != first.hash
+    opened.undo()
+    assert opened.hash == first.hash

@@ -248,17 +248,24 @@ class HistoryLine(Entry):
 class Document(Event):
     """The document as it stands; `design` is that of the last text that was good (or null).
 
+    `id` tells it from other documents that were open, `hash` its present design from earlier ones.
     `dirty`: it differs from the text opened or saved last. `folder` is where it would be saved.
-    `histories` are those of the last text that was good.
+    `empty`: nothing is described yet, so that it is no design, and has no fault either.
+    `before` and `after` name documents with unsaved changes that were open before and after it;
+    undo and redo come there only where they are asked to go beyond its own changes. `histories` are
+    those of the last text that was good.
     """
 
     rev: int
+    id: str
+    hash: str
     text: str
     name: str
     path: str | None
     folder: str
     dirty: bool
     valid: bool
+    empty: bool
     parameters: list[Parameter]
     design: dict[str, Json] | None
     source: dict[str, Json] | None
@@ -854,6 +861,18 @@ class Job(Event):
     directions: list[str] = field(default_factory=list)
 
 
+class Subject(Event):
+    """The design that a job is of: its name, its hash, and the document that it was started from.
+
+    `document` is empty for a job of an earlier studio.
+    """
+
+    job: str
+    document: str
+    design: str
+    hash: str
+
+
 class Trial(Event):
     """A trial of a study; `objectives` is null where it has no result."""
 
@@ -1206,6 +1225,7 @@ AnyEvent = (
     | Plot
     | Picked
     | Job
+    | Subject
     | Trial
     | Trials
     | Generation

@@ -326,7 +326,7 @@ class Session:
         if document is self.document:
             self._changed(document.replace(text, place))
             return
-        document = DesignDocument(text, document.name, folder=document.folder)
+        document = DesignDocument(text, document.name, folder=document.folder, id=self.document.id)
         document.follow(self.document)
         # Undo leads back also to a document that is saved: this was a change of it.
         document.before, self.document.after = self.document, document
@@ -427,6 +427,7 @@ class Session:
                 run, _, number = command.name.rpartition("/")
                 folder = self.list.folder_of(run)
                 document, at_rest = trial_document(folder, number, self._home)
+                self._name_as(document, run)
                 self._open(document, stored_in(folder) if at_rest else None)
 
     @property
@@ -484,12 +485,20 @@ class Session:
         kind = kind_of(folder)
         try:
             stored = [RunState(folder)] if kind == "run" else None
-            self._open(document_at(folder, self._home), stored)
+            document = document_at(folder, self._home)
+            self._name_as(document, folder.name)
+            self._open(document, stored)
         except FileError as error:
             if kind != "calibrate":
                 raise
             # One that `voxsoft calibrate` wrote: there is still its result to be shown.
             self.tabs.publish(events.Log(level="info", text=str(error)))
+
+    def _name_as(self, document: DesignDocument, run: str) -> None:
+        """Give the design of a job the id of the document that the job was started from."""
+        job = self.jobs.known(run)
+        if job is not None and job.subject is not None and job.subject.document:
+            document.id = job.subject.document
 
     # Jobs
 
@@ -531,7 +540,7 @@ class Session:
         folder = self._free_folder(name)
         if isinstance(spec, CalibrateSpec):
             spec = spec.replace(card=card_name(folder.name))
-        self.jobs.start(spec, folder)
+        self.jobs.start(spec, folder, document.id)
         self._runs_changed()
 
     @_execute.register
@@ -656,7 +665,7 @@ class Session:
             document = document.before
         draft = None
         if document is not None:
-            draft = Draft(document.text, document.name, str(document.path or ""))
+            draft = Draft(document.text, document.name, str(document.path or ""), document.id)
         try:
             self._drafts.keep(draft, now=now)
         except VoxSoftError as error:
@@ -801,13 +810,13 @@ class Session:
             return document
         file = draft.file
         if source is None and file is None:
-            return DesignDocument(draft.text, draft.name, folder=self._home, restored=True)
+            return draft.document(self._home)
         document = document_at(source or file or Path(), self._home)
         if file is not None and file == document.path:
             if document.replace(draft.text):
                 self._notes.append("Changes that were not saved are back; undo goes to the file.")
         else:
-            unsaved = DesignDocument(draft.text, draft.name, folder=self._home, restored=True)
+            unsaved = draft.document(self._home)
             if file is not None:
                 unsaved = DesignDocument.of_file(file)
                 unsaved.replace(draft.text)

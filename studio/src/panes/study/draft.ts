@@ -1,5 +1,6 @@
-// The study that is being set up; kept in this page until it is started.
+// The study that is being set up; kept in this page until another document is open.
 import { create } from "zustand";
+import { onAnotherDocument } from "../../store/another";
 
 export interface Sweep {
   readonly low: number;
@@ -30,6 +31,9 @@ export const useStudyDraft = create<StudyDraft>(() => ({
   chosen: {},
   ranges: {},
 }));
+
+// Another design may have parameters of the same names.
+onAnotherDocument(() => useStudyDraft.setState({ name: "", chosen: {}, ranges: {} }));
 
 export function toggleSweep(parameter: string, on: boolean): void {
   useStudyDraft.setState((draft) => ({ chosen: { ...draft.chosen, [parameter]: on } }));
