@@ -1161,6 +1161,11 @@ export interface BodyEvent {
   refused: Record<string, string>;
 }
 
+/** There is no body to be shown: the document has none, or it is not there yet. */
+export interface BareEvent {
+  t: "bare";
+}
+
 /**
  * A spring that pulls: force in N on the body, distance to its target in m.
  *
@@ -1904,6 +1909,7 @@ export type AnyEvent =
   | MaterialsEvent
   | GhostsEvent
   | BodyEvent
+  | BareEvent
   | StatEvent
   | EquilibriumEvent
   | FinenessEvent

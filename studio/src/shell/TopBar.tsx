@@ -54,7 +54,7 @@ export function TopBar() {
             <strong>{document.name || "untitled"}</strong>
             {document.dirty && <span className="muted">edited</span>}
             {!document.dirty && !document.path && <span className="muted">not saved yet</span>}
-            {!document.valid && <span className="badge bad">has errors</span>}
+            {!document.valid && !document.empty && <span className="badge bad">has errors</span>}
           </>
         ) : (
           <span className="muted">no design open</span>

@@ -294,6 +294,7 @@ export function openDocument(draft: Pending): void {
 /** Open a document without asking. */
 export function openNow(draft: Pending): void {
   setView({ shape: null }); // another design may have one of the same name
+  if (draft.what === "template" && draft.name === EMPTY.name) setMode("design");
   send(draft);
 }
 

@@ -11,6 +11,8 @@ export interface Stage {
   topology(topology: Topology): void;
   frame(frame: Frame): void;
   smoothSurface(smooth: Smooth): void;
+  /** Draw no body any more. */
+  clear(): void;
 }
 
 let engine: Engine | null = null;
@@ -18,6 +20,8 @@ let stage: Stage | null = null;
 let lastTopology: Topology | null = null;
 let lastFrame: Frame | null = null;
 let lastSmooth: Smooth | null = null;
+/** True once the server has said that there is no body. */
+let bare = false;
 const sentAt = new Map<number, number>();
 const ready = new Set<() => void>();
 /** Resolvers of commands that wait until all before them are done, by their numbers. */
@@ -45,10 +49,16 @@ export function connect(chosen: Engine): void {
       if (event.t === "stat") applyStat(event);
       else if (event.t === "synced") settle(event.seq);
       else take(event);
+      if (event.t === "bare") {
+        lastTopology = lastFrame = lastSmooth = null;
+        bare = true;
+        stage?.clear();
+      }
       if (event.t === "hello") for (const callback of ready) callback();
     },
     topology(topology) {
       lastTopology = topology;
+      bare = false;
       stage?.topology(topology);
     },
     frame(frame) {
@@ -71,6 +81,7 @@ export function connect(chosen: Engine): void {
 /** Let `next` draw from now on; it gets the newest messages at once. */
 export function present(next: Stage): void {
   stage = next;
+  if (bare) next.clear();
   if (lastTopology) next.topology(lastTopology);
   if (lastSmooth) next.smoothSurface(lastSmooth);
   if (lastFrame) next.frame(lastFrame);

@@ -113,6 +113,19 @@ export interface Studio {
   history: PlotHistory;
 }
 
+/** State of the page while no body is shown. */
+const NO_BODY = {
+  body: null,
+  askedPace: undefined,
+  overlap: null,
+  equilibrium: null,
+  fineness: null,
+  vibration: null,
+  chambers: null,
+  moments: new Map<number, Moment>(),
+  picked: null,
+};
+
 const LONGEST_LOG = 500;
 const MOST_TOASTS = 4;
 
@@ -222,6 +235,12 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
         askedPace: body?.topology === event.topology ? askedPace : undefined,
         moments: body?.topology === event.topology ? moments : new Map(),
       }));
+      break;
+    case "bare":
+      set((state) => {
+        state.history.clear();
+        return { ...NO_BODY, plotted: state.plotted + 1 };
+      });
       break;
     case "stat":
       set(({ askedPace }) => ({

@@ -61,3 +61,59 @@ def test_a_path_and_its_measured_curve_stay_with_their_design(serving, tmp_path,
         assert tab.errors == []
     finally:
         server.stop()
+
+
+def test_an_empty_stage_is_empty(serving, tmp_path, open_tab, coarse):
+    server = serving(tmp_path, text=coarse)
+    try:
+        tab = open_tab(server.address)
+        tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+        tab.page.keyboard.press("r")
+        tab.find("equilibrium").wait_for()
+        tab.page.keyboard.press("Control+o")
+        tab.find("start-empty").click()
+        stage = tab.find("empty-stage")
+        stage.wait_for()
+        tab.until("voxsoft.triangles === 0")
+        assert tab.find("mode-design").get_attribute("aria-current") == "page"
+        assert tab.page.locator(".badge.bad, .faults, .cm-lintRange-error").count() == 0
+        assert tab.find("legend").count() == 0
+        assert "Nothing is here yet" in tab.find("sentence").inner_text()
+        tab.shot("empty-stage")
+        tab.find("mode-simulate").click()
+        tab.page.get_by_text("Nothing to simulate yet").wait_for()
+        assert tab.find("equilibrium").count() == 0
+        # A reload shows the same.
+        tab.page.reload()
+        stage.wait_for()
+        tab.find("mode-design").click()
+        tab.find("stage-cylinder").click()
+        tab.until("voxsoft.triangles > 0")
+        stage.wait_for(state="detached")
+        tab.find("shapes-cylinder").wait_for()
+        # Without its only shape the stage is empty again, and no old body stands on it.
+        tab.page.keyboard.press("Control+z")
+        stage.wait_for()
+        tab.until("voxsoft.triangles === 0")
+        assert tab.page.locator(".badge.bad, .faults").count() == 0
+        assert tab.errors == []
+    finally:
+        server.stop()
+
+
+def test_a_broken_design_shows_no_body_of_another(serving, tmp_path, open_tab, coarse):
+    broken = coarse.replace('shape = "body"', 'shape = "boddy"')
+    (tmp_path / "broken.toml").write_text(broken)
+    server = serving(tmp_path, text=coarse)
+    try:
+        tab = open_tab(server.address, mode="design")
+        tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+        with tab.page.expect_file_chooser() as chooser:
+            tab.page.get_by_role("button", name="Open a file…").click()
+        chooser.value.set_files(tmp_path / "broken.toml")
+        tab.page.get_by_text("No body yet").first.wait_for()
+        tab.until("voxsoft.triangles === 0")
+        assert tab.page.get_by_text("the last design that was good").count() == 0
+        tab.find("faults").wait_for()
+    finally:
+        server.stop()

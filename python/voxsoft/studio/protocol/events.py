@@ -536,6 +536,10 @@ class GrabState(Entry):
     object: int | None = None
 
 
+class Bare(Event):
+    """There is no body to be shown: the document has none, or it is not there yet."""
+
+
 class Stat(Event):
     """State of the simulation. Times in s, `step_ms` in ms for one substep, energies in J.
 
@@ -1214,6 +1218,7 @@ AnyEvent = (
     | Materials
     | Ghosts
     | Body
+    | Bare
     | Stat
     | Equilibrium
     | Fineness

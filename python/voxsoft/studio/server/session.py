@@ -146,6 +146,8 @@ class Session:
         self._fresh = source is None and self._drafts.read() is None
         self._notes: list[str] = []
         self.document = self._first_document(source)
+        #: Revision at which the document came; bodies of earlier ones are of other documents.
+        self._shown_since = self.document.rev
         if self.document.path is not None:
             self._recent.note(self.document.path)
 
@@ -314,6 +316,8 @@ class Session:
         return several_of(self.document)
 
     def _good(self, document: DesignDocument) -> tuple[PlainDocument, Design]:
+        if document.empty:
+            raise DesignError("design", "describes nothing yet", "add a shape first")
         if document.source is None or document.design is None or not document.valid:
             raise DesignError("design", "is not valid", "fix the underlined errors")
         return document.source, document.design
@@ -453,7 +457,7 @@ class Session:
         self._show(document)
 
     def _show(self, document: DesignDocument) -> None:
-        self.document = document
+        self.document, self._shown_since = document, document.rev
         self.engine.forget()
         self._announce()
 
@@ -672,12 +676,19 @@ class Session:
             self.tabs.publish(events.Log(level="warning", text=f"the draft is not kept: {error}"))
 
     def _mesh(self) -> None:
-        if self.document.valid and self.document.design is not None:
-            self._mesher.ask(self.document.design, self.document.rev)
+        """Mesh the document if it is good; of one that never was there is nothing to be shown."""
+        document = self.document
+        if document.design is None:
+            self.engine.leave()
+        elif document.valid or document.rev == self._shown_since:
+            self._mesher.ask(document.design, document.rev)
 
     # The mesher's answers, on its thread
 
     def _meshed(self, body: StudioBody) -> None:
+        with self._lock:
+            if body.rev < self._shown_since or self.document.design is None:
+                return
         # A run that came to rest is shown as it ended, not as it began.
         asked = self._loaded
         loaded = asked is not None and asked.rev == body.rev
@@ -694,8 +705,10 @@ class Session:
         self.tabs.publish(events.Log(level="error", text=text))
 
     def _not_meshed(self, rev: int, error: VoxSoftError) -> None:
-        self.engine.stay(str(error))
         with self._lock:
+            if rev < self._shown_since:
+                return
+            self.engine.stay(str(error))
             if rev == self.document.rev:
                 self.document.diagnostics = diagnostics_of(error, self.document.text)
                 self.tabs.publish(self.document.event())

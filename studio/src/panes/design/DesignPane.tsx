@@ -41,7 +41,7 @@ export default function DesignPane() {
   return (
     <div className="pane design" data-testid="design-form">
       <Gallery />
-      {document && !document.valid && <Faults />}
+      {document && !document.valid && !document.empty && <Faults />}
       {form && (
         <FormContext value={form}>
           <Parameters />
@@ -139,6 +139,7 @@ export default function DesignPane() {
 /** Errors of the text, in words; the fields below show them at their places. */
 function Faults() {
   const diagnostics = useStudio((state) => state.document?.diagnostics ?? NO_DIAGNOSTICS);
+  const wasGood = useStudio((state) => (state.document?.design ?? null) !== null);
   return (
     <div className="faults" role="alert" data-testid="faults">
       {diagnostics.slice(0, 3).map((one) => (
@@ -147,7 +148,7 @@ function Faults() {
           {one.hint && <span className="muted"> Try: {one.hint}.</span>}
         </p>
       ))}
-      <p className="muted">The view shows the last design that was good.</p>
+      {wasGood && <p className="muted">The view shows the last design that was good.</p>}
     </div>
   );
 }

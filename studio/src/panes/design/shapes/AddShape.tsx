@@ -6,13 +6,10 @@ import { sendFile } from "../../../shell/DropZone";
 import type { Schema } from "../fields/schema";
 import { ShapeIcon } from "./ShapeIcon";
 import { ShapePicker } from "./ShapePicker";
-import type { ShapeKind } from "./shapeKinds";
+import { FIRST_KINDS } from "./shapeKinds";
 import { type Spot, shapeStarter } from "./shapeStarters";
 
 type Table = Readonly<Record<string, unknown>>;
-
-/** Shapes with which most robots begin. */
-const STARTS: readonly ShapeKind[] = ["box", "cylinder", "sphere"];
 
 interface Props {
   /** Place of the new shape. */
@@ -58,7 +55,7 @@ export function FirstShapes(props: Props) {
     <>
       <p className="muted">None yet. Add a box or a cylinder, then cut, join or repeat it.</p>
       <div className="shape-starts">
-        {STARTS.map((kind) => (
+        {FIRST_KINDS.map((kind) => (
           <button
             key={kind}
             type="button"

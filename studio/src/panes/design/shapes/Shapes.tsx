@@ -11,7 +11,7 @@ import { useForm } from "../form";
 import { AddShape, FirstShapes } from "./AddShape";
 import { spotOn } from "./shapeStarters";
 import { shapeTree } from "./shapeTree";
-import { FIRST_SIDE, isMadeOf, isUsed, joined, shapeVerbs, withShape } from "./shapeVerbs";
+import { FIRST_SPOT, isMadeOf, isUsed, joined, shapeVerbs, withShape } from "./shapeVerbs";
 
 export function Shapes() {
   const { root, source, diagnostics } = useForm();
@@ -46,10 +46,7 @@ export function Shapes() {
   // A shape that moves or combines others begins with the chosen one.
   const all = Object.keys(shapes);
   const operands = [...all.filter((one) => one === chosen), ...all.filter((one) => one !== chosen)];
-  const spot =
-    room && all.length > 0
-      ? spotOn(room, voxel, operands)
-      : { side: FIRST_SIDE, middle: null, operands };
+  const spot = room && all.length > 0 ? spotOn(room, voxel, operands) : { ...FIRST_SPOT, operands };
   const add = (value: Table) => {
     const { name, changes } = withShape(value, source);
     editAll(changes);

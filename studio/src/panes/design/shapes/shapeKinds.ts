@@ -8,6 +8,9 @@ export interface ShapeGroup {
   readonly kinds: readonly ShapeKind[];
 }
 
+/** Shapes with which most robots begin. */
+export const FIRST_KINDS: readonly ShapeKind[] = ["box", "cylinder", "sphere"];
+
 /** Every kind stands in one group. */
 export const SHAPE_GROUPS: readonly ShapeGroup[] = [
   {

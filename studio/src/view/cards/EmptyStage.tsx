@@ -1,0 +1,39 @@
+import { Empty } from "../../controls/Choice";
+import { editAll } from "../../panes/design/edits";
+import { ShapeIcon } from "../../panes/design/shapes/ShapeIcon";
+import { FIRST_KINDS, type ShapeKind } from "../../panes/design/shapes/shapeKinds";
+import { shapeStarter } from "../../panes/design/shapes/shapeStarters";
+import { FIRST_SPOT, withShape } from "../../panes/design/shapes/shapeVerbs";
+import { useStudio } from "../../store/studio";
+import { setView } from "../../store/view";
+
+/** The shapes with which most robots begin, in the middle of a view that holds nothing yet. */
+export function EmptyStage() {
+  const begin = (kind: ShapeKind) => {
+    const source = useStudio.getState().document?.source ?? {};
+    const { name, changes } = withShape(shapeStarter(kind, FIRST_SPOT), source);
+    editAll(changes);
+    setView({ shape: name });
+  };
+  return (
+    <div className="no-body" data-testid="empty-stage">
+      <Empty title="Begin with a shape">
+        <div className="stage-starts">
+          {FIRST_KINDS.map((kind) => (
+            <button
+              key={kind}
+              type="button"
+              className="welcome-card stage-start"
+              data-testid={`stage-${kind}`}
+              onClick={() => begin(kind)}
+            >
+              <ShapeIcon kind={kind} />
+              <strong>{kind}</strong>
+            </button>
+          ))}
+        </div>
+        <p>The form at the left has all other kinds; a mesh or a design can be dropped anywhere.</p>
+      </Empty>
+    </div>
+  );
+}
