@@ -172,12 +172,12 @@ export interface HelloCommand {
  * Open a document: a template, a robot, a file or run folder, an upload, or a study's trial.
  *
  * A trial is named "ID/INDEX"; a run by its id in the list of runs; a start by its three answers,
- * "pressure-finger-bend".
+ * "pressure-finger-bend"; a document that was left without being saved by its id.
  */
 export interface OpenCommand {
   t: "open";
   seq: number;
-  what: "file" | "robot" | "run" | "start" | "template" | "trial" | "upload";
+  what: "file" | "robot" | "run" | "start" | "template" | "trial" | "unsaved" | "upload";
   name: string;
 }
 
@@ -189,13 +189,19 @@ export interface TextCommand {
   text: string;
 }
 
-/** Set one value of the document, keeping its comments; `null` removes the key. */
+/**
+ * Set one value of the document, keeping its comments; `null` removes the key.
+ *
+ * Edits of one place in one `stroke` of the hand, such as the drag of a slider, are undone
+ * together.
+ */
 export interface EditCommand {
   t: "edit";
   seq: number;
   rev: number;
   path: (string | number)[];
   value?: unknown;
+  stroke?: number;
 }
 
 /** A value of the document at a path; `null` removes the key. */
@@ -324,16 +330,26 @@ export interface GhostsCommand {
   names: string[];
 }
 
-/** Take back the last change of the document. */
+/**
+ * Take back the last change of the document.
+ *
+ * If it has none, `beyond` leads back to the document before it; else `edge` names that.
+ */
 export interface UndoCommand {
   t: "undo";
   seq: number;
+  beyond?: boolean;
 }
 
-/** Make the change again that was taken back last. */
+/**
+ * Make the change again that was taken back last.
+ *
+ * If there is none, `beyond` leads on to the document after this one; else `edge` names that.
+ */
 export interface RedoCommand {
   t: "redo";
   seq: number;
+  beyond?: boolean;
 }
 
 /**
@@ -785,13 +801,18 @@ export interface Way {
   sentence: string;
 }
 
-/** A design file that was opened or saved; `when` is ISO 8601, `picture` where it is drawn. */
+/**
+ * A design that was opened or saved; `when` is ISO 8601, `picture` where it is drawn.
+ *
+ * One that was left without being saved has an id in `unsaved`, and neither path nor folder.
+ */
 export interface RecentFile {
   path: string;
   name: string;
   folder: string;
   when: string;
   picture: string;
+  unsaved: string;
 }
 
 /** Content of the start screen; `fresh` while nothing was opened or changed yet. */
@@ -890,7 +911,17 @@ export interface DocumentEvent {
   diagnostics: Diagnostic[];
   can_undo: boolean;
   can_redo: boolean;
+  before: string;
+  after: string;
   histories: HistoryLine[];
+}
+
+/** Undo or redo has come to the end of the changes of a document; `beyond` is the next one. */
+export interface EdgeEvent {
+  t: "edge";
+  way: "redo" | "undo";
+  name: string;
+  beyond: string;
 }
 
 /**
@@ -1905,6 +1936,7 @@ export type AnyEvent =
   | HelloEvent
   | StartEvent
   | DocumentEvent
+  | EdgeEvent
   | DesignFilesEvent
   | MaterialsEvent
   | GhostsEvent

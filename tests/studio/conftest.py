@@ -156,9 +156,9 @@ class Studio:
     async def begin_again(self, source):
         """Be as at the start: the file, unloaded at time zero, nothing to undo. Runs stay."""
         async with self.page() as page:
-            while page.document.can_undo:
+            while page.document.can_undo or page.document.before:
                 rev = page.rev
-                await page.send("undo")
+                await page.send("undo", beyond=True)
                 await page.until("document", lambda d, rev=rev: d.rev > rev)
             if page.document.path is None:  # undo would lead back to a document without a file
                 await page.send("save", path="left.toml", overwrite=True)

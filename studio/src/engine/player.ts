@@ -102,6 +102,8 @@ export class Player {
       diagnostics: [],
       can_undo: false,
       can_redo: false,
+      before: "",
+      after: "",
       histories: [],
     });
     const { smooth = "" } = notes;

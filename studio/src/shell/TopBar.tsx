@@ -64,7 +64,7 @@ export function TopBar() {
         icon
         kind="quiet"
         label="Undo (Ctrl+Z)"
-        disabled={!document?.can_undo}
+        disabled={!document?.can_undo && !document?.before}
         onClick={() => send({ t: "undo" })}
       >
         <Icon name="undo" />
@@ -73,7 +73,7 @@ export function TopBar() {
         icon
         kind="quiet"
         label="Redo (Ctrl+Shift+Z)"
-        disabled={!document?.can_redo}
+        disabled={!document?.can_redo && !document?.after}
         onClick={() => send({ t: "redo" })}
       >
         <Icon name="redo" />

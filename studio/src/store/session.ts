@@ -1,9 +1,10 @@
 // The one engine of the page, and the way of commands to it and of events from it.
 import type { Draft, Engine } from "../engine/engine";
 import type { Frame, Smooth, Topology } from "../engine/frames";
+import type { EdgeEvent } from "../protocol";
 import { calmed } from "./calm";
 import { gathering } from "./gather";
-import { apply, applyAll, toast, useStudio } from "./studio";
+import { apply, applyAll, type Toast, toast, useStudio } from "./studio";
 import { flushText } from "./typing";
 
 /** Drawer of bodies; the viewport registers itself here. */
@@ -48,6 +49,7 @@ export function connect(chosen: Engine): void {
     event(event) {
       if (event.t === "stat") applyStat(event);
       else if (event.t === "synced") settle(event.seq);
+      else if (event.t === "edge") toast(edgeToast(event));
       else take(event);
       if (event.t === "bare") {
         lastTopology = lastFrame = lastSmooth = null;
@@ -131,6 +133,19 @@ export function send(draft: Draft): number {
 export function sinceSent(seq: number): number | null {
   const at = sentAt.get(seq);
   return at === undefined ? null : performance.now() - at;
+}
+
+/** Undo and redo end with the document; only a press of its own leads to the next one. */
+export function edgeToast({ way, name, beyond }: EdgeEvent): Omit<Toast, "id"> {
+  const back = way === "undo";
+  const label = back ? `Back to ${beyond}` : `On to ${beyond}`;
+  return {
+    level: "info",
+    what: `Nothing more to ${way} in ${name}`,
+    hint: beyond && `One more would lead ${back ? "back" : "on"} to ${beyond}.`,
+    about: "edge",
+    ...(beyond && { action: { label, run: () => void send({ t: way, beyond: true }) } }),
+  };
 }
 
 function settle(seq: number): void {

@@ -117,3 +117,61 @@ def test_a_broken_design_shows_no_body_of_another(serving, tmp_path, open_tab, c
         tab.find("faults").wait_for()
     finally:
         server.stop()
+
+
+def test_undo_stops_at_the_start_of_a_document(serving, tmp_path, open_tab, coarse):
+    server = serving(tmp_path, text=coarse)
+    try:
+        tab = open_tab(server.address, mode="design")
+        page = tab.page
+        tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+        length = tab.find("parameter-length").get_by_role("textbox", name="length")
+        for value in ("45 mm", "50 mm", "55 mm"):  # as quickly as the keys can be sent
+            length.fill(value)
+            length.press("Enter")
+        tab.until("document.querySelector('.cm-content').innerText.includes('55 mm')")
+        page.keyboard.press("Control+o")
+        tab.find("start-empty").click()
+        tab.find("discard").click()
+        tab.find("stage-box").click()
+        tab.find("shapes-box").wait_for()
+        page.mouse.move(*tab.middle())
+        undo = page.get_by_role("button", name="Undo (Ctrl+Z)")
+        undo.click()
+        tab.find("empty-stage").wait_for()
+        undo.click()
+        undo.click()
+        toast = tab.find("toast").filter(has_text="Nothing more to undo in robot.toml")
+        toast.wait_for()
+        tab.find("document-name").get_by_text("robot.toml").wait_for()
+        page.get_by_role("button", name="Redo").click()
+        tab.find("shapes-box").wait_for()
+        undo.click()
+        tab.find("empty-stage").wait_for()
+        undo.click()
+        toast.get_by_role("button", name="Back to finger.toml").click()
+        tab.find("document-name").get_by_text("finger.toml").wait_for()
+        # Each typed value is a step of its own.
+        for value in ("50 mm", "45 mm", "40 mm"):
+            undo.click()
+            tab.until(f"document.querySelector('.cm-content').innerText.includes({first(value)!r})")
+        assert tab.errors == []
+    finally:
+        server.stop()
+
+
+def test_a_new_design_that_is_left_is_listed_as_recent(bare, open_tab):
+    tab = open_tab(bare.address, mode="design")
+    tab.find("start-empty").click()
+    tab.find("stage-sphere").click()
+    tab.find("shapes-sphere").wait_for()
+    tab.page.keyboard.press("Control+o")
+    tab.find("robot-bellows").click()
+    tab.find("discard").click()
+    tab.find("document-name").get_by_text("bellows.toml").wait_for()
+    tab.page.keyboard.press("Control+o")
+    recent = tab.find("start-recent").get_by_role("button").filter(has_text="robot.toml")
+    recent.get_by_text("not saved yet").wait_for()
+    recent.click()
+    tab.find("shapes-sphere").wait_for()
+    assert tab.errors == []

@@ -64,8 +64,7 @@ class DesignDocument:
     hash
         Hash of all that decides the numbers of the design; empty while the text is none.
     before, after
-        Documents that were open before this one, with changes that were not saved, and after it:
-        undo and redo lead there at the ends of this one's own changes.
+        Documents that were open before this one, with changes that were not saved, and after it.
     """
 
     text: str
@@ -174,19 +173,34 @@ class DesignDocument:
             place = None
         self._last_place, self._last_time = place, now
         self._redo.clear()
-        self.after = None
         self._become(text)
         return True
 
-    def edit(self, path: list[str | int], value: object, *, now: float | None = None) -> bool:
+    def edit(
+        self,
+        path: list[str | int],
+        value: object,
+        *,
+        stroke: int = 0,
+        now: float | None = None,
+    ) -> bool:
         """Set one value by its path, keeping comments; returns whether the text changed.
+
+        Parameters
+        ----------
+        path, value
+            The place, and its value; None removes it.
+        stroke
+            Number of the stroke of the hand: edits of one place in one stroke are one change.
+        now
+            The time of the change [s].
 
         Raises
         ------
         DesignError
             The text is not TOML, or the path leads nowhere.
         """
-        return self.replace(with_value(self.text, path, value), tuple(path), now=now)
+        return self.replace(with_value(self.text, path, value), (stroke, *path), now=now)
 
     def undo(self) -> bool:
         """Take back the last change; returns whether there was one."""
@@ -255,10 +269,16 @@ class DesignDocument:
             design=None if design is None else design.model_dump(by_alias=True, exclude_none=True),
             source=self.source,
             diagnostics=self.diagnostics,
-            can_undo=bool(self._undo) or self.before is not None,
-            can_redo=bool(self._redo) or self.after is not None,
+            can_undo=bool(self._undo) or self._is_step(self.before),
+            can_redo=bool(self._redo) or self._is_step(self.after),
+            before="" if self.before is None else self.before.title,
+            after="" if self.after is None else self.after.title,
             histories=self._histories,
         )
+
+    def _is_step(self, other: DesignDocument | None) -> bool:
+        """Check if a change led from another document to this one, or back."""
+        return other is not None and other.id == self.id
 
     def _swap(self, taken: list[str], given: list[str]) -> bool:
         if not taken:

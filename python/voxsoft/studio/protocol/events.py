@@ -166,13 +166,17 @@ class Way(Entry):
 
 
 class RecentFile(Entry):
-    """A design file that was opened or saved; `when` is ISO 8601, `picture` where it is drawn."""
+    """A design that was opened or saved; `when` is ISO 8601, `picture` where it is drawn.
+
+    One that was left without being saved has an id in `unsaved`, and neither path nor folder.
+    """
 
     path: str
     name: str
     folder: str
     when: str
     picture: str = ""
+    unsaved: str = ""
 
 
 class Start(Event):
@@ -272,7 +276,17 @@ class Document(Event):
     diagnostics: list[Diagnostic]
     can_undo: bool
     can_redo: bool
+    before: str = ""
+    after: str = ""
     histories: list[HistoryLine] = field(default_factory=list)
+
+
+class Edge(Event):
+    """Undo or redo has come to the end of the changes of a document; `beyond` is the next one."""
+
+    way: Literal["undo", "redo"]
+    name: str
+    beyond: str
 
 
 class DesignFile(Entry):
@@ -1214,6 +1228,7 @@ AnyEvent = (
     Hello
     | Start
     | Document
+    | Edge
     | DesignFiles
     | Materials
     | Ghosts

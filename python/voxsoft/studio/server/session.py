@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from functools import singledispatchmethod
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 from voxsoft._folders import folder_name
 from voxsoft.design import Design
@@ -232,7 +232,7 @@ class Session:
     @_execute.register
     def _on_edit(self, command: commands.Edit, tab: Tab) -> None:
         self._author = tab
-        self._changed(self.document.edit(command.path, command.value))
+        self._changed(self.document.edit(command.path, command.value, stroke=command.stroke))
 
     @_execute.register
     def _on_edits(self, command: commands.Edits, tab: Tab) -> None:
@@ -341,16 +341,26 @@ class Session:
         self._author = tab
         if self.document.undo():
             self._announce()
-        elif self.document.before is not None:
-            self._turn_to(self.document.before)
+        else:
+            self._go_beyond("undo", self.document.before, tab, turn=command.beyond)
 
     @_execute.register
     def _on_redo(self, command: commands.Redo, tab: Tab) -> None:
         self._author = tab
         if self.document.redo():
             self._announce()
-        elif self.document.after is not None:
-            self._turn_to(self.document.after)
+        else:
+            self._go_beyond("redo", self.document.after, tab, turn=command.beyond)
+
+    def _go_beyond(
+        self, way: Literal["undo", "redo"], next: DesignDocument | None, tab: Tab, *, turn: bool
+    ) -> None:
+        """Go to the next document at the end of the changes of one, or say only which it is."""
+        if next is not None and (turn or next.id == self.document.id):
+            self._turn_to(next)
+            return
+        name = "" if next is None else next.title
+        self.tabs.send_to(tab, events.Edge(way=way, name=self.document.title, beyond=name))
 
     @_execute.register
     def _on_save(self, command: commands.Save, tab: Tab) -> None:
@@ -361,6 +371,7 @@ class Session:
                 self.tabs.send_to(tab, events.FileExists(path=str(there)))
                 return
         written = self._saved(path)
+        self._recent.forget(self.document.id)
         self._keep_draft(now=True)
         self._begun()
         self.tabs.publish(self.document.event())
@@ -425,6 +436,8 @@ class Session:
                 self._open(document_at(Path(command.name), self._home))
             case "upload":
                 self._open_upload(command.name)
+            case "unsaved":
+                self._open(self._recent.unsaved(command.name).document(self._home))
             case "run":
                 self._open_run(self.list.folder_of(command.name))
             case "trial":
@@ -457,9 +470,18 @@ class Session:
         self._show(document)
 
     def _show(self, document: DesignDocument) -> None:
+        self._list_unsaved(document)
         self.document, self._shown_since = document, document.rev
         self.engine.forget()
         self._announce()
+
+    def _list_unsaved(self, next: DesignDocument) -> None:
+        """Let Recent lead back to a document that has no file, as another takes its place."""
+        left = self.document
+        if left.path is not None or left.empty or not left.edited or left.id == next.id:
+            return
+        self._recent.note_unsaved(Draft(left.text, left.title, "", left.id))
+        self.tabs.publish(start_event(self._recent.files(), fresh=False))
 
     def _begun(self) -> None:
         """Note that there is work now, and the file that it is of where that is another one."""
@@ -784,9 +806,9 @@ class Session:
         return self.engine.shown(name, text)
 
     def picture(self, of: str, cancelled: threading.Event) -> Thumbnail:
-        """Draw a picture: "trial/ID/INDEX", "file/PATH" or "version/ID" of the document.
+        """Draw a picture: "trial/ID/INDEX", "file/PATH", "unsaved/ID" or "version/ID".
 
-        Only files that the start screen lists are drawn.
+        Versions are those of the document. Only files that the start screen lists are drawn.
 
         Raises
         ------
@@ -806,6 +828,9 @@ class Session:
             return self.album.of_text(one.text, one.name, Path(one.folder), cancelled)
         if kind == "file" and any(each.path == name for each in self._recent.files()):
             return self.album.of_file(Path(name), cancelled)
+        if kind == "unsaved":
+            draft = self._recent.unsaved(name)
+            return self.album.of_text(draft.text, draft.name, self._home, cancelled)
         raise FileError(of[:200], "is not known", "reload the page")
 
     def thumbnail(self, run: str) -> Path | None:
@@ -834,5 +859,5 @@ class Session:
                 unsaved = DesignDocument.of_file(file)
                 unsaved.replace(draft.text)
             document.follow(unsaved)
-            self._notes.append(f"Changes of {draft.name} were not saved; undo leads to them.")
+            self._notes.append(f"Changes of {draft.name} were not saved; undo offers the way back.")
         return document
