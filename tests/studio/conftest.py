@@ -24,6 +24,14 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 CYLINDER = EXAMPLES / "cylinder.toml"
 
 
+@pytest.fixture(scope="session", autouse=True)
+def state_of_the_tests(tmp_path_factory):
+    """Ports and tokens of these studios are not kept among those of the user."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
+        yield
+
+
 class Page:
     """A tab of the browser, without a browser."""
 
