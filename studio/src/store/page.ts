@@ -25,6 +25,7 @@ export type Sheet =
   | "save"
   | "versions"
   | "discard"
+  | "remove"
   | null;
 
 /** File to be opened once the open design has been saved or given up. */

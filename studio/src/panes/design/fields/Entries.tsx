@@ -10,6 +10,7 @@ import { takeDropped } from "../../materials/give";
 import { DRAGGED } from "../../materials/use";
 import { edit, type Named, problemOfName, problemsAt, rename, swap } from "../edits";
 import { useForm } from "../form";
+import { remove } from "../removing/remove";
 import { Glyph } from "./Glyph";
 import type { MenuPlace } from "./Menu";
 import { TableFields } from "./SchemaField";
@@ -258,7 +259,7 @@ export function EntryList(props: {
       {values.length > 1 && props.note && <p className="muted">{props.note}</p>}
       {values.map((value, i) => {
         const title = titleOf(section, value, i);
-        const remove = { glyph: "trash", label: `Remove ${title}` } as const;
+        const trash = { glyph: "trash", label: `Remove ${title}` } as const;
         return (
           <Entry
             // biome-ignore lint/suspicious/noArrayIndexKey: entries may have no other name
@@ -278,7 +279,7 @@ export function EntryList(props: {
                     },
                   ]
                 : []),
-              { ...remove, run: () => edit([section, i], null) },
+              { ...trash, run: () => remove([section, i], title) },
             ]}
           >
             <TableFields path={[section, i]} schema={schema} value={value} />
@@ -374,7 +375,7 @@ export function EntryMap(props: {
           wrong={problemsAt(diagnostics, [section, name]).length > 0}
           testId={`${section}-${name}`}
           actions={[
-            { glyph: "trash", label: `Remove ${name}`, run: () => edit([section, name], null) },
+            { glyph: "trash", label: `Remove ${name}`, run: () => remove([section, name], name) },
           ]}
         >
           <NameField section={section} name={name} taken={Object.keys(values)} />

@@ -2,12 +2,13 @@ import { useState } from "react";
 import { Section } from "../../../controls/Choice";
 import { useStudio } from "../../../store/studio";
 import { setView, useView } from "../../../store/view";
-import { edit, editAll, problemsAt } from "../edits";
+import { editAll, problemsAt } from "../edits";
 import { Entry, NameField, type Table } from "../fields/Entries";
 import { Menu, type MenuPlace } from "../fields/Menu";
 import { TableFields } from "../fields/SchemaField";
 import { controlOf, resolve } from "../fields/schema";
 import { useForm } from "../form";
+import { remove } from "../removing/remove";
 import { AddShape, FirstShapes } from "./AddShape";
 import { spotOn } from "./shapeStarters";
 import { shapeTree } from "./shapeTree";
@@ -94,7 +95,7 @@ export function Shapes() {
               {
                 glyph: "trash",
                 label: `Remove ${node.name}`,
-                run: () => edit(["shapes", node.name], null),
+                run: () => remove(["shapes", node.name], node.name),
               },
             ]}
           >
