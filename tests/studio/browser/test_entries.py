@@ -12,8 +12,34 @@ bar = { kind = "box", size = ["= length", "10 mm", "10 mm"] }
 """
 
 
+def added(tab, name, section):
+    """Add an entry by its button, and wait for the text that has it."""
+    tab.page.get_by_role("button", name=f"Add {name}", exact=True).click()
+    tab.until(f"document.querySelector('.cm-content').innerText.includes('[{section}')")
+
+
 def problems(tab):
     return tab.page.locator(".faults, .badge.bad, .entry .bad").count()
+
+
+def test_a_new_entry_is_no_error(serving, tmp_path, open_tab, coarse):
+    server = serving(tmp_path, text=coarse)
+    try:
+        tab = open_tab(server.address, mode="design", size=(1600, 2400))
+        tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+        added(tab, "a constraint", "constraints")
+        limit = tab.find("constraints-limit")
+        # It is open: its bound is a proposal that the body keeps.
+        assert limit.get_by_label("Metric", exact=True).input_value() == "mass"
+        assert limit.get_by_label("At most", exact=False).first.input_value().endswith(" g")
+        added(tab, "an objective", "objectives")
+        for name in ("a connection", "a supply"):
+            button = tab.page.get_by_label(f"Add {name}", exact=True)
+            assert button.is_disabled()
+            assert "this body has none" in button.get_attribute("title")
+        assert problems(tab) == 0
+    finally:
+        server.stop()
 
 
 def test_a_shape_in_use_is_asked_about_and_takes_along_all_that_needs_it(

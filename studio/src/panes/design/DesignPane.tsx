@@ -5,6 +5,7 @@ import { browseMaterials } from "../materials/browse";
 import { Bodies } from "./bodies/Bodies";
 import { ContactSection, Objects } from "./bodies/Objects";
 import { edit } from "./edits";
+import { fitted, obstacleTo } from "./fields/begun";
 import { Adder, EntryList, EntryMap, type Table } from "./fields/Entries";
 import { Glyph } from "./fields/Glyph";
 import { SchemaField, TableFields } from "./fields/SchemaField";
@@ -167,6 +168,7 @@ const PLACED = ["bodies", "parts", "layers", "objects", "clamps", "loads"];
 /** All other lists of the schema, in its words. */
 function OtherLists(props: { root: Schema }) {
   const { root } = props;
+  const body = useStudio((state) => state.body);
   return listSections(root)
     .filter((section) => !PLACED.includes(section))
     .map((section) => {
@@ -180,6 +182,8 @@ function OtherLists(props: { root: Schema }) {
           title={labelOf(section)}
           what={what}
           empty={`None. ${summary(schema)}`}
+          obstacle={obstacleTo(section, body)}
+          begin={(value) => fitted(section, value, body)}
         />
       );
     });
