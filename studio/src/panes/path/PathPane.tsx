@@ -11,7 +11,7 @@ import { troubleOf } from "../design/trouble";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
 import { PastNote, useIsPast } from "../jobs/PastNote";
-import { useJob } from "../study/current";
+import { useElsewhere, useJob } from "../study/current";
 import { useStart } from "../study/useStart";
 import { type Changeable, changeable, overText, stiffnessNote, unitOfValue } from "./lines";
 import { type Measured, misfit, readMeasured, together } from "./measured";
@@ -25,6 +25,7 @@ export default function PathPane() {
   const paths = useStudio((state) => state.paths);
   const form = useFormOfDocument();
   const job = useJob("run");
+  const elsewhere = useElsewhere("run");
   const choices = useMemo(
     () => (form?.design ? changeable(form.design, document?.parameters ?? []) : []),
     [form, document],
@@ -63,6 +64,7 @@ export default function PathPane() {
         </Empty>
       )}
       {job && job.state !== "done" && <JobCard job={job} />}
+      {elsewhere.map((one) => one.id !== job?.id && <JobCard key={one.id} job={one} />)}
     </div>
   );
 }

@@ -45,6 +45,18 @@ export function useJob(kind: JobEvent["kind"]): JobEvent | null {
   }, [chosen, jobs, kind, isOwn]);
 }
 
+const LIVE: ReadonlySet<JobEvent["state"]> = new Set(["running", "pausing", "paused", "stopping"]);
+
+/** Jobs of a kind that are at work for other designs than the open one. */
+export function useElsewhere(kind: JobEvent["kind"]): readonly JobEvent[] {
+  const jobs = useStudio((state) => state.jobs);
+  const isOwn = useIsOwn();
+  return useMemo(
+    () => jobsOf(jobs, kind).filter(({ id, state }) => LIVE.has(state) && !isOwn(id)),
+    [jobs, kind, isOwn],
+  );
+}
+
 /** Shortest time between two pictures of a study that runs, ms; longer where it has many trials. */
 const CALM = 150;
 
