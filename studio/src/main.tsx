@@ -7,12 +7,14 @@ import { forgetLayouts } from "./shell/Dock";
 import { PageFence } from "./shell/Fence";
 import { watchAddress, watchTheme } from "./store/page";
 import { connect } from "./store/session";
+import { watchStrokes } from "./store/stroke";
 import "./theme.css";
 import "./controls/controls.css";
 
 watchTheme();
 watchAddress();
 watchJob();
+watchStrokes();
 tellFits();
 const scheme = location.protocol === "https:" ? "wss:" : "ws:";
 connect(new ServerEngine(`${scheme}//${location.host}/ws`));

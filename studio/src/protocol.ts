@@ -180,12 +180,12 @@ export interface HelloCommand {
  * Open a document: a template, a robot, a file or run folder, an upload, or a study's trial.
  *
  * A trial is named "ID/INDEX"; a run by its id in the list of runs; a start by its three answers,
- * "pressure-finger-bend".
+ * "pressure-finger-bend"; a document that was left without being saved by its id.
  */
 export interface OpenCommand {
   t: "open";
   seq: number;
-  what: "file" | "robot" | "run" | "start" | "template" | "trial" | "upload";
+  what: "file" | "robot" | "run" | "start" | "template" | "trial" | "unsaved" | "upload";
   name: string;
 }
 
@@ -197,13 +197,19 @@ export interface TextCommand {
   text: string;
 }
 
-/** Set one value of the document, keeping its comments; `null` removes the key. */
+/**
+ * Set one value of the document, keeping its comments; `null` removes the key.
+ *
+ * Edits of one place in one `stroke` of the hand, such as the drag of a slider, are undone
+ * together.
+ */
 export interface EditCommand {
   t: "edit";
   seq: number;
   rev: number;
   path: (string | number)[];
   value?: unknown;
+  stroke?: number;
 }
 
 /** A value of the document at a path; `null` removes the key. */
@@ -345,16 +351,26 @@ export interface GhostsCommand {
   names: string[];
 }
 
-/** Take back the last change of the document. */
+/**
+ * Take back the last change of the document.
+ *
+ * If it has none, `beyond` leads back to the document before it; else `edge` names that.
+ */
 export interface UndoCommand {
   t: "undo";
   seq: number;
+  beyond?: boolean;
 }
 
-/** Make the change again that was taken back last. */
+/**
+ * Make the change again that was taken back last.
+ *
+ * If there is none, `beyond` leads on to the document after this one; else `edge` names that.
+ */
 export interface RedoCommand {
   t: "redo";
   seq: number;
+  beyond?: boolean;
 }
 
 /**
@@ -806,13 +822,18 @@ export interface Way {
   sentence: string;
 }
 
-/** A design file that was opened or saved; `when` is ISO 8601, `picture` where it is drawn. */
+/**
+ * A design that was opened or saved; `when` is ISO 8601, `picture` where it is drawn.
+ *
+ * One that was left without being saved has an id in `unsaved`, and neither path nor folder.
+ */
 export interface RecentFile {
   path: string;
   name: string;
   folder: string;
   when: string;
   picture: string;
+  unsaved: string;
 }
 
 /** Content of the start screen; `fresh` while nothing was opened or changed yet. */
@@ -886,25 +907,42 @@ export interface HistoryLine {
 /**
  * The document as it stands; `design` is that of the last text that was good (or null).
  *
+ * `id` tells it from other documents that were open, `hash` its present design from earlier ones.
  * `dirty`: it differs from the text opened or saved last. `folder` is where it would be saved.
- * `histories` are those of the last text that was good.
+ * `empty`: nothing is described yet, so that it is no design, and has no fault either.
+ * `before` and `after` name documents with unsaved changes that were open before and after it;
+ * undo and redo come there only where they are asked to go beyond its own changes. `histories` are
+ * those of the last text that was good.
  */
 export interface DocumentEvent {
   t: "document";
   rev: number;
+  id: string;
+  hash: string;
   text: string;
   name: string;
   path: string | null;
   folder: string;
   dirty: boolean;
   valid: boolean;
+  empty: boolean;
   parameters: Parameter[];
   design: Record<string, unknown> | null;
   source: Record<string, unknown> | null;
   diagnostics: Diagnostic[];
   can_undo: boolean;
   can_redo: boolean;
+  before: string;
+  after: string;
   histories: HistoryLine[];
+}
+
+/** Undo or redo has come to the end of the changes of a document; `beyond` is the next one. */
+export interface EdgeEvent {
+  t: "edge";
+  way: "redo" | "undo";
+  name: string;
+  beyond: string;
 }
 
 /**
@@ -1173,6 +1211,11 @@ export interface BodyEvent {
   floor: number | null;
   bonds: BodyBond[];
   refused: Record<string, string>;
+}
+
+/** There is no body to be shown: the document has none, or it is not there yet. */
+export interface BareEvent {
+  t: "bare";
 }
 
 /**
@@ -1513,6 +1556,19 @@ export interface JobEvent {
   parameters: string[];
   objectives: string[];
   directions: string[];
+}
+
+/**
+ * The design that a job is of: its name, its hash, and the document that it was started from.
+ *
+ * `document` is empty for a job of an earlier studio.
+ */
+export interface SubjectEvent {
+  t: "subject";
+  job: string;
+  document: string;
+  design: string;
+  hash: string;
 }
 
 /** A trial of a study; `objectives` is null where it has no result. */
@@ -1924,10 +1980,12 @@ export type AnyEvent =
   | HelloEvent
   | StartEvent
   | DocumentEvent
+  | EdgeEvent
   | DesignFilesEvent
   | MaterialsEvent
   | GhostsEvent
   | BodyEvent
+  | BareEvent
   | StatEvent
   | EquilibriumEvent
   | FinenessEvent
@@ -1939,6 +1997,7 @@ export type AnyEvent =
   | PlotEvent
   | PickedEvent
   | JobEvent
+  | SubjectEvent
   | TrialEvent
   | TrialsEvent
   | GenerationEvent

@@ -24,6 +24,14 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 CYLINDER = EXAMPLES / "cylinder.toml"
 
 
+@pytest.fixture(scope="session", autouse=True)
+def state_of_the_tests(tmp_path_factory):
+    """Ports and tokens of these studios are not kept among those of the user."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
+        yield
+
+
 class Page:
     """A tab of the browser, without a browser."""
 
@@ -156,9 +164,9 @@ class Studio:
     async def begin_again(self, source):
         """Be as at the start: the file, unloaded at time zero, nothing to undo. Runs stay."""
         async with self.page() as page:
-            while page.document.can_undo:
+            while page.document.can_undo or page.document.before:
                 rev = page.rev
-                await page.send("undo")
+                await page.send("undo", beyond=True)
                 await page.until("document", lambda d, rev=rev: d.rev > rev)
             if page.document.path is None:  # undo would lead back to a document without a file
                 await page.send("save", path="left.toml", overwrite=True)

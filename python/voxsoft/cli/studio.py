@@ -20,7 +20,13 @@ def studio(
         bool, typer.Option("--no-browser", help="Only print the address.")
     ] = False,
     port: Annotated[
-        int, typer.Option("--port", min=0, max=65535, help="Port of the server; 0: any free port.")
+        int,
+        typer.Option(
+            "--port",
+            min=0,
+            max=65535,
+            help="Port of the server; 0: that of the last time if it is free, or any free one.",
+        ),
     ] = 0,
     runs: Annotated[Path, typer.Option("--runs", help="Folder of runs and studies.")] = Path(
         "runs"
@@ -29,7 +35,8 @@ def studio(
     """Open the studio: see, edit, run, calibrate and optimize designs in the browser.
 
     It listens on this machine only, and the address holds a token that no one else knows. Ctrl-C
-    ends it; changes that were not saved are there at the next start.
+    ends it; changes that were not saved are there at the next start, and tabs that are still open
+    come back to it.
     """
     say("Starting the studio…")  # before its imports, which take seconds on a busy machine
     from voxsoft.studio.server.process import StudioServer

@@ -87,18 +87,23 @@ export class Player {
     this.audience.event({
       t: "document",
       rev: 1,
+      id: "",
+      hash: "",
       text: notes.text,
       name: notes.name,
       path: null,
       folder: "",
       dirty: false,
       valid: true,
+      empty: false,
       parameters: [],
       design: null,
       source: null,
       diagnostics: [],
       can_undo: false,
       can_redo: false,
+      before: "",
+      after: "",
       histories: [],
     });
     const { smooth = "" } = notes;

@@ -1,6 +1,8 @@
 // The native core behind a websocket. Lost connections are opened again with growing pauses;
-// edits made meanwhile are kept and sent on the revision that the server then has.
-import type { AnyCommand, AnyEvent, EditCommand, TextCommand } from "../protocol";
+// edits made meanwhile are kept, and sent once the document of which they are is open again, on the
+// revision that it then has. A page that was refused comes back when another one of this address is
+// admitted: browsers have one cookie for both.
+import type { AnyCommand, AnyEvent, DocumentEvent, EditCommand, TextCommand } from "../protocol";
 import { CloseCode, PROTOCOL } from "../protocol";
 import type { Draft, Engine, EngineListener, Link } from "./engine";
 import { decode } from "./frames";
@@ -9,6 +11,9 @@ const FIRST_PAUSE = 250;
 const LONGEST_PAUSE = 4000;
 // Codes after which to come back would end the same way.
 const FINAL: readonly number[] = [CloseCode.OTHER_PROTOCOL, CloseCode.WRONG_MESSAGES];
+
+/** Name of the channel on which pages of one address tell that they were admitted. */
+const ADMITTED = "voxsoft.admitted";
 
 type Unsent = Omit<TextCommand, "seq"> | Omit<EditCommand, "seq">;
 
@@ -31,6 +36,12 @@ export class ServerEngine implements Engine {
   private attempt = 0;
   private timer: ReturnType<typeof setTimeout> | null = null;
   private unsent: Unsent[] = [];
+  /** The document that was open last, of which all unsent edits are. */
+  private document: DocumentEvent | null = null;
+  private readonly others = new BroadcastChannel(ADMITTED);
+  /** True once it was told that they wait for another document. */
+  private warned = false;
+  private refused = false;
   private greeted = false;
   private opened = false;
 
@@ -38,11 +49,13 @@ export class ServerEngine implements Engine {
 
   start(listener: EngineListener): void {
     this.listener = listener;
+    this.others.onmessage = () => this.comeIn();
     this.open();
   }
 
   stop(): void {
     this.listener = null;
+    this.others.close();
     if (this.timer !== null) clearTimeout(this.timer);
     this.socket?.close();
     this.socket = null;
@@ -70,7 +83,13 @@ export class ServerEngine implements Engine {
     this.open();
   }
 
+  /** Open the connection that was refused: there is another cookie now. */
+  private comeIn(): void {
+    if (this.refused) this.open();
+  }
+
   private open(): void {
+    this.refused = false;
     this.timer = null;
     this.attempt += 1;
     this.report({ state: "connecting", retryAt: null, reason: "" });
@@ -93,13 +112,28 @@ export class ServerEngine implements Engine {
     if (event.t === "hello") {
       this.greeted = true;
       this.attempt = 0;
+      this.others.postMessage(null);
       this.report({ state: "open", retryAt: null, reason: "" });
     }
     this.listener?.event(event);
-    if (event.t === "document" && this.unsent.length > 0) {
-      const unsent = this.unsent;
+    if (event.t === "document") this.takeDocument(event);
+  }
+
+  private takeDocument(document: DocumentEvent): void {
+    const { unsent, document: before } = this;
+    if (unsent.length === 0) {
+      this.document = document;
+    } else if (before === null || before.id === document.id) {
+      this.document = document;
       this.unsent = [];
-      for (const draft of unsent) this.send({ ...draft, rev: event.rev });
+      this.warned = false;
+      for (const draft of unsent) this.send({ ...draft, rev: document.rev });
+    } else if (!this.warned) {
+      this.warned = true;
+      const text =
+        `${document.name} is open now; edits that were made without a connection are of ` +
+        `${before.name}, and are sent when that is opened again.`;
+      this.listener?.event({ t: "log", level: "warning", text });
     }
   }
 
@@ -138,6 +172,7 @@ export class ServerEngine implements Engine {
     this.timer = null;
     this.socket?.close();
     this.socket = null;
+    this.refused = true;
     this.report({ state: "refused", retryAt: null, reason: said?.what ?? "", reload: false });
   }
 

@@ -47,7 +47,8 @@ export function LinkBand() {
             <Button onClick={() => location.reload()}>Reload the page</Button>
           ) : (
             <>
-              Open the address that <code>voxsoft studio</code> printed last.
+              Open the address that <code>voxsoft studio</code> printed last: this page then goes on
+              by itself.
             </>
           )}
         </>

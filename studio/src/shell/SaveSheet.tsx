@@ -87,7 +87,11 @@ export function DiscardSheet() {
   return (
     <div className="save-sheet" role="alert">
       <h2>{document.name} has changes that were not saved</h2>
-      <p className="muted">Undo leads back to them as long as the studio runs.</p>
+      <p className="muted">
+        {document.path
+          ? "Undo offers the way back to them as long as the studio runs."
+          : "Recent, on the start screen, keeps them."}
+      </p>
       <div className="sheet-buttons">
         <Button kind="quiet" onClick={() => openSheet(null)}>
           Cancel

@@ -1,6 +1,7 @@
 // Sheets over the page that go away with Escape: palette, shortcuts, tour, toasts.
 import { useEffect, useMemo, useRef, useState } from "react";
 import { Button } from "../controls/Choice";
+import { RemoveSheet } from "../panes/design/removing/RemoveSheet";
 import { openSheet, setMode, usePage } from "../store/page";
 import { useView } from "../store/view";
 import { SCHEMES, schemeWords } from "../view/hands/schemes";
@@ -41,6 +42,11 @@ export function Sheets() {
       {sheet === "discard" && (
         <Scrim label="Changes that were not saved" testId="discard-sheet">
           <DiscardSheet />
+        </Scrim>
+      )}
+      {sheet === "remove" && (
+        <Scrim label="Remove what is in use" testId="remove-sheet">
+          <RemoveSheet />
         </Scrim>
       )}
       <Toasts />

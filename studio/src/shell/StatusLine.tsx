@@ -8,6 +8,7 @@ import { showPane } from "./actions";
 export function StatusLine() {
   const stat = useStudio((state) => state.stat);
   const body = useStudio((state) => state.body);
+  const empty = useStudio((state) => state.document?.empty ?? false);
   const version = useStudio((state) => state.hello?.version);
   const doubts = useEquilibrium()?.warnings.length ?? 0;
   const overlaps = useOverlap() !== null;
@@ -21,7 +22,7 @@ export function StatusLine() {
         data-testid="sentence"
         aria-live="polite"
       >
-        {stat?.sentence || body?.not_live || idle(stat?.state, body !== null)}
+        {stat?.sentence || body?.not_live || idle(stat?.state, body !== null, empty)}
       </span>
       {doubts > 0 && (
         <button
@@ -54,7 +55,8 @@ export function StatusLine() {
   );
 }
 
-function idle(state: string | undefined, body: boolean): string {
+function idle(state: string | undefined, body: boolean, empty: boolean): string {
+  if (empty) return "Nothing is here yet. Add a shape to begin.";
   if (!body) return "Open a design to begin.";
   if (state === "playing") return "Time runs. Drag the body to pull on it.";
   return "Ready. Space lets time run; drag the body to pull on it.";

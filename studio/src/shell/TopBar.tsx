@@ -54,7 +54,7 @@ export function TopBar() {
             <strong>{document.name || "untitled"}</strong>
             {document.dirty && <span className="muted">edited</span>}
             {!document.dirty && !document.path && <span className="muted">not saved yet</span>}
-            {!document.valid && <span className="badge bad">has errors</span>}
+            {!document.valid && !document.empty && <span className="badge bad">has errors</span>}
           </>
         ) : (
           <span className="muted">no design open</span>
@@ -64,7 +64,7 @@ export function TopBar() {
         icon
         kind="quiet"
         label="Undo (Ctrl+Z)"
-        disabled={!document?.can_undo}
+        disabled={!document?.can_undo && !document?.before}
         onClick={() => send({ t: "undo" })}
       >
         <Icon name="undo" />
@@ -73,7 +73,7 @@ export function TopBar() {
         icon
         kind="quiet"
         label="Redo (Ctrl+Shift+Z)"
-        disabled={!document?.can_redo}
+        disabled={!document?.can_redo && !document?.after}
         onClick={() => send({ t: "redo" })}
       >
         <Icon name="redo" />

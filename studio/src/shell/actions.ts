@@ -290,14 +290,37 @@ export function actions(): Action[] {
   );
   // A page that runs by itself has a body and time, and no document, modes or panes.
   if (!dock) return [...simple().filter((one) => ALONE.has(one.id)), ...viewActions];
-  return [...simple(), ...viewActions, ...reachActions(showPane), ...modes, ...panes, ...templates];
+  return [
+    ...simple(),
+    ...neighbors(),
+    ...viewActions,
+    ...reachActions(showPane),
+    ...modes,
+    ...panes,
+    ...templates,
+  ];
+}
+
+/** Ways to the documents with unsaved changes that were open before and after this one. */
+function neighbors(): Action[] {
+  const { before, after } = useStudio.getState().document ?? {};
+  const lead = (way: "undo" | "redo", title: string): Action => ({
+    id: `beyond-${way}`,
+    title,
+    group: "Document",
+    run: () => send({ t: way, beyond: true }),
+  });
+  return [
+    ...(before ? [lead("undo", `Back to ${before}, which was open before`)] : []),
+    ...(after ? [lead("redo", `On to ${after}, which was open after this`)] : []),
+  ];
 }
 
 /** Open a document; where it takes the place of edited work, that is asked first. */
 export function openDocument(draft: Pending): void {
   const edited = useStudio.getState().document?.dirty ?? false;
-  // Runs and designs of studies are looked at one after the other: undo leads back from those.
-  const asks = ["template", "robot", "start", "file", "upload"].includes(draft.what);
+  // Runs and designs of studies are looked at one after the other: a way back stays from those.
+  const asks = ["template", "robot", "start", "file", "upload", "unsaved"].includes(draft.what);
   if (edited && asks) openSheet("discard", draft);
   else openNow(draft);
 }
@@ -305,6 +328,7 @@ export function openDocument(draft: Pending): void {
 /** Open a document without asking. */
 export function openNow(draft: Pending): void {
   setView({ shape: null }); // another design may have one of the same name
+  if (draft.what === "template" && draft.name === EMPTY.name) setMode("design");
   send(draft);
 }
 

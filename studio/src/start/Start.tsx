@@ -15,6 +15,12 @@ import "./start.css";
 
 const NO_ROBOTS: readonly Robot[] = [];
 const NO_FILES: readonly RecentFile[] = [];
+const NOT_SAVED = "not saved yet";
+
+function openRecent(file: RecentFile): void {
+  if (file.unsaved) openFromStart("unsaved", file.unsaved);
+  else openFromStart("file", file.path);
+}
 
 /** The first screen: go on, begin anew, open, or look at a finished robot. */
 export function Start() {
@@ -58,10 +64,10 @@ export function Start() {
                   className="start-main"
                   data-first
                   data-testid="start-go-on"
-                  onClick={() => openFromStart("file", last.path)}
+                  onClick={() => openRecent(last)}
                 >
                   <strong>Go on with {last.name}</strong>
-                  <span>{last.folder}</span>
+                  <span>{last.folder || NOT_SAVED}</span>
                 </button>
               ) : (
                 document &&
@@ -147,20 +153,20 @@ export function Start() {
           <section aria-label="Recent">
             <h2>Recent</h2>
             {recent.length === 0 ? (
-              <p className="muted">What you save or open is listed here.</p>
+              <p className="muted">What you save, open or begin is listed here.</p>
             ) : (
               <ul className="start-list is-pictured" data-testid="start-recent">
                 {recent.map((file) => (
-                  <li key={file.path}>
+                  <li key={file.path || file.unsaved}>
                     <button
                       type="button"
-                      title={file.path}
-                      onClick={() => openFromStart("file", file.path)}
+                      title={file.path || `${file.name}, ${NOT_SAVED}`}
+                      onClick={() => openRecent(file)}
                     >
                       <BodyPicture url={file.picture} />
                       <strong>{file.name}</strong>
                       <span className="muted">{whenWords(file.when)}</span>
-                      <span className="muted folder">{file.folder}</span>
+                      <span className="muted folder">{file.folder || NOT_SAVED}</span>
                     </button>
                   </li>
                 ))}

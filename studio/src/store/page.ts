@@ -25,6 +25,7 @@ export type Sheet =
   | "save"
   | "versions"
   | "discard"
+  | "remove"
   | null;
 
 /** File to be opened once the open design has been saved or given up. */
@@ -82,6 +83,11 @@ export const usePage = create<Page>(() => ({
 export function setMode(mode: Mode): void {
   finishTyping();
   usePage.setState({ mode });
+}
+
+/** Choose the study or calibration of which the panes speak. */
+export function setJob(job: string | null): void {
+  usePage.setState({ job });
 }
 
 export function openSheet(sheet: Sheet, pending: Pending | null = null): void {

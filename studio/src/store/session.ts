@@ -1,9 +1,10 @@
 // The one engine of the page, and the way of commands to it and of events from it.
 import type { Draft, Engine } from "../engine/engine";
 import type { Frame, Smooth, Topology } from "../engine/frames";
+import type { EdgeEvent } from "../protocol";
 import { calmed } from "./calm";
 import { gathering } from "./gather";
-import { apply, applyAll, toast, useStudio } from "./studio";
+import { apply, applyAll, type Toast, toast, useStudio } from "./studio";
 import { flushText } from "./typing";
 
 /** Drawer of bodies; the viewport registers itself here. */
@@ -11,6 +12,8 @@ export interface Stage {
   topology(topology: Topology): void;
   frame(frame: Frame): void;
   smoothSurface(smooth: Smooth): void;
+  /** Draw no body any more. */
+  clear(): void;
 }
 
 let engine: Engine | null = null;
@@ -18,6 +21,8 @@ let stage: Stage | null = null;
 let lastTopology: Topology | null = null;
 let lastFrame: Frame | null = null;
 let lastSmooth: Smooth | null = null;
+/** True once the server has said that there is no body. */
+let bare = false;
 const sentAt = new Map<number, number>();
 const ready = new Set<() => void>();
 /** Resolvers of commands that wait until all before them are done, by their numbers. */
@@ -44,11 +49,18 @@ export function connect(chosen: Engine): void {
     event(event) {
       if (event.t === "stat") applyStat(event);
       else if (event.t === "synced") settle(event.seq);
+      else if (event.t === "edge") toast(edgeToast(event));
       else take(event);
+      if (event.t === "bare") {
+        lastTopology = lastFrame = lastSmooth = null;
+        bare = true;
+        stage?.clear();
+      }
       if (event.t === "hello") for (const callback of ready) callback();
     },
     topology(topology) {
       lastTopology = topology;
+      bare = false;
       stage?.topology(topology);
     },
     frame(frame) {
@@ -71,6 +83,7 @@ export function connect(chosen: Engine): void {
 /** Let `next` draw from now on; it gets the newest messages at once. */
 export function present(next: Stage): void {
   stage = next;
+  if (bare) next.clear();
   if (lastTopology) next.topology(lastTopology);
   if (lastSmooth) next.smoothSurface(lastSmooth);
   if (lastFrame) next.frame(lastFrame);
@@ -120,6 +133,19 @@ export function send(draft: Draft): number {
 export function sinceSent(seq: number): number | null {
   const at = sentAt.get(seq);
   return at === undefined ? null : performance.now() - at;
+}
+
+/** Undo and redo end with the document; only a press of its own leads to the next one. */
+export function edgeToast({ way, name, beyond }: EdgeEvent): Omit<Toast, "id"> {
+  const back = way === "undo";
+  const label = back ? `Back to ${beyond}` : `On to ${beyond}`;
+  return {
+    level: "info",
+    what: `Nothing more to ${way} in ${name}`,
+    hint: beyond && `One more would lead ${back ? "back" : "on"} to ${beyond}.`,
+    about: "edge",
+    ...(beyond && { action: { label, run: () => void send({ t: way, beyond: true }) } }),
+  };
 }
 
 function settle(seq: number): void {

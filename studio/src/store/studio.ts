@@ -28,6 +28,7 @@ import type {
   SavedEvent,
   StartEvent,
   StatEvent,
+  SubjectEvent,
   TrialEvent,
   TrialsEvent,
   VersionDifferenceEvent,
@@ -86,6 +87,8 @@ export interface Studio {
   moments: ReadonlyMap<number, Moment>;
   picked: PickedEvent | null;
   jobs: Readonly<Record<string, JobEvent>>;
+  /** Designs of jobs, by job. */
+  subjects: Readonly<Record<string, SubjectEvent>>;
   trials: Readonly<Record<string, TrialsEvent>>;
   generations: Readonly<Record<string, readonly GenerationEvent[]>>;
   overlays: Readonly<Record<string, OverlayEvent>>;
@@ -109,6 +112,19 @@ export interface Studio {
   plotted: number;
   history: PlotHistory;
 }
+
+/** State of the page while no body is shown. */
+const NO_BODY = {
+  body: null,
+  askedPace: undefined,
+  overlap: null,
+  equilibrium: null,
+  fineness: null,
+  vibration: null,
+  chambers: null,
+  moments: new Map<number, Moment>(),
+  picked: null,
+};
 
 const LONGEST_LOG = 500;
 const MOST_TOASTS = 4;
@@ -135,6 +151,7 @@ export const useStudio = create<Studio>(() => ({
   moments: new Map(),
   picked: null,
   jobs: {},
+  subjects: {},
   trials: {},
   generations: {},
   overlays: {},
@@ -219,6 +236,12 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
         moments: body?.topology === event.topology ? moments : new Map(),
       }));
       break;
+    case "bare":
+      set((state) => {
+        state.history.clear();
+        return { ...NO_BODY, plotted: state.plotted + 1 };
+      });
+      break;
     case "stat":
       set(({ askedPace }) => ({
         stat: withPace(event, askedPace),
@@ -267,6 +290,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "job":
       set((state) => ({ jobs: { ...state.jobs, [event.id]: event } }));
+      break;
+    case "subject":
+      set((state) => ({ subjects: { ...state.subjects, [event.job]: event } }));
       break;
     case "trials":
       set((state) => ({ trials: { ...state.trials, [event.job]: event } }));

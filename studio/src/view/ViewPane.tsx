@@ -12,6 +12,7 @@ import { setView, useShown, useView } from "../store/view";
 import { isAsBuilt } from "./body/asBuilt";
 import { ContactBanner } from "./cards/ContactBanner";
 import { Cube } from "./cards/Cube";
+import { EmptyStage } from "./cards/EmptyStage";
 import { FaceCard } from "./cards/FaceCard";
 import { ForceLegend } from "./cards/ForceLegend";
 import { Legend } from "./cards/Legend";
@@ -25,7 +26,6 @@ export default function ViewPane() {
   const box = useRef<HTMLDivElement>(null);
   const view = viewport();
   const body = useStudio((state) => state.body);
-  const document = useStudio((state) => state.document);
   useEffect(() => {
     if (!box.current) return;
     view.attach(box.current);
@@ -48,10 +48,25 @@ export default function ViewPane() {
             <ContactBanner />
           </>
         ) : (
-          !document && <Welcome />
+          <NoBody />
         )}
       </div>
       <Transport />
+    </div>
+  );
+}
+
+/** In place of a body: the way to a first one, or why there is none. */
+function NoBody() {
+  const document = useStudio((state) => state.document);
+  if (!document) return <Welcome />;
+  if (document.empty) return <EmptyStage />;
+  if (document.valid || document.design) return null; // it is being meshed
+  return (
+    <div className="no-body">
+      <Empty title="No body yet">
+        <p>It appears once the errors of the design are fixed.</p>
+      </Empty>
     </div>
   );
 }

@@ -68,6 +68,10 @@ const TELL_EVERY_WHERE_SLOW = 400;
 const HOVER_EVERY = 100;
 /** A picture in which nothing changed for so long stands still, ms. */
 const SETTLED = 400;
+/** Room of the grid while there is no body, m: that of the first shape. */
+const EMPTY_ROOM = new Box3(new Vector3(-0.02, -0.02, 0), new Vector3(0.02, 0.02, 0.04));
+/** Body of the picture while there is none. */
+const NO_BODY = 0;
 /** Only a picture that has moved for so long, ms, changes its size: that alone takes a while. */
 const LASTING = 300;
 
@@ -175,6 +179,8 @@ export class Viewport {
   private extremes: { low: number; high: number } | null = null;
   private colors: ColorRange | null = null;
   private fitNext = true;
+  /** True while an empty grid is drawn. */
+  private bare = false;
   /** The body to which the picture was fitted before its objects came; 0 for none. */
   private fitted = 0;
   private pullsDue = true;
@@ -281,8 +287,17 @@ export class Viewport {
     this.request();
   }
 
+  clear(): void {
+    this.fitNext = true;
+    this.clearBody(EMPTY_ROOM.clone(), NO_BODY);
+    this.bare = this.fitNext = true;
+    this.drawnTopology = NO_BODY;
+    this.request();
+  }
+
   // Another body: things attached to the old one go, the camera stays where it is.
   private clearBody(box: Box3, id: number): void {
+    this.bare = false;
     this.drop(this.surface);
     this.drop(this.tets);
     this.coming?.dispose();
@@ -655,7 +670,7 @@ export class Viewport {
     );
     const filled = modeOf(view) === "solid" ? this.surface : null;
     this.fill.update(filled, this.section.plane.value, view.exaggeration);
-    this.painter.backdrop.ground.mesh.visible = view.grid && mesh !== null;
+    this.painter.backdrop.ground.mesh.visible = view.grid && (this.bare || mesh !== null);
     const { body, moments } = useStudio.getState();
     this.objects.group.visible = body !== null && body.topology === mesh?.topology.id;
     const moment = moments.get(this.latest?.number ?? 0);

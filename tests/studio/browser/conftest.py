@@ -38,7 +38,7 @@ from pathlib import Path
 from voxsoft.studio.server.process import StudioServer
 source, runs, port, token = sys.argv[1:]
 source = Path(source) if source else None
-server = StudioServer(source, runs=Path(runs), port=int(port), token=token)
+server = StudioServer(source, runs=Path(runs), port=int(port), token=token or None)
 server.run_and_exit(lambda address: print(address, flush=True))
 """
 
@@ -77,9 +77,12 @@ class Served:
     port: int
     token: str = "a-token-that-the-tests-know-well-enough"
     process: subprocess.Popen[str] | None = field(default=None, repr=False)
+    printed: str = ""
 
     @property
     def address(self):
+        if not self.token:  # the server has one of its own
+            return self.printed
         return f"http://127.0.0.1:{self.port}/?token={self.token}"
 
     def start(self):
@@ -89,6 +92,7 @@ class Served:
         )
         line = self.process.stdout.readline()
         assert line.startswith("http://127.0.0.1:"), line
+        self.printed = line.strip()
 
     def stop(self):
         if self.process is not None:
@@ -132,10 +136,10 @@ def coarse():
     return COARSE
 
 
-def serve(folder, text=COARSE, name="finger.toml"):
+def serve(folder, text=COARSE, name="finger.toml", **options):
     source = folder / name
     source.write_text(text)
-    server = Served(source, folder / "runs", free_port())
+    server = Served(source, folder / "runs", free_port(), **options)
     server.start()
     return server
 

@@ -84,6 +84,7 @@ def test_opening_another_document_keeps_typed_text_for_undo(typed, word):
     typed.find("discard").click()
     typed.find("document-name").get_by_text("sphere").wait_for()
     typed.page.get_by_role("button", name="Undo (Ctrl+Z)").click()
+    typed.find("toast").get_by_role("button", name="Back to finger.toml").click()
     typed.find("document-name").get_by_text("finger").wait_for()
     typed.until(f"document.querySelector('.cm-content').innerText.includes({word!r})")
 

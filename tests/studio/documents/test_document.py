@@ -192,6 +192,16 @@ def test_undo_takes_back_a_drag_of_a_slider_as_one():
     assert '"2.5 mm"' in edited.text
 
 
+def test_values_typed_quickly_into_one_field_are_changes_of_their_own():
+    edited = document()
+    for step in (20, 21, 22):
+        edited.edit(["parameters", "radius", "value"], f"{step} mm", stroke=step, now=0.1 * step)
+    for value in ("22", "21", "20", "25"):
+        assert f'value = "{value} mm", min' in edited.text
+        edited.undo()
+    assert edited.text == CYLINDER
+
+
 def test_a_slider_that_was_dragged_back_leaves_nothing_to_undo():
     edited = document()
     edited.edit(["voxel_size"], "2.5 mm", now=0.0)
@@ -214,9 +224,9 @@ def test_unsaved_documents_are_offered_newest_first():
     assert third.rev > second.rev > clean.rev > first.rev
     assert (third.before, second.before, first.before) == (second, first, None)
     assert first.after is second
-    assert third.event().can_undo
+    assert (third.event().can_undo, third.event().before) == (False, "cylinder.toml")
     first.replace(CYLINDER)
-    assert first.after is None
+    assert first.after is second
 
 
 def test_only_so_many_documents_are_kept_open():
@@ -296,3 +306,39 @@ class TestWhatIsNotSaved:
         assert written.read_text() == opened.text
         opened.edit(["name"], "another")
         assert opened.event().name == "my-chamber.toml"
+
+
+def test_a_text_that_describes_nothing_yet_is_empty_and_no_fault(tmp_path):
+    begun = template_document("empty", tmp_path)
+    assert begun.empty
+    assert not begun.valid
+    assert begun.event().diagnostics == []
+    shapes = {"ball": {"kind": "sphere", "radius": "20 mm"}}
+    begun.edit(["shapes"], shapes, now=0.0)
+    # A shape without a part is a fault: somebody has begun.
+    assert not begun.empty
+    assert [each.where for each in begun.diagnostics] == ["parts"]
+    begun.edit(["parts", 0], {"shape": "ball", "material": "ecoflex-00-30"}, now=9.0)
+    assert begun.valid
+    assert begun.event().hash
+    begun.undo()
+    begun.undo()
+    assert begun.empty
+    assert begun.design is None
+    begun.replace(begun.text.replace("5 mm", "5"))
+    assert not begun.empty
+    assert {each.where for each in begun.diagnostics} == {"voxel_size", "parts"}
+
+
+def test_a_file_has_one_id_and_new_documents_have_others(tmp_path):
+    first, second = document(), document()
+    assert first.id != second.id
+    first.save(tmp_path / "cylinder.toml")
+    opened = DesignDocument.of_file(tmp_path / "cylinder.toml")
+    assert opened.id == DesignDocument.of_file(tmp_path / "cylinder.toml").id
+    kept = opened.id
+    opened.edit(["parameters", "radius", "value"], "20 mm")
+    assert opened.id == kept
+    assert opened.hash != first.hash
+    opened.undo()
+    assert opened.hash == first.hash

@@ -28,14 +28,28 @@ def test_undo_leads_back_to_the_document_before_with_its_own_file(make_studio, t
             await page.until("document", lambda d: d.dirty)
             await page.send("open", what="file", name=str(leg))
             opened = await page.until("document", lambda d: d.name == "leg.toml")
-            assert opened.can_undo
+            assert (opened.can_undo, opened.before) == (False, "arm.toml")
+            # Undo stops at the start of a document: only a press of its own leads beyond it.
             await page.send("undo")
+            edge = await page.until("edge")
+            assert (edge.way, edge.name, edge.beyond) == ("undo", "leg.toml", "arm.toml")
+            await page.send("undo", beyond=True)
             back = await page.until("document", lambda d: d.name == "arm.toml")
             assert '"20 mm"' in back.text
-            assert (back.dirty, back.can_undo, back.can_redo) == (True, True, True)
+            assert (back.dirty, back.can_undo, back.can_redo) == (True, True, False)
+            # A change made while looking back takes no way on.
+            await page.send("edit", rev=page.rev, path=["voxel_size"], value="3.5 mm")
+            changed = await page.until("document", lambda d: "3.5 mm" in d.text)
+            assert changed.after == "leg.toml"
+            await page.send("undo")
+            await page.until("document", lambda d: "3.5 mm" not in d.text)
+            await page.send("redo")
+            await page.until("document", lambda d: "3.5 mm" in d.text)
+            await page.send("undo")
             await page.send("save")
             await page.until("saved")
             await page.send("redo")
+            await page.send("redo", beyond=True)
             again = await page.until("document", lambda d: d.name == "leg.toml")
             assert again.path == str(leg)
 
@@ -60,9 +74,9 @@ def test_undo_after_a_restart_leads_to_unsaved_changes(make_studio, tmp_path):
 
     async def look():
         async with second.page() as page:
-            await page.until("log", lambda log: "undo leads to them" in log.text)
+            await page.until("log", lambda log: "undo offers the way back" in log.text)
             assert next(e for e in page.log if e["t"] == "document")["name"] == "leg.toml"
-            await page.send("undo")
+            await page.send("undo", beyond=True)
             back = await page.until("document", lambda d: d.name == "arm.toml")
             assert back.path == str(arm)
             assert '"20 mm"' in back.text

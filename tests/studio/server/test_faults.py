@@ -90,7 +90,7 @@ def test_undo_recovers_from_a_broken_design_file(studio, content):
                     break
             assert not message.valid
             assert all(each["line"] >= 1 and each["what"] for each in message.diagnostics)
-            await page.send("undo")
+            await page.send("undo", beyond=True)
             good = await page.until("document", lambda d: d.valid)
             assert '"20 mm"' in good.text
 

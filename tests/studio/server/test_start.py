@@ -89,6 +89,41 @@ def test_files_that_were_opened_or_saved_are_offered_after_a_restart(make_studio
     assert run(recent(make_studio(None))) == ["arm.toml"]
 
 
+def test_a_new_design_that_was_left_unsaved_is_offered_until_it_is_saved(make_studio):
+    first = make_studio(None)
+
+    async def begin():
+        async with first.page() as page:
+            await page.send("open", what="template", name="beam")
+            await page.until("document", lambda d: d.name == "beam.toml")
+            await page.send("edit", rev=page.rev, path=LENGTH, value="90 mm")
+            await page.until("document", lambda d: d.dirty)
+            await page.send("open", what="template", name="empty")
+            start = await page.until("start", lambda s: s.recent)
+            assert [(each["name"], each["path"]) for each in start.recent] == [("beam.toml", "")]
+
+    run(begin())
+    first.stop()
+    second = make_studio(None)
+
+    async def go_on():
+        async with second.page() as page:
+            await page.settled()
+            (listed,) = logged(page)[-1]["recent"]
+            await page.send("open", what="unsaved", name=listed["unsaved"])
+            opened = await page.until("document", lambda d: d.name == "beam.toml")
+            assert '"90 mm"' in opened.text
+            assert (opened.dirty, opened.path) == (True, None)
+            await page.send("save", path="arm.toml")
+            start = await page.until("start", lambda s: len(s.recent) == 1)
+            assert start.recent[0]["path"].endswith("arm.toml")
+            refused = await page.send("open", what="unsaved", name=listed["unsaved"])
+            error = await page.until("error", lambda e: e.seq == refused)
+            assert "not kept" in error.what
+
+    run(go_on())
+
+
 def test_three_answers_open_a_robot_with_values_of_its_own(make_studio):
     studio = make_studio(None)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import uuid
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -51,13 +52,19 @@ class DesignDocument:
         Design of the last text that was good, or None if there was none.
     diagnostics
         Problems of the text as it stands.
+    empty
+        True if the text describes nothing yet: no design, and no fault either.
     saved
         The text that its file holds, or None where there is no file.
     restored
         True if the text comes from a draft: nobody knows its changes.
+    id
+        Names the document beside others that were opened; one file has one id at all times, and
+        a document that a change made of another has the id of that.
+    hash
+        Hash of all that decides the numbers of the design; empty while the text is none.
     before, after
-        Documents that were open before this one, with changes that were not saved, and after it:
-        undo and redo lead there at the ends of this one's own changes.
+        Documents that were open before this one, with changes that were not saved, and after it.
     """
 
     text: str
@@ -68,8 +75,11 @@ class DesignDocument:
     design: Design | None = None
     source: PlainDocument | None = None
     diagnostics: list[events.Diagnostic] = field(default_factory=list)
+    empty: bool = False
     saved: str | None = None
     restored: bool = False
+    id: str = field(default_factory=lambda: uuid.uuid4().hex)
+    hash: str = ""
     before: DesignDocument | None = field(default=None, repr=False)
     after: DesignDocument | None = field(default=None, repr=False)
     _former: dict[str, float] | None = None
@@ -95,12 +105,13 @@ class DesignDocument:
         """
         text = read_text(path)
         whole = path.absolute()
-        return cls(text, path.name, whole, whole.parent, saved=text)
+        own = uuid.uuid5(uuid.NAMESPACE_URL, whole.as_uri()).hex
+        return cls(text, path.name, whole, whole.parent, saved=text, id=own)
 
     @property
     def valid(self) -> bool:
         """True if the text as it stands is a design."""
-        return not any(each.severity == "error" for each in self.diagnostics)
+        return not self.empty and not any(each.severity == "error" for each in self.diagnostics)
 
     @property
     def dirty(self) -> bool:
@@ -162,19 +173,34 @@ class DesignDocument:
             place = None
         self._last_place, self._last_time = place, now
         self._redo.clear()
-        self.after = None
         self._become(text)
         return True
 
-    def edit(self, path: list[str | int], value: object, *, now: float | None = None) -> bool:
+    def edit(
+        self,
+        path: list[str | int],
+        value: object,
+        *,
+        stroke: int = 0,
+        now: float | None = None,
+    ) -> bool:
         """Set one value by its path, keeping comments; returns whether the text changed.
+
+        Parameters
+        ----------
+        path, value
+            The place, and its value; None removes it.
+        stroke
+            Number of the stroke of the hand: edits of one place in one stroke are one change.
+        now
+            The time of the change [s].
 
         Raises
         ------
         DesignError
             The text is not TOML, or the path leads nowhere.
         """
-        return self.replace(with_value(self.text, path, value), tuple(path), now=now)
+        return self.replace(with_value(self.text, path, value), (stroke, *path), now=now)
 
     def undo(self) -> bool:
         """Take back the last change; returns whether there was one."""
@@ -230,20 +256,29 @@ class DesignDocument:
         design = self.design
         return events.Document(
             rev=self.rev,
+            id=self.id,
+            hash=self.hash,
             text=self.text,
             name=self.title,
             path=None if self.path is None else str(self.path),
             folder=str(self.folder),
             dirty=self.edited,
             valid=self.valid,
+            empty=self.empty,
             parameters=self._parameters(),
             design=None if design is None else design.model_dump(by_alias=True, exclude_none=True),
             source=self.source,
             diagnostics=self.diagnostics,
-            can_undo=bool(self._undo) or self.before is not None,
-            can_redo=bool(self._redo) or self.after is not None,
+            can_undo=bool(self._undo) or self._is_step(self.before),
+            can_redo=bool(self._redo) or self._is_step(self.after),
+            before="" if self.before is None else self.before.title,
+            after="" if self.after is None else self.after.title,
             histories=self._histories,
         )
+
+    def _is_step(self, other: DesignDocument | None) -> bool:
+        """Check if a change led from another document to this one, or back."""
+        return other is not None and other.id == self.id
 
     def _swap(self, taken: list[str], given: list[str]) -> bool:
         if not taken:
@@ -260,7 +295,7 @@ class DesignDocument:
 
     def _read(self) -> None:
         """Read the text; where it is no design the last good one stays."""
-        self.diagnostics = []
+        self.diagnostics, self.hash, self.empty = [], "", False
         try:
             document = read_document(self.text, self.name)
             self.source = document
@@ -268,8 +303,14 @@ class DesignDocument:
             self._histories = timeline_of(self.design, document)
             if self._former is None:
                 self._former = self._values()
+            self.hash = self.design.hash
         except VoxSoftError as error:
-            self.diagnostics = diagnostics_of(error, self.text)
+            self.empty = _lacks_all(self.source, error)
+            if self.empty:
+                # Nothing of an earlier text is left that could be shown for it.
+                self.design, self._histories = None, []
+            else:
+                self.diagnostics = diagnostics_of(error, self.text)
 
     def _values(self) -> dict[str, float]:
         parameters = {} if self.design is None else self.design.parameters
@@ -289,6 +330,13 @@ class DesignDocument:
             )
             for name, parameter in self.design.parameters.items()
         ]
+
+
+def _lacks_all(source: PlainDocument | None, error: VoxSoftError) -> bool:
+    """Check if a text is no design only because nothing is described in it yet."""
+    if any((source or {}).get(section) for section in ("shapes", "parts", "bodies")):
+        return False
+    return [problem.where for problem in error.problems] == ["parts"]
 
 
 def _parameter(

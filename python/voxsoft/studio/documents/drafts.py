@@ -12,6 +12,7 @@ import msgspec
 from voxsoft.errors import FileError, VoxSoftError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
+from voxsoft.studio.documents.document import DesignDocument
 
 #: Name of the file.
 DRAFT: Final = "draft.json"
@@ -20,16 +21,23 @@ WITHIN: Final = 1.0
 
 
 class Draft(msgspec.Struct, frozen=True):
-    """A text that was not saved, its name, and its file ("" for none)."""
+    """A text that was not saved, its name, its file ("" for none), and the id of its document."""
 
     text: str
     name: str
     path: str
+    id: str = ""
 
     @property
     def file(self) -> Path | None:
         """The file that it is a draft of, if it is still there."""
         return Path(self.path) if self.path and Path(self.path).is_file() else None
+
+    def document(self, home: Path) -> DesignDocument:
+        """The draft as a document without a file, which would be saved in the folder `home`."""
+        document = DesignDocument(self.text, self.name, folder=home, restored=True)
+        document.id = self.id or document.id
+        return document
 
 
 class Drafts:

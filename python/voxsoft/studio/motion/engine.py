@@ -64,6 +64,10 @@ class Engine(threading.Thread):
         """Take another body, unloaded or in a known equilibrium; look for it where asked."""
         self._inbox.put(lambda: self._stage.show(body, loaded=loaded, known=known))
 
+    def leave(self) -> None:
+        """Show no body any more, as the document has none."""
+        self._inbox.put(self._stage.leave)
+
     def wait_for_body(self) -> None:
         """Say that a body is being meshed, unless one is moving meanwhile."""
         self._inbox.put(self._stage.wait_for_body)

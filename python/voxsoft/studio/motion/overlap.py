@@ -57,6 +57,10 @@ class OverlapWatch:
             self._reported = found
             self._bus.publish(found)
 
+    def leave(self) -> None:
+        """Forget the body that was shown."""
+        self._seen = self._reported = None
+
     def send_snapshot(self, tab: Tab) -> None:
         """Send a new tab the events that the others have."""
         if self._reported is not None:

@@ -39,6 +39,12 @@ class Pictures:
         self._bus.publish(body.event())
         self.forget()
 
+    def leave(self) -> None:
+        """Show every tab that there is no body."""
+        self._report = self._smooth = None
+        self._bus.publish(events.Bare())
+        self.forget()
+
     def examined(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
         """Pass on the report of the checks of the body, and its smooth surface if it has one."""
         self._report, self._smooth = report, smooth
@@ -52,6 +58,7 @@ class Pictures:
         tab.greeted = True
         body, canvas = self._playback.body, self._playback.canvas
         if body is None or canvas is None:
+            self._bus.send_to(tab, events.Bare())
             return
         self._bus.send_to(tab, self._event(body))
         if tab.view.mode == "tets":

@@ -97,11 +97,18 @@ class Playback:
             self._hands = None
         return player is not None and player.wants_play and not body.not_live
 
+    def leave(self) -> None:
+        """Show no body any more; choices made by hand for all bodies stay."""
+        self.body = self.canvas = self.player = None
+        self.result = self.vibration = self.doing = self.progress = None
+        self.moments, self.contact_fields, self._probes = [], {}, []
+        self.sentence, self._hands = "", None
+
     def let_go(self) -> None:
         """Stop time and forget changes made by hand, as another document is opened."""
         if self.player is not None:
             self.player.do(commands.Pause(seq=0))
-        self._hands = Hands()
+        self._hands, self._probes = Hands(), []
 
     def do(self, command: Command) -> list[Event]:
         """Execute a command for the player, and return its events.

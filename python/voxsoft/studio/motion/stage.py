@@ -54,6 +54,7 @@ class Stage:
         self._later, self._solved = later, solved
         self._search: RestSearch | None = None
         self._equilibrium: events.Equilibrium | None = None
+        self._past = False
 
     # The body
 
@@ -63,7 +64,7 @@ class Stage:
         If it is to be shown `loaded` and its equilibrium is not known, a search for it begins.
         """
         self.stop_search()
-        self._equilibrium = None
+        self._equilibrium, self._past = None, False
         again = self.playback.begin(body)
         self.pictures.begin(body)
         self.bus.publish(self.playback.plot())
@@ -77,15 +78,25 @@ class Stage:
         else:
             self._come_to_rest(known)
 
+    def leave(self) -> None:
+        """Show no body any more."""
+        self.stop_search()
+        self._equilibrium, self._past = None, False
+        self.playback.leave()
+        self.pictures.leave()
+        self.overlaps.leave()
+        self.publish_stat()
+
     def wait_for_body(self) -> None:
         """Say that a body is being meshed, unless one is moving meanwhile."""
+        self._leave_past()
         if not self.playback.moving and self._search is None:
             self.playback.doing, self.playback.sentence = "meshing", "Meshing"
             self.publish_stat()
 
     def stay(self, sentence: str) -> None:
         """Say why the body that was being meshed does not come."""
-        if self.playback.doing == "meshing":
+        if self._leave_past() or self.playback.doing == "meshing":
             self.playback.say(sentence)
             self.publish_stat()
 
@@ -95,8 +106,16 @@ class Stage:
             self.pictures.examined(body, report, smooth)
 
     def forget(self) -> None:
-        """Stop time, as another document is opened."""
+        """Stop time, as another document is opened: the shown body is soon that of the past."""
         self.playback.let_go()
+        self._past = self.playback.body is not None
+
+    def _leave_past(self) -> bool:
+        """Take away the body of another document, of which the next does not come at once."""
+        past = self._past
+        if past:
+            self.leave()
+        return past
 
     def send_snapshot(self, tab: Tab) -> None:
         """Show the present state to a new tab."""

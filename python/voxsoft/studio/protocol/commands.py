@@ -57,10 +57,10 @@ class Open(Command):
     """Open a document: a template, a robot, a file or run folder, an upload, or a study's trial.
 
     A trial is named "ID/INDEX"; a run by its id in the list of runs; a start by its three answers,
-    "pressure-finger-bend".
+    "pressure-finger-bend"; a document that was left without being saved by its id.
     """
 
-    what: Literal["template", "robot", "start", "file", "run", "upload", "trial"]
+    what: Literal["template", "robot", "start", "file", "run", "upload", "trial", "unsaved"]
     name: ShortText
 
 
@@ -72,11 +72,16 @@ class Text(Command):
 
 
 class Edit(Command):
-    """Set one value of the document, keeping its comments; `null` removes the key."""
+    """Set one value of the document, keeping its comments; `null` removes the key.
+
+    Edits of one place in one `stroke` of the hand, such as the drag of a slider, are undone
+    together.
+    """
 
     rev: int
     path: Path
     value: Json = None
+    stroke: Count = 0
 
 
 class OneEdit(Entry):
@@ -197,11 +202,21 @@ class Ghosts(Command):
 
 
 class Undo(Command):
-    """Take back the last change of the document."""
+    """Take back the last change of the document.
+
+    If it has none, `beyond` leads back to the document before it; else `edge` names that.
+    """
+
+    beyond: bool = False
 
 
 class Redo(Command):
-    """Make the change again that was taken back last."""
+    """Make the change again that was taken back last.
+
+    If there is none, `beyond` leads on to the document after this one; else `edge` names that.
+    """
+
+    beyond: bool = False
 
 
 class Save(Command):

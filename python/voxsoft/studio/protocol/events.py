@@ -166,13 +166,17 @@ class Way(Entry):
 
 
 class RecentFile(Entry):
-    """A design file that was opened or saved; `when` is ISO 8601, `picture` where it is drawn."""
+    """A design that was opened or saved; `when` is ISO 8601, `picture` where it is drawn.
+
+    One that was left without being saved has an id in `unsaved`, and neither path nor folder.
+    """
 
     path: str
     name: str
     folder: str
     when: str
     picture: str = ""
+    unsaved: str = ""
 
 
 class Start(Event):
@@ -248,24 +252,41 @@ class HistoryLine(Entry):
 class Document(Event):
     """The document as it stands; `design` is that of the last text that was good (or null).
 
+    `id` tells it from other documents that were open, `hash` its present design from earlier ones.
     `dirty`: it differs from the text opened or saved last. `folder` is where it would be saved.
-    `histories` are those of the last text that was good.
+    `empty`: nothing is described yet, so that it is no design, and has no fault either.
+    `before` and `after` name documents with unsaved changes that were open before and after it;
+    undo and redo come there only where they are asked to go beyond its own changes. `histories` are
+    those of the last text that was good.
     """
 
     rev: int
+    id: str
+    hash: str
     text: str
     name: str
     path: str | None
     folder: str
     dirty: bool
     valid: bool
+    empty: bool
     parameters: list[Parameter]
     design: dict[str, Json] | None
     source: dict[str, Json] | None
     diagnostics: list[Diagnostic]
     can_undo: bool
     can_redo: bool
+    before: str = ""
+    after: str = ""
     histories: list[HistoryLine] = field(default_factory=list)
+
+
+class Edge(Event):
+    """Undo or redo has come to the end of the changes of a document; `beyond` is the next one."""
+
+    way: Literal["undo", "redo"]
+    name: str
+    beyond: str
 
 
 class DesignFile(Entry):
@@ -527,6 +548,10 @@ class GrabState(Entry):
     force: Triple
     stretch: float
     object: int | None = None
+
+
+class Bare(Event):
+    """There is no body to be shown: the document has none, or it is not there yet."""
 
 
 class Stat(Event):
@@ -852,6 +877,18 @@ class Job(Event):
     parameters: list[str] = field(default_factory=list)
     objectives: list[str] = field(default_factory=list)
     directions: list[str] = field(default_factory=list)
+
+
+class Subject(Event):
+    """The design that a job is of: its name, its hash, and the document that it was started from.
+
+    `document` is empty for a job of an earlier studio.
+    """
+
+    job: str
+    document: str
+    design: str
+    hash: str
 
 
 class Trial(Event):
@@ -1214,10 +1251,12 @@ AnyEvent = (
     Hello
     | Start
     | Document
+    | Edge
     | DesignFiles
     | Materials
     | Ghosts
     | Body
+    | Bare
     | Stat
     | Equilibrium
     | Fineness
@@ -1229,6 +1268,7 @@ AnyEvent = (
     | Plot
     | Picked
     | Job
+    | Subject
     | Trial
     | Trials
     | Generation

@@ -85,6 +85,9 @@ class Tab:
 
     def put(self, event: events.Event) -> None:
         """Queue an event."""
+        if isinstance(event, events.Bare):
+            self._frame = None
+            self._forget(lambda waiting: isinstance(waiting, (bytes, events.Body)))
         if isinstance(event, _STATES):
             self._forget(lambda waiting: type(waiting) is type(event))
         if not (isinstance(event, events.Plot) and self._joined(event)):

@@ -22,6 +22,7 @@ from voxsoft.studio.protocol import events
 from voxsoft.studio.protocol.event_bus import Tabs
 from voxsoft.studio.protocol.tab import Tab
 from voxsoft.studio.running.job_journal import FINISHED, JobJournal
+from voxsoft.studio.running.subject import subject_of
 
 #: Standard error of a process.
 LOG: Final = "job.log"
@@ -43,6 +44,8 @@ class Job:
         Folder of the process; the job has its name.
     state
         The last it said of itself.
+    subject
+        The design that it is of, where that can be read.
     kept
         Further events for a tab that comes later.
     """
@@ -50,6 +53,7 @@ class Job:
     folder: Path
     state: events.Job
     process: subprocess.Popen[str]
+    subject: events.Subject | None = None
     kept: list[events.Event] = field(default_factory=list)
     trials: dict[int, events.Trial] = field(default_factory=dict)
 
@@ -82,8 +86,17 @@ class Jobs:
         self._jobs: dict[str, Job] = {}
         self._lock = threading.Lock()
 
-    def start(self, spec: Spec, folder: Path) -> Job:
+    def start(self, spec: Spec, folder: Path, document: str = "") -> Job:
         """Start a job in its folder, or go on with it.
+
+        Parameters
+        ----------
+        spec
+            The job.
+        folder
+            Its folder.
+        document
+            Id of the document that it is started from; empty where there is none.
 
         Raises
         ------
@@ -126,8 +139,10 @@ class Jobs:
                 message="",
                 stage="starting",
             )
-            job = Job(folder, state, process)
+            job = Job(folder, state, process, subject_of(spec, folder.name, document))
             self._jobs[folder.name] = job
+        if job.subject is not None:
+            self._tabs.publish(job.subject)
         self._tabs.publish(state)
         threading.Thread(target=self._listen, args=(job,), daemon=True).start()
         return job
@@ -160,6 +175,8 @@ class Jobs:
     def send_snapshot(self, tab: Tab) -> None:
         """Tell a new tab of all jobs."""
         for job in list(self._jobs.values()):
+            if job.subject is not None:
+                self._tabs.send_to(tab, job.subject)
             self._tabs.send_to(tab, job.state)
             for event in [*job.kept, *job.trials.values()]:
                 self._tabs.send_to(tab, event)

@@ -11,12 +11,14 @@ import msgspec
 
 from voxsoft.errors import FileError, VoxSoftError
 from voxsoft.files.cards import load_card_file
+from voxsoft.jobs import load
 from voxsoft.jobs.folder import holds_job
 from voxsoft.materials import constants_of
 from voxsoft.studio.protocol import events
 from voxsoft.studio.running.job_journal import FINISHED, read_journal
 from voxsoft.studio.running.runs import card_of, kind_of, read_summary
 from voxsoft.studio.running.studying import stored_study, trials_event
+from voxsoft.studio.running.subject import subject_of
 from voxsoft.units import format_quantity
 
 
@@ -31,7 +33,7 @@ def stored_job(folder: Path) -> list[events.Event]:
     kind = kind_of(folder)
     if kind == "study":
         trials = trials_event(folder.name, stored_study(folder))
-        return [*_last_state(folder, len(trials.trials)), trials]
+        return [*_subject(folder), *_last_state(folder, len(trials.trials)), trials]
     if kind != "calibrate":
         return []
     reported: list[events.Event] = [
@@ -40,7 +42,15 @@ def stored_job(folder: Path) -> list[events.Event]:
     if not any(isinstance(event, events.Calibrated) for event in reported):
         with suppress(FileNotFoundError):
             reported = _from_summary(folder)
-    return [*_last_state(folder), *reported]
+    return [*_subject(folder), *_last_state(folder), *reported]
+
+
+def _subject(folder: Path) -> Iterator[events.Subject]:
+    """The design of a job; nothing for a folder that tells no job, or one that cannot be read."""
+    with suppress(VoxSoftError):
+        subject = subject_of(load(folder, check=False).spec, folder.name)
+        if subject is not None:
+            yield subject
 
 
 def _last_state(folder: Path, done: int | None = None) -> Iterator[events.Job]:

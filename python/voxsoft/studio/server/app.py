@@ -26,7 +26,7 @@ from voxsoft.studio.protocol import commands, events
 from voxsoft.studio.protocol.codec import ProtocolError, decode, encode
 from voxsoft.studio.protocol.tab import Tab
 from voxsoft.studio.protocol.wire import LARGEST_UPLOAD, PROTOCOL, CloseCode
-from voxsoft.studio.server.security import Guard, cookie_name
+from voxsoft.studio.server.security import Guard, cookie_name, is_token
 from voxsoft.studio.server.session import Session
 
 Found = TypeVar("Found")
@@ -59,7 +59,7 @@ def make_app(session: Session, token: str, port: int) -> Guard:
     port
         Port of the server.
     """
-    pages = _Pages(session, port)
+    pages = _Pages(session, token, port)
     routes = [
         Route("/", pages.index),
         Route("/assets/{path:path}", pages.asset),
@@ -88,8 +88,8 @@ def make_app(session: Session, token: str, port: int) -> Guard:
 class _Pages:
     """The routes of one session."""
 
-    def __init__(self, session: Session, port: int) -> None:
-        self._session, self._port = session, port
+    def __init__(self, session: Session, token: str, port: int) -> None:
+        self._session, self._token, self._port = session, token, port
         # One thread for commands, so that they follow each other as they were sent.
         self._commands = ThreadPoolExecutor(1, "studio-commands")
         self._files = ThreadPoolExecutor(2, "studio-files")
@@ -107,9 +107,10 @@ class _Pages:
     async def index(self, request: Request) -> Response:
         page = page_file("index.html")
         response = HTMLResponse(page or _NO_PAGE, headers={"cache-control": "no-store"})
-        if token := request.query_params.get("token"):
+        # An old address, as from the history of the browser, must not take the right cookie away.
+        if is_token(request.query_params.get("token", ""), self._token):
             response.set_cookie(
-                cookie_name(self._port), token, httponly=True, samesite="strict", path="/"
+                cookie_name(self._port), self._token, httponly=True, samesite="strict", path="/"
             )
         return response
 

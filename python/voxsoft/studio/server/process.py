@@ -15,6 +15,7 @@ import uvicorn
 
 from voxsoft.errors import StudyError
 from voxsoft.studio.protocol.codec import LONGEST_MESSAGE
+from voxsoft.studio.server.admission import Admission, admissions, admit
 from voxsoft.studio.server.app import make_app
 from voxsoft.studio.server.security import new_token
 from voxsoft.studio.server.session import Session
@@ -33,9 +34,10 @@ class StudioServer:
     runs
         Folder of the runs.
     port
-        Port of the server; 0 takes one that is free.
+        Port of the server; 0 takes that of the last studio on these runs, or one that is free.
     token
-        Token that a browser must know; default: a new random one.
+        Token that a browser must know; default: that of the last studio on this port and these
+        runs, by which its tabs come back, or a new random one.
 
     Attributes
     ----------
@@ -58,9 +60,15 @@ class StudioServer:
         self, source: Path | None = None, *, runs: Path, port: int = 0, token: str | None = None
     ) -> None:
         self.session = Session(runs, source)
-        self._listener = _listen(port)
+        known = [] if token else admissions(runs)
+        again = _listen_again(known) if port == 0 else None
+        self._listener = again or _listen(port)
         self.port = int(self._listener.getsockname()[1])
-        self.token = token or new_token()
+        self.token = token or next(
+            (each.token for each in known if each.port == self.port), new_token()
+        )
+        if not token:
+            admit(runs, self.port, self.token)
         self.address = f"http://{ADDRESS}:{self.port}/?token={self.token}"
         config = uvicorn.Config(
             make_app(self.session, self.token, self.port),
@@ -108,9 +116,20 @@ class StudioServer:
         self._server.should_exit = True
 
 
+def _listen_again(known: list[Admission]) -> socket.socket | None:
+    """Listen on the port of the last studio, if there was one and its port is free."""
+    if not known:
+        return None
+    try:
+        return _listen(known[0].port)
+    except StudyError:
+        return None
+
+
 def _listen(port: int) -> socket.socket:
     listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
-    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    if sys.platform != "win32":  # there it would let two programs have one port
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listener.bind((ADDRESS, port))
     except (OSError, OverflowError) as error:

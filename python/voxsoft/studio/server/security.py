@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hmac
 import json
+import re
 import secrets
 from collections.abc import Mapping
 from http.cookies import CookieError, SimpleCookie
@@ -22,9 +23,23 @@ _REFUSAL: Final = {
 }
 
 
+_REFUSED_PAGE: Final = """<!doctype html><html lang="en"><meta charset="utf-8">
+<meta name="viewport" content="width=device-width"><meta name="color-scheme" content="dark light">
+<link rel="icon" href="data:,"><title>VoxSoft studio</title>
+<style>body{{font:16px/1.5 system-ui,sans-serif;max-width:40em;margin:20vh auto;padding:0 1em}}
+</style><h1>This address is no longer valid</h1><p>{sentence}</p>
+<p>Start <code>voxsoft studio</code> if it does not run, and open the address that it prints.
+What was edited is kept.</p></html>"""
+
+
 def new_token() -> str:
     """Make a token that nobody guesses."""
     return secrets.token_urlsafe(24)
+
+
+def is_token(given: str, token: str) -> bool:
+    """Check a token, in a time that tells nothing of it."""
+    return hmac.compare_digest(given.encode(), token.encode())
 
 
 def content_policy(port: int) -> str:
@@ -85,7 +100,7 @@ class Guard:
             # Before it is accepted, closing a websocket answers its request with 403.
             await send({"type": "websocket.close", "code": 1008, "reason": refusal})
         else:
-            await _answer(self._with_headers(send), refusal)
+            await _answer(self._with_headers(send), refusal, page=_wants_page(scope))
 
     def _refusal(self, scope: Scope) -> str | None:
         headers = {
@@ -108,7 +123,7 @@ class Guard:
             cookie = None
         if cookie is not None:
             given.append(cookie.value)
-        return any(hmac.compare_digest(each.encode(), self._token.encode()) for each in given)
+        return any(is_token(each, self._token) for each in given)
 
     def _with_headers(self, send: Send) -> Send:
         added = [
@@ -133,8 +148,24 @@ def cookie_name(port: int) -> str:
     return f"voxsoft_studio_{port}"
 
 
-async def _answer(send: Send, refusal: str) -> None:
-    body = json.dumps({"where": "request", "what": refusal, "hint": ""}).encode()
-    headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
+def _wants_page(scope: Scope) -> bool:
+    """True for a request of the address bar, whose answer is read by a person."""
+    accepted = dict(scope["headers"]).get(b"accept", b"")
+    return scope["path"] == "/" and b"text/html" in accepted
+
+
+async def _answer(send: Send, refusal: str, *, page: bool) -> None:
+    if page:
+        kind, body = b"text/html; charset=utf-8", _page(refusal).encode()
+    else:
+        kind = b"application/json"
+        body = json.dumps({"where": "request", "what": refusal, "hint": ""}).encode()
+    headers = [(b"content-type", kind), (b"content-length", str(len(body)).encode())]
     await send({"type": "http.response.start", "status": 403, "headers": headers})
     await send({"type": "http.response.body", "body": body})
+
+
+def _page(refusal: str) -> str:
+    # The code marks are those of the sentence; an icon of its own keeps the browser from asking.
+    sentence = re.sub(r"`([^`]*)`", r"<code>\1</code>", f"{refusal[:1].upper()}{refusal[1:]}.")
+    return _REFUSED_PAGE.format(sentence=sentence)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from functools import singledispatchmethod
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 from voxsoft._folders import folder_name
 from voxsoft.design import Design
@@ -147,6 +147,8 @@ class Session:
         self._fresh = source is None and self._drafts.read() is None
         self._notes: list[str] = []
         self.document = self._first_document(source)
+        #: Revision at which the document came; bodies of earlier ones are of other documents.
+        self._shown_since = self.document.rev
         if self.document.path is not None:
             self._recent.note(self.document.path)
 
@@ -231,7 +233,7 @@ class Session:
     @_execute.register
     def _on_edit(self, command: commands.Edit, tab: Tab) -> None:
         self._author = tab
-        self._changed(self.document.edit(command.path, command.value))
+        self._changed(self.document.edit(command.path, command.value, stroke=command.stroke))
 
     @_execute.register
     def _on_edits(self, command: commands.Edits, tab: Tab) -> None:
@@ -323,6 +325,8 @@ class Session:
         return several_of(self.document)
 
     def _good(self, document: DesignDocument) -> tuple[PlainDocument, Design]:
+        if document.empty:
+            raise DesignError("design", "describes nothing yet", "add a shape first")
         if document.source is None or document.design is None or not document.valid:
             raise DesignError("design", "is not valid", "fix the underlined errors")
         return document.source, document.design
@@ -335,7 +339,7 @@ class Session:
         if document is self.document:
             self._changed(document.replace(text, place))
             return
-        document = DesignDocument(text, document.name, folder=document.folder)
+        document = DesignDocument(text, document.name, folder=document.folder, id=self.document.id)
         document.follow(self.document)
         # Undo leads back also to a document that is saved: this was a change of it.
         document.before, self.document.after = self.document, document
@@ -346,16 +350,26 @@ class Session:
         self._author = tab
         if self.document.undo():
             self._announce()
-        elif self.document.before is not None:
-            self._turn_to(self.document.before)
+        else:
+            self._go_beyond("undo", self.document.before, tab, turn=command.beyond)
 
     @_execute.register
     def _on_redo(self, command: commands.Redo, tab: Tab) -> None:
         self._author = tab
         if self.document.redo():
             self._announce()
-        elif self.document.after is not None:
-            self._turn_to(self.document.after)
+        else:
+            self._go_beyond("redo", self.document.after, tab, turn=command.beyond)
+
+    def _go_beyond(
+        self, way: Literal["undo", "redo"], next: DesignDocument | None, tab: Tab, *, turn: bool
+    ) -> None:
+        """Go to the next document at the end of the changes of one, or say only which it is."""
+        if next is not None and (turn or next.id == self.document.id):
+            self._turn_to(next)
+            return
+        name = "" if next is None else next.title
+        self.tabs.send_to(tab, events.Edge(way=way, name=self.document.title, beyond=name))
 
     @_execute.register
     def _on_save(self, command: commands.Save, tab: Tab) -> None:
@@ -366,6 +380,7 @@ class Session:
                 self.tabs.send_to(tab, events.FileExists(path=str(there)))
                 return
         written = self._saved(path)
+        self._recent.forget(self.document.id)
         self._keep_draft(now=True)
         self._begun()
         self.tabs.publish(self.document.event())
@@ -430,12 +445,15 @@ class Session:
                 self._open(document_at(Path(command.name), self._home))
             case "upload":
                 self._open_upload(command.name)
+            case "unsaved":
+                self._open(self._recent.unsaved(command.name).document(self._home))
             case "run":
                 self._open_run(self.list.folder_of(command.name))
             case "trial":
                 run, _, number = command.name.rpartition("/")
                 folder = self.list.folder_of(run)
                 document, at_rest = trial_document(folder, number, self._home)
+                self._name_as(document, run)
                 self._open(document, stored_in(folder) if at_rest else None)
 
     @property
@@ -461,9 +479,18 @@ class Session:
         self._show(document)
 
     def _show(self, document: DesignDocument) -> None:
-        self.document = document
+        self._list_unsaved(document)
+        self.document, self._shown_since = document, document.rev
         self.engine.forget()
         self._announce()
+
+    def _list_unsaved(self, next: DesignDocument) -> None:
+        """Let Recent lead back to a document that has no file, as another takes its place."""
+        left = self.document
+        if left.path is not None or left.empty or not left.edited or left.id == next.id:
+            return
+        self._recent.note_unsaved(Draft(left.text, left.title, "", left.id))
+        self.tabs.publish(start_event(self._recent.files(), fresh=False))
 
     def _begun(self) -> None:
         """Note that there is work now, and the file that it is of where that is another one."""
@@ -493,12 +520,20 @@ class Session:
         kind = kind_of(folder)
         try:
             stored = [RunState(folder)] if kind == "run" else None
-            self._open(document_at(folder, self._home), stored)
+            document = document_at(folder, self._home)
+            self._name_as(document, folder.name)
+            self._open(document, stored)
         except FileError as error:
             if kind != "calibrate":
                 raise
             # One that `voxsoft calibrate` wrote: there is still its result to be shown.
             self.tabs.publish(events.Log(level="info", text=str(error)))
+
+    def _name_as(self, document: DesignDocument, run: str) -> None:
+        """Give the design of a job the id of the document that the job was started from."""
+        job = self.jobs.known(run)
+        if job is not None and job.subject is not None and job.subject.document:
+            document.id = job.subject.document
 
     # Jobs
 
@@ -540,7 +575,7 @@ class Session:
         folder = self._free_folder(name)
         if isinstance(spec, CalibrateSpec):
             spec = spec.replace(card=card_name(folder.name))
-        self.jobs.start(spec, folder)
+        self.jobs.start(spec, folder, document.id)
         self._runs_changed()
 
     @_execute.register
@@ -665,19 +700,26 @@ class Session:
             document = document.before
         draft = None
         if document is not None:
-            draft = Draft(document.text, document.name, str(document.path or ""))
+            draft = Draft(document.text, document.name, str(document.path or ""), document.id)
         try:
             self._drafts.keep(draft, now=now)
         except VoxSoftError as error:
             self.tabs.publish(events.Log(level="warning", text=f"the draft is not kept: {error}"))
 
     def _mesh(self) -> None:
-        if self.document.valid and self.document.design is not None:
-            self._mesher.ask(self.document.design, self.document.rev)
+        """Mesh the document if it is good; of one that never was there is nothing to be shown."""
+        document = self.document
+        if document.design is None:
+            self.engine.leave()
+        elif document.valid or document.rev == self._shown_since:
+            self._mesher.ask(document.design, document.rev)
 
     # The mesher's answers, on its thread
 
     def _meshed(self, body: StudioBody) -> None:
+        with self._lock:
+            if body.rev < self._shown_since or self.document.design is None:
+                return
         # A run that came to rest is shown as it ended, not as it began.
         asked = self._loaded
         loaded = asked is not None and asked.rev == body.rev
@@ -694,8 +736,10 @@ class Session:
         self.tabs.publish(events.Log(level="error", text=text))
 
     def _not_meshed(self, rev: int, error: VoxSoftError) -> None:
-        self.engine.stay(str(error))
         with self._lock:
+            if rev < self._shown_since:
+                return
+            self.engine.stay(str(error))
             if rev == self.document.rev:
                 self.document.diagnostics = diagnostics_of(error, self.document.text)
                 self.tabs.publish(self.document.event())
@@ -771,9 +815,9 @@ class Session:
         return self.engine.shown(name, text)
 
     def picture(self, of: str, cancelled: threading.Event) -> Thumbnail:
-        """Draw a picture: "trial/ID/INDEX", "file/PATH" or "version/ID" of the document.
+        """Draw a picture: "trial/ID/INDEX", "file/PATH", "unsaved/ID" or "version/ID".
 
-        Only files that the start screen lists are drawn.
+        Versions are those of the document. Only files that the start screen lists are drawn.
 
         Raises
         ------
@@ -793,6 +837,9 @@ class Session:
             return self.album.of_text(one.text, one.name, Path(one.folder), cancelled)
         if kind == "file" and any(each.path == name for each in self._recent.files()):
             return self.album.of_file(Path(name), cancelled)
+        if kind == "unsaved":
+            draft = self._recent.unsaved(name)
+            return self.album.of_text(draft.text, draft.name, self._home, cancelled)
         raise FileError(of[:200], "is not known", "reload the page")
 
     def thumbnail(self, run: str) -> Path | None:
@@ -810,16 +857,16 @@ class Session:
             return document
         file = draft.file
         if source is None and file is None:
-            return DesignDocument(draft.text, draft.name, folder=self._home, restored=True)
+            return draft.document(self._home)
         document = document_at(source or file or Path(), self._home)
         if file is not None and file == document.path:
             if document.replace(draft.text):
                 self._notes.append("Changes that were not saved are back; undo goes to the file.")
         else:
-            unsaved = DesignDocument(draft.text, draft.name, folder=self._home, restored=True)
+            unsaved = draft.document(self._home)
             if file is not None:
                 unsaved = DesignDocument.of_file(file)
                 unsaved.replace(draft.text)
             document.follow(unsaved)
-            self._notes.append(f"Changes of {draft.name} were not saved; undo leads to them.")
+            self._notes.append(f"Changes of {draft.name} were not saved; undo offers the way back.")
         return document

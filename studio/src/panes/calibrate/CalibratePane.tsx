@@ -9,8 +9,10 @@ import type { FitRange } from "../../protocol";
 import { onReady } from "../../store/session";
 import { useStudio } from "../../store/studio";
 import { openHere } from "../design/edits";
+import { troubleOf } from "../design/trouble";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
+import { PastNote } from "../jobs/PastNote";
 import { JobChooser } from "../study/StudyPane";
 import { useStart } from "../study/useStart";
 import { useCalibration } from "./current";
@@ -52,12 +54,11 @@ export default function CalibratePane() {
   const constants = hello.fit_ranges[material?.model ?? ""] ?? [];
   const help = helpOfModel(form.root, material?.model ?? "");
   const probes = Object.keys((form.source.probes as object | undefined) ?? {}).length;
-  const trouble = !document.valid
-    ? "Fix the errors of the design first."
-    : obstacle(draft, measured, constants);
+  const trouble = troubleOf(document) ?? obstacle(draft, measured, constants);
   return (
     <div className="pane calibrate" data-testid="calibrate-form">
       {current?.job && <JobCard job={current.job} />}
+      {current && <PastNote job={current.id} />}
       <JobChooser kind="calibrate" label="Calibration" />
       {current?.result && (
         <Result key={current.result.job} result={current.result} root={form.root} />

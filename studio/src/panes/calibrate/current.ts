@@ -3,7 +3,7 @@ import { useMemo } from "react";
 import type { CalibratedEvent, GenerationEvent, JobEvent, OverlayEvent } from "../../protocol";
 import { usePage } from "../../store/page";
 import { useStudio } from "../../store/studio";
-import { useJob } from "../study/current";
+import { useIsOwn, useJob } from "../study/current";
 
 export interface CurrentCalibration {
   readonly id: string;
@@ -21,12 +21,12 @@ export function useCalibration(): CurrentCalibration | null {
   const generations = useStudio((state) => state.generations);
   const overlays = useStudio((state) => state.overlays);
   const results = useStudio((state) => state.calibrated);
+  const isOwn = useIsOwn();
   return useMemo(() => {
     const known = (id: string) => id in generations || id in overlays || id in results;
-    const id =
-      chosen !== null && known(chosen)
-        ? chosen
-        : (job?.id ?? Object.keys(results).at(-1) ?? Object.keys(overlays).at(-1) ?? null);
+    const newest = () =>
+      Object.keys(results).findLast(isOwn) ?? Object.keys(overlays).findLast(isOwn) ?? null;
+    const id = chosen !== null && known(chosen) ? chosen : (job?.id ?? newest());
     if (id === null) return null;
     return {
       id,
@@ -35,5 +35,5 @@ export function useCalibration(): CurrentCalibration | null {
       overlay: overlays[id] ?? null,
       result: results[id] ?? null,
     };
-  }, [chosen, job, generations, overlays, results]);
+  }, [chosen, job, generations, overlays, results, isOwn]);
 }

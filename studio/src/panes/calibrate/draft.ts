@@ -1,6 +1,7 @@
 // The calibration that is being set up: tables that were dropped, and constants to fit.
 import { create } from "zustand";
 import type { ColumnMap } from "../../protocol";
+import { onAnotherDocument } from "../../store/another";
 import { send } from "../../store/session";
 import { toast } from "../../store/studio";
 
@@ -45,6 +46,9 @@ export const useCalibrateDraft = create<CalibrateDraft>(() => ({
   identify: true,
   bounds: {},
 }));
+
+// Measured tables stay for the next specimen; the name and the ranges are of the one before.
+onAnotherDocument(() => useCalibrateDraft.setState({ name: "", bounds: {} }));
 
 const LARGEST = 8_000_000;
 

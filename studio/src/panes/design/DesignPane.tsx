@@ -5,6 +5,7 @@ import { browseMaterials } from "../materials/browse";
 import { Bodies } from "./bodies/Bodies";
 import { ContactSection, Objects } from "./bodies/Objects";
 import { edit } from "./edits";
+import { fitted, obstacleTo } from "./fields/begun";
 import { Adder, EntryList, EntryMap, type Table } from "./fields/Entries";
 import { Glyph } from "./fields/Glyph";
 import { SchemaField, TableFields } from "./fields/SchemaField";
@@ -41,7 +42,7 @@ export default function DesignPane() {
   return (
     <div className="pane design" data-testid="design-form">
       <Gallery />
-      {document && !document.valid && <Faults />}
+      {document && !document.valid && !document.empty && <Faults />}
       {form && (
         <FormContext value={form}>
           <Parameters />
@@ -139,6 +140,7 @@ export default function DesignPane() {
 /** Errors of the text, in words; the fields below show them at their places. */
 function Faults() {
   const diagnostics = useStudio((state) => state.document?.diagnostics ?? NO_DIAGNOSTICS);
+  const wasGood = useStudio((state) => (state.document?.design ?? null) !== null);
   return (
     <div className="faults" role="alert" data-testid="faults">
       {diagnostics.slice(0, 3).map((one) => (
@@ -147,7 +149,7 @@ function Faults() {
           {one.hint && <span className="muted"> Try: {one.hint}.</span>}
         </p>
       ))}
-      <p className="muted">The view shows the last design that was good.</p>
+      {wasGood && <p className="muted">The view shows the last design that was good.</p>}
     </div>
   );
 }
@@ -166,6 +168,7 @@ const PLACED = ["bodies", "parts", "layers", "objects", "clamps", "loads"];
 /** All other lists of the schema, in its words. */
 function OtherLists(props: { root: Schema }) {
   const { root } = props;
+  const body = useStudio((state) => state.body);
   return listSections(root)
     .filter((section) => !PLACED.includes(section))
     .map((section) => {
@@ -179,6 +182,8 @@ function OtherLists(props: { root: Schema }) {
           title={labelOf(section)}
           what={what}
           empty={`None. ${summary(schema)}`}
+          obstacle={obstacleTo(section, body)}
+          begin={(value) => fitted(section, value, body)}
         />
       );
     });

@@ -6,6 +6,7 @@ import type { Metric } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import { bodyNames } from "./bodies/several";
 import { changesOf, edit, editAll, type Path } from "./edits";
+import { FIRST_OBJECTIVE, firstConstraint } from "./fields/begun";
 import { CavityField } from "./fields/CavityField";
 import { EntryMap, type Table } from "./fields/Entries";
 import { inside, labelOf } from "./fields/schema";
@@ -213,6 +214,7 @@ export function Goals() {
         title="Objectives"
         what="an objective"
         first="goal"
+        begin={() => FIRST_OBJECTIVE}
         empty="None yet. A study needs one: what to make as large or as small as possible."
       >
         {(name, value) => {
@@ -252,6 +254,8 @@ export function Goals() {
         title="Constraints"
         what="a constraint"
         first="limit"
+        begin={() => firstConstraint(useStudio.getState().body)}
+        opens
         empty="None. A constraint keeps a metric within bounds."
       >
         {(name, value) => {

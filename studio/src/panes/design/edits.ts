@@ -2,6 +2,7 @@
 import type { Diagnostic, OpenCommand, RenameCommand } from "../../protocol";
 import { openDocument } from "../../shell/actions";
 import { send } from "../../store/session";
+import { stroke } from "../../store/stroke";
 import { useStudio } from "../../store/studio";
 
 /** Sections whose entries have names that the rest of the text speaks of. */
@@ -15,7 +16,7 @@ const SPACING = 60;
 /** Set one value of the document; null removes it. */
 export function edit(path: Path, value: unknown): void {
   const rev = useStudio.getState().document?.rev ?? 0;
-  send({ t: "edit", rev, path: [...path], value });
+  send({ t: "edit", rev, path: [...path], value, stroke: stroke() });
 }
 
 /** One change of the document. */
@@ -72,7 +73,7 @@ export function changesOf(path: Path, before: Table, after: Table): readonly Cha
   ];
 }
 
-/** Open another document; undo brings the one before back, so nothing is asked. */
+/** Open another document. */
 export function openHere(what: OpenCommand["what"], name: string): void {
   openDocument({ t: "open", what, name });
 }

@@ -7,6 +7,7 @@ import { formatNumber } from "../../controls/units";
 import type { MoldsEvent } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import type { Schema } from "../design/fields/schema";
+import { troubleOf } from "../design/trouble";
 import { choose, makeMolds, type PrinterLimits, useMaking } from "./made";
 import { FIRST, WAYS } from "./ways";
 import "./make.css";
@@ -51,9 +52,9 @@ export default function MakePane() {
       </Empty>
     );
   }
-  const key = document.path ?? document.name;
+  const trouble = troubleOf(document);
   const bodies = bodyNames(document.source);
-  const current = made !== null && of === key ? made : null;
+  const current = made !== null && of === document.id ? made : null;
   const past = current !== null && current.rev !== document.rev;
   return (
     <div className="pane" data-testid="make-pane">
@@ -109,14 +110,12 @@ export default function MakePane() {
           <Button
             kind="primary"
             testId="make-molds"
-            disabled={busy || !document.valid || (bodies.length > 0 && options.body === "")}
-            onClick={() => void makeMolds(key)}
+            disabled={busy || trouble !== null || (bodies.length > 0 && options.body === "")}
+            onClick={() => void makeMolds(document.id)}
           >
             {busy ? "Making…" : current ? "Make again" : "Make molds"}
           </Button>
-          {!document.valid && (
-            <span className="field-note">fix the errors of the design first</span>
-          )}
+          {trouble && <span className="field-note">{trouble}</span>}
         </div>
       </Section>
       {current && <Made made={current} past={past} />}

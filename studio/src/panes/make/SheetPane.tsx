@@ -5,10 +5,10 @@ import { useMaking } from "./made";
 import "./make.css";
 
 export default function SheetPane() {
-  const key = useStudio((state) => state.document?.path ?? state.document?.name);
+  const id = useStudio((state) => state.document?.id);
   const rev = useStudio((state) => state.document?.rev);
   const { made, of } = useMaking();
-  if (!made?.sheet || of !== key) {
+  if (!made?.sheet || of !== id) {
     return (
       <Empty title="No sheet yet">
         <p>Make molds: their sheet says how to print, mix, pour and bond.</p>

@@ -28,7 +28,7 @@ interface Making {
   /** True while the server makes molds. */
   busy: boolean;
   made: MoldsEvent | null;
-  /** Name of the document of which they were made. */
+  /** Id of the document of which they were made. */
   of: string;
 }
 

@@ -7,9 +7,11 @@ import { Plot } from "../../controls/Plot";
 import { factorOf, shownUnit, unitText } from "../../controls/units";
 import type { PathColumn, PathEvent } from "../../protocol";
 import { toast, useStudio } from "../../store/studio";
+import { troubleOf } from "../design/trouble";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
-import { useJob } from "../study/current";
+import { PastNote, useIsPast } from "../jobs/PastNote";
+import { useElsewhere, useJob } from "../study/current";
 import { useStart } from "../study/useStart";
 import { type Changeable, changeable, overText, stiffnessNote, unitOfValue } from "./lines";
 import { type Measured, misfit, readMeasured, together } from "./measured";
@@ -23,30 +25,33 @@ export default function PathPane() {
   const paths = useStudio((state) => state.paths);
   const form = useFormOfDocument();
   const job = useJob("run");
+  const elsewhere = useElsewhere("run");
   const choices = useMemo(
     () => (form?.design ? changeable(form.design, document?.parameters ?? []) : []),
     [form, document],
   );
-  if (choices.length === 0) {
+  if (!document || choices.length === 0) {
     return (
       <Empty title="Nothing to change along a path">
         <p>Give the design a load, a tendon or a parameter: it is then followed from here.</p>
       </Empty>
     );
   }
-  const path = (job ? paths[job.id] : Object.values(paths).at(-1)) ?? null;
+  const path = (job && paths[job.id]) ?? null;
   return (
     <div className="pane" data-testid="path-pane">
       <div className="section">
         <Setup
+          key={document.id}
           choices={choices}
           note={(key) => (form?.design ? stiffnessNote(form.design, key) : null)}
-          valid={document?.valid ?? false}
+          unfit={troubleOf(document)}
         />
       </div>
       {path ? (
         <>
-          <Curve path={path} />
+          <PastNote job={path.job} ofState />
+          <Curve key={document.id} path={path} />
           {path.message && (
             <p className={`path-end ${path.status === "ok" ? "muted" : "bad"}`} role="status">
               <span data-testid="path-end">{path.message}</span>
@@ -59,6 +64,7 @@ export default function PathPane() {
         </Empty>
       )}
       {job && job.state !== "done" && <JobCard job={job} />}
+      {elsewhere.map((one) => one.id !== job?.id && <JobCard key={one.id} job={one} />)}
     </div>
   );
 }
@@ -66,7 +72,7 @@ export default function PathPane() {
 function Setup(props: {
   choices: readonly Changeable[];
   note: (key: string) => string | null;
-  valid: boolean;
+  unfit: string | null;
 }) {
   const { choices } = props;
   const [key, setKey] = useState("");
@@ -80,11 +86,7 @@ function Setup(props: {
     start({ kind: "run", name, solver: {}, over: overText(what, from, to, count) });
   };
   const note = props.note(what.key);
-  const trouble = !props.valid
-    ? "Fix the errors of the design first."
-    : from === to
-      ? "Give two different ends."
-      : null;
+  const trouble = props.unfit ?? (from === to ? "Give two different ends." : null);
   return (
     <>
       <Select
@@ -156,12 +158,13 @@ function Curve(props: { path: PathEvent }) {
       toast({ level: "error", what: `${file.name} is no measured curve`, hint: found.problem });
     } else setCurves({ ...curves, [key]: found });
   };
+  const past = useIsPast({ job: path.job, ofState: true });
   const y = column.values.map((value) => value ?? Number.NaN);
   const data = measured ? together(path.values, y, measured) : [path.values, y];
   const computed = { label: column.name, color: "--series-1", points: true };
   const beside = { label: measured?.name ?? "", color: "--series-2", points: true, dashed: true };
   return (
-    <div className="path-curve">
+    <div className={past ? "path-curve is-past" : "path-curve"} data-testid="path-curve">
       <div className="plot-bar">
         <Select
           bare

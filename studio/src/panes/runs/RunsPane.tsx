@@ -6,7 +6,7 @@ import { type Column, Table } from "../../controls/Table";
 import { formatSpan } from "../../controls/units";
 import type { RunRow } from "../../protocol";
 import { showPane } from "../../shell/actions";
-import { type Mode, setMode, usePage } from "../../store/page";
+import { type Mode, setJob, setMode } from "../../store/page";
 import { onReady, send } from "../../store/session";
 import { toast, useStudio } from "../../store/studio";
 import { openHere } from "../design/edits";
@@ -42,7 +42,7 @@ const TONES: Readonly<Record<string, string>> = {
 /** Show the content of a folder: its design in the view, its study or calibration in the plots. */
 function open(row: RunRow, go: boolean): void {
   openHere("run", row.id);
-  if (row.kind === "study" || row.kind === "calibrate") usePage.setState({ job: row.id });
+  if (row.kind === "study" || row.kind === "calibrate") setJob(row.id);
   if (go) setMode(MODES[row.kind]);
 }
 

@@ -5,12 +5,14 @@ import { NumberField } from "../../controls/NumberField";
 import { RangeRow } from "../../controls/RangeRow";
 import { TextField } from "../../controls/TextField";
 import type { JobEvent } from "../../protocol";
-import { usePage } from "../../store/page";
+import { setJob } from "../../store/page";
 import { useStudio } from "../../store/studio";
 import { FormContext } from "../design/form";
 import { Goals } from "../design/Goals";
+import { troubleOf } from "../design/trouble";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
+import { PastNote } from "../jobs/PastNote";
 import { jobsOf, useJob, useStudy } from "./current";
 import { changeDraft, changeRange, toggleSweep, useStudyDraft } from "./draft";
 import { type Choice, choices, countOf, gridSize, obstacle, samplerOf, studySpec } from "./setup";
@@ -22,17 +24,18 @@ export function JobChooser(props: { kind: JobEvent["kind"]; label: string }) {
   const jobs = useStudio((state) => state.jobs);
   const current = useJob(props.kind);
   const all = jobsOf(jobs, props.kind);
-  if (all.length < 2 || !current) return null;
+  if (all.length === 0 || (all.length === 1 && current)) return null;
+  const none = { value: "", label: "of other designs…", disabled: true };
   return (
     <div className="section">
       <Select
         label={props.label}
-        value={current.id}
-        options={all.map((job) => ({
-          value: job.id,
-          label: `${job.name || job.id} (${job.state})`,
-        }))}
-        onChange={(job) => usePage.setState({ job })}
+        value={current?.id ?? ""}
+        options={[
+          ...(current ? [] : [none]),
+          ...all.map((job) => ({ value: job.id, label: `${job.name || job.id} (${job.state})` })),
+        ]}
+        onChange={setJob}
       />
     </div>
   );
@@ -59,9 +62,7 @@ export default function StudyPane() {
   const all = choices(document.parameters, draft, shown?.study.space);
   const chosen = all.filter((one) => one.on);
   const objectives = Object.keys((form.source.objectives as object | undefined) ?? {}).length;
-  const trouble = document.valid
-    ? obstacle(all, objectives, draft, samplers, refused)
-    : "Fix the errors of the design first.";
+  const trouble = troubleOf(document) ?? obstacle(all, objectives, draft, samplers, refused);
   const grid = gridSize(chosen);
   const sampler = samplerOf(chosen, draft);
   const designs = sampler === "grid" ? grid : draft.budget;
@@ -69,6 +70,7 @@ export default function StudyPane() {
     <div className="pane study" data-testid="study-form">
       {job && (past === null || past === job.id) && <JobCard job={job} />}
       {past !== null && past !== job?.id && <Past id={past} />}
+      {past !== null && <PastNote job={past} />}
       <JobChooser kind="study" label="Study" />
       <Section title="Vary">
         {all.length === 0 && (

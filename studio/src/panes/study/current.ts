@@ -1,8 +1,9 @@
 // The study that the panes speak of.
-import { useEffect, useMemo, useRef, useState } from "react";
+import { useCallback, useEffect, useMemo, useRef, useState } from "react";
 import type { JobEvent, TrialsEvent } from "../../protocol";
 import { usePage } from "../../store/page";
 import { useStudio } from "../../store/studio";
+import { standing } from "../jobs/standing";
 import { attend } from "./selection";
 import { type Axis, axesOf, frontOf } from "./trials";
 
@@ -22,14 +23,38 @@ export function jobsOf(
   return Object.values(jobs).filter((job) => job.kind === kind);
 }
 
-/** The chosen job of a kind, or else the newest one. */
+/** Tells of each job if it is of the open document. */
+export function useIsOwn(): (job: string) => boolean {
+  const subjects = useStudio((state) => state.subjects);
+  const document = useStudio((state) => state.document);
+  return useCallback(
+    (job: string) => standing(subjects[job], document) !== "other",
+    [subjects, document],
+  );
+}
+
+/** The chosen job of a kind, or else the newest one of the open document. */
 export function useJob(kind: JobEvent["kind"]): JobEvent | null {
   const chosen = usePage((page) => page.job);
   const jobs = useStudio((state) => state.jobs);
+  const isOwn = useIsOwn();
   return useMemo(() => {
     const job = chosen === null ? undefined : jobs[chosen];
-    return job?.kind === kind ? job : (jobsOf(jobs, kind).at(-1) ?? null);
-  }, [chosen, jobs, kind]);
+    if (job?.kind === kind) return job;
+    return jobsOf(jobs, kind).findLast(({ id }) => isOwn(id)) ?? null;
+  }, [chosen, jobs, kind, isOwn]);
+}
+
+const LIVE: ReadonlySet<JobEvent["state"]> = new Set(["running", "pausing", "paused", "stopping"]);
+
+/** Jobs of a kind that are at work for other designs than the open one. */
+export function useElsewhere(kind: JobEvent["kind"]): readonly JobEvent[] {
+  const jobs = useStudio((state) => state.jobs);
+  const isOwn = useIsOwn();
+  return useMemo(
+    () => jobsOf(jobs, kind).filter(({ id, state }) => LIVE.has(state) && !isOwn(id)),
+    [jobs, kind, isOwn],
+  );
 }
 
 /** Shortest time between two pictures of a study that runs, ms; longer where it has many trials. */
@@ -64,7 +89,9 @@ export function useStudy(): CurrentStudy | null {
   const chosen = usePage((page) => page.job);
   const job = useJob("study");
   const all = useStudio((state) => state.trials);
-  const id = chosen !== null && all[chosen] ? chosen : (job?.id ?? Object.keys(all).at(-1) ?? null);
+  const isOwn = useIsOwn();
+  const newest = job?.id ?? Object.keys(all).findLast(isOwn) ?? null;
+  const id = chosen !== null && all[chosen] ? chosen : newest;
   const study = useCalm(id === null ? undefined : all[id]);
   const found = useMemo(
     () => (study ? { axes: axesOf(study), front: frontOf(study) } : null),

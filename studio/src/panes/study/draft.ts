@@ -42,9 +42,9 @@ const MOST = 30;
 
 const useDrafts = create<{ drafts: Drafts }>(() => ({ drafts: kept<Drafts>(KEY) as Drafts }));
 
-/** Name of a document among the drafts: its file, or its title where it has none yet. */
+/** Name of a document among the drafts. */
 function keyOf(document: DocumentEvent | null): string {
-  return document?.path ?? document?.name ?? "";
+  return document?.id ?? "";
 }
 
 /** The draft of the open document. */

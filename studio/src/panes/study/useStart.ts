@@ -1,7 +1,7 @@
 // Start of a job: once for each press or double click, and shown as soon as it is known.
 import { useCallback, useEffect, useRef, useState } from "react";
 import type { JobEvent, JobStartCommand } from "../../protocol";
-import { usePage } from "../../store/page";
+import { setJob } from "../../store/page";
 import { send } from "../../store/session";
 import { useStudio } from "../../store/studio";
 import { jobsOf } from "./current";
@@ -30,7 +30,7 @@ export function useStart(kind: JobEvent["kind"]): Start {
     const fresh = jobsOf(jobs, kind).find((job) => !before.current?.has(job.id));
     if (!fresh) return;
     end();
-    usePage.setState({ job: fresh.id });
+    setJob(fresh.id);
   }, [jobs, kind, end]);
   useEffect(() => {
     if (!starting) return;

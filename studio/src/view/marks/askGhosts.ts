@@ -1,5 +1,6 @@
 // Which shapes are drawn as ghosts: the one that is chosen, and those that nothing uses yet.
 import { isUsed } from "../../panes/design/shapes/shapeVerbs";
+import { onAnotherDocument } from "../../store/another";
 import { usePage } from "../../store/page";
 import { currentEngine, onReady, send } from "../../store/session";
 import { useStudio } from "../../store/studio";
@@ -23,7 +24,8 @@ export function askGhosts(): void {
   const ask = () => {
     const { document } = useStudio.getState();
     // While the text is not good the shapes stay as they were.
-    if (currentEngine()?.kind !== "server" || (document && !document.valid)) return;
+    const faulty = document && !document.valid && !document.empty;
+    if (currentEngine()?.kind !== "server" || faulty) return;
     const shown = usePage.getState().mode === "design" && document?.source;
     const names = shown ? wantedGhosts(shown, useView.getState().shape) : [];
     const wanted = names.length > 0 ? JSON.stringify([document?.rev, names]) : "";
@@ -35,6 +37,11 @@ export function askGhosts(): void {
   useStudio.subscribe((now, before) => now.document !== before.document && ask());
   useView.subscribe((now, before) => now.shape !== before.shape && ask());
   usePage.subscribe((now, before) => now.mode !== before.mode && ask());
+  onAnotherDocument(() => {
+    asked = "";
+    useStudio.setState({ ghosts: null });
+    ask();
+  });
   onReady(() => {
     asked = "";
     ask();

@@ -10,6 +10,7 @@ import { takeDropped } from "../../materials/give";
 import { DRAGGED } from "../../materials/use";
 import { edit, type Named, problemOfName, problemsAt, rename, swap } from "../edits";
 import { useForm } from "../form";
+import { remove } from "../removing/remove";
 import { Glyph } from "./Glyph";
 import type { MenuPlace } from "./Menu";
 import { TableFields } from "./SchemaField";
@@ -26,6 +27,8 @@ interface EntryProps {
   depth?: number;
   /** True if the picture marks it. */
   chosen?: boolean;
+  /** True if it is open at first. */
+  begun?: boolean;
   /** True if it is open, where another place decides that too. */
   open?: { readonly is: boolean; set(open: boolean): void };
   /** Target of a drop: the kind of data, and the function that takes it. */
@@ -77,7 +80,7 @@ function dragged(drag: HeadDrag | undefined, over: boolean, setOver: (over: bool
 
 /** A line that opens to the fields behind it. */
 export function Entry(props: EntryProps) {
-  const own = useState(false);
+  const own = useState(props.begun ?? false);
   const [open, setOpen] = props.open ? [props.open.is, props.open.set] : own;
   const [over, setOver] = useState(false);
   const { drop } = props;
@@ -153,7 +156,13 @@ function dropping(drop: NonNullable<EntryProps["drop"]>, setOver: (over: boolean
 }
 
 /** A choice of variants that adds one; a plain button where there is one kind only. */
-export function Adder(props: { what: string; schema: Schema; onAdd(value: unknown): void }) {
+export function Adder(props: {
+  what: string;
+  schema: Schema;
+  /** Why none can be added. */
+  obstacle?: string | null;
+  onAdd(value: unknown): void;
+}) {
   const { root, names } = useForm();
   const control = controlOf(root, props.schema);
   if (control.is !== "variant") {
@@ -162,6 +171,7 @@ export function Adder(props: { what: string; schema: Schema; onAdd(value: unknow
         icon
         kind="quiet"
         label={`Add ${props.what}`}
+        {...(props.obstacle && { title: props.obstacle, disabled: true })}
         onClick={() => props.onAdd(starter(root, props.schema, names))}
       >
         <Glyph name="plus" />
@@ -172,7 +182,8 @@ export function Adder(props: { what: string; schema: Schema; onAdd(value: unknow
     <select
       className="select add-kind"
       aria-label={`Add ${props.what}`}
-      title={`Add ${props.what}`}
+      title={props.obstacle || `Add ${props.what}`}
+      disabled={Boolean(props.obstacle)}
       value=""
       onChange={(event) => {
         const kind = event.target.value;
@@ -235,6 +246,8 @@ export function EntryList(props: {
   what: string;
   empty: string;
   note?: string;
+  /** Why none can be added. */
+  obstacle?: string | null;
   /** Fits the first value of a new entry to the body. */
   begin?(value: Table): Table;
 }) {
@@ -250,15 +263,18 @@ export function EntryList(props: {
         <Adder
           what={props.what}
           schema={schema}
+          obstacle={props.obstacle ?? null}
           onAdd={(value) => edit([section, values.length], begin(value as Table))}
         />
       }
     >
-      {values.length === 0 && <p className="muted">{props.empty}</p>}
+      {values.length === 0 && (
+        <p className="muted">{[props.empty, props.obstacle].filter(Boolean).join(" ")}</p>
+      )}
       {values.length > 1 && props.note && <p className="muted">{props.note}</p>}
       {values.map((value, i) => {
         const title = titleOf(section, value, i);
-        const remove = { glyph: "trash", label: `Remove ${title}` } as const;
+        const trash = { glyph: "trash", label: `Remove ${title}` } as const;
         return (
           <Entry
             // biome-ignore lint/suspicious/noArrayIndexKey: entries may have no other name
@@ -278,7 +294,7 @@ export function EntryList(props: {
                     },
                   ]
                 : []),
-              { ...remove, run: () => edit([section, i], null) },
+              { ...trash, run: () => remove([section, i], title) },
             ]}
           >
             <TableFields path={[section, i]} schema={schema} value={value} />
@@ -338,11 +354,16 @@ export function EntryMap(props: {
   empty: string;
   /** Name of the first one, where it is new; it may depend on the added value. */
   first: string | ((value: Table) => string);
+  /** Gives the first value of a new entry, where the schema alone gives none. */
+  begin?(): Table;
+  /** True if a new entry opens, as its value is still to be chosen. */
+  opens?: boolean;
   /** Stands before the button that adds one. */
   action?: ReactNode;
   children?: (name: string, value: Table) => ReactNode;
 }) {
   const { root, source, diagnostics } = useForm();
+  const [added, setAdded] = useState<string | null>(null);
   const { section } = props;
   const map = resolve(root, root.properties?.[section] ?? {}).additionalProperties;
   if (typeof map !== "object") return null;
@@ -359,7 +380,9 @@ export function EntryMap(props: {
             onAdd={(value) => {
               const requested =
                 typeof props.first === "string" ? props.first : props.first(value as Table);
-              edit([section, freeName(requested, Object.keys(values))], value);
+              const name = freeName(requested, Object.keys(values));
+              if (props.opens) setAdded(name);
+              edit([section, name], props.begin?.() ?? value);
             }}
           />
         </span>
@@ -373,8 +396,9 @@ export function EntryMap(props: {
           about={aboutEntry(section, value)}
           wrong={problemsAt(diagnostics, [section, name]).length > 0}
           testId={`${section}-${name}`}
+          begun={name === added}
           actions={[
-            { glyph: "trash", label: `Remove ${name}`, run: () => edit([section, name], null) },
+            { glyph: "trash", label: `Remove ${name}`, run: () => remove([section, name], name) },
           ]}
         >
           <NameField section={section} name={name} taken={Object.keys(values)} />

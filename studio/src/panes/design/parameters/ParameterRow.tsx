@@ -13,6 +13,7 @@ import { edit, problemsAt, problemText, slide } from "../edits";
 import { Glyph } from "../fields/Glyph";
 import { Menu, type MenuPlace } from "../fields/Menu";
 import { useForm } from "../form";
+import { remove } from "../removing/remove";
 import { lock, useLocked } from "./locks";
 import { ParameterDetails } from "./ParameterDetails";
 import { valuePath } from "./parameterPath";
@@ -131,7 +132,7 @@ export function ParameterRow(props: { parameter: Parameter }) {
             {
               label: "Remove",
               disabled: locked,
-              run: () => edit(["parameters", parameter.name], null),
+              run: () => remove(["parameters", parameter.name], parameter.name),
             },
           ]}
         />

@@ -7,20 +7,10 @@ import { send } from "../../../store/session";
 import type { Schema } from "../fields/schema";
 import { ShapeIcon } from "./ShapeIcon";
 import { ShapePicker } from "./ShapePicker";
-import { type Addable, isFeature } from "./shapeKinds";
+import { type Addable, FIRST_KINDS, isFeature } from "./shapeKinds";
 import { type Spot, shapeStarter } from "./shapeStarters";
 
 type Table = Readonly<Record<string, unknown>>;
-
-/** Shapes and features with which most robots begin. */
-const STARTS: readonly Addable[] = [
-  "box",
-  "cylinder",
-  "sphere",
-  "bellows",
-  "finger",
-  "chamber-row",
-];
 
 interface Props {
   /** Place of the new shape. */
@@ -75,7 +65,7 @@ export function FirstShapes(props: Props) {
         feature and change its numbers.
       </p>
       <div className="shape-starts">
-        {STARTS.map((kind) => (
+        {FIRST_KINDS.map((kind) => (
           <button
             key={kind}
             type="button"

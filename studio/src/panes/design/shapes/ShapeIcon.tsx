@@ -1,5 +1,6 @@
 // A sign for each kind of shape on a grid of 24 pixels: lines, and filled areas.
 import type { Addable } from "./shapeKinds";
+import "./shapePicker.css";
 
 const ball = (x: number, y: number, r: number) =>
   `M${x} ${y - r}a${r} ${r} 0 1 0 0 ${2 * r} ${r} ${r} 0 0 0 0-${2 * r}`;

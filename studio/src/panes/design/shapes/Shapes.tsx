@@ -2,16 +2,17 @@ import { useState } from "react";
 import { Section } from "../../../controls/Choice";
 import { useStudio } from "../../../store/studio";
 import { setView, useView } from "../../../store/view";
-import { edit, editAll, problemsAt } from "../edits";
+import { editAll, problemsAt } from "../edits";
 import { Entry, NameField, type Table } from "../fields/Entries";
 import { Menu, type MenuPlace } from "../fields/Menu";
 import { TableFields } from "../fields/SchemaField";
 import { controlOf, resolve } from "../fields/schema";
 import { useForm } from "../form";
+import { remove } from "../removing/remove";
 import { AddShape, FirstShapes } from "./AddShape";
 import { spotOn } from "./shapeStarters";
 import { shapeTree } from "./shapeTree";
-import { FIRST_SIDE, isMadeOf, isUsed, joined, shapeVerbs, withShape } from "./shapeVerbs";
+import { FIRST_SPOT, isMadeOf, isUsed, joined, shapeVerbs, withShape } from "./shapeVerbs";
 
 export function Shapes() {
   const { root, source, diagnostics } = useForm();
@@ -46,10 +47,7 @@ export function Shapes() {
   // A shape that moves or combines others begins with the chosen one.
   const all = Object.keys(shapes);
   const operands = [...all.filter((one) => one === chosen), ...all.filter((one) => one !== chosen)];
-  const spot =
-    room && all.length > 0
-      ? spotOn(room, voxel, operands)
-      : { side: FIRST_SIDE, middle: null, operands };
+  const spot = room && all.length > 0 ? spotOn(room, voxel, operands) : { ...FIRST_SPOT, operands };
   const add = (value: Table) => {
     const { name, changes } = withShape(value, source);
     editAll(changes);
@@ -97,7 +95,7 @@ export function Shapes() {
               {
                 glyph: "trash",
                 label: `Remove ${node.name}`,
-                run: () => edit(["shapes", node.name], null),
+                run: () => remove(["shapes", node.name], node.name),
               },
             ]}
           >

@@ -19,6 +19,12 @@ export interface ShapeGroup {
   readonly kinds: readonly Addable[];
 }
 
+/** Shapes and features with which most robots begin. */
+export const FIRST_KINDS: readonly Addable[] = [
+  ...(["box", "cylinder", "sphere"] as const),
+  ...(["bellows", "finger", "chamber-row"] as const),
+];
+
 /** Every kind stands in one group; those that most robots begin with come first. */
 export const SHAPE_GROUPS: readonly ShapeGroup[] = [
   { title: "Ready features", kinds: FEATURE_NAMES },

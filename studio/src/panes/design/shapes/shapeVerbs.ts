@@ -3,6 +3,7 @@ import type { Triple } from "../../../protocol";
 import { type Room, written, writtenPlace } from "../bodies/placing";
 import type { Change } from "../edits";
 import { freeName } from "../fields/starters";
+import type { Spot } from "./shapeStarters";
 
 type Table = Readonly<Record<string, unknown>>;
 
@@ -21,6 +22,8 @@ type Tool = (typeof TOOLS)[number];
 export const FIRST_MATERIAL = "ecoflex-00-30";
 /** Side of the first shape, m: some voxels of the usual 5 mm. */
 export const FIRST_SIDE = 0.04;
+/** Place of the first shape. */
+export const FIRST_SPOT: Spot = { side: FIRST_SIDE, middle: null, operands: [] };
 /** A new shape as a part of the body that it cuts or joins. */
 const SHARE = 0.6;
 /** Walls that are left when a shape is hollowed, in voxels: bending wants two or more. */
