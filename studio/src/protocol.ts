@@ -1594,7 +1594,11 @@ export interface StationError {
   percent: number;
 }
 
-/** The result of a calibration; errors in m. `card` is the text of the material card. */
+/**
+ * The result of a calibration; errors in m. `card` is the text of the material card.
+ *
+ * `miss` says where and by how much the model misses more than marks are misread, or is empty.
+ */
 export interface CalibratedEvent {
   t: "calibrated";
   job: string;
@@ -1607,6 +1611,8 @@ export interface CalibratedEvent {
   max_error: number;
   material: Record<string, unknown>;
   card: string;
+  miss: string;
+  warnings: string[];
 }
 
 /**

@@ -958,7 +958,10 @@ class StationError(Entry):
 
 
 class Calibrated(Event):
-    """The result of a calibration; errors in m. `card` is the text of the material card."""
+    """The result of a calibration; errors in m. `card` is the text of the material card.
+
+    `miss` says where and by how much the model misses more than marks are misread, or is empty.
+    """
 
     job: str
     parameters: list[FittedParameter]
@@ -970,6 +973,8 @@ class Calibrated(Event):
     max_error: float
     material: dict[str, Json]
     card: str
+    miss: str = ""
+    warnings: list[str] = field(default_factory=list)
 
 
 class Recipe(Event):
