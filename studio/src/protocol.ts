@@ -1703,6 +1703,61 @@ export interface MeasuredEvent {
   problems: Finding[];
 }
 
+/**
+ * Uses of a table of numbers that was dropped on the page, the likeliest first.
+ *
+ * `coupon` is a test of a material, `stations` are points measured on a body, `curve` is a number
+ * over another one.
+ */
+export interface TableUsesEvent {
+  t: "table_uses";
+  name: string;
+  uses: ("coupon" | "curve" | "stations")[];
+}
+
+/** A test of a material: the engineering strain and stress that were fitted, Pa. */
+export interface CouponCurve {
+  name: string;
+  mode: string;
+  strain: number[];
+  stress: number[];
+}
+
+/**
+ * A model fitted to tests of a material.
+ *
+ * `error` is that of the stress, Pa, and `young` the initial modulus between `low` and `high`
+ * (95 %). `stresses` are those of the model at the strains of each test. `table` is the material
+ * as a design writes it, empty where `refused` says why it cannot be used.
+ */
+export interface CouponModel {
+  name: string;
+  size: number;
+  error: number;
+  largest: number;
+  young: number;
+  low: number;
+  high: number;
+  stresses: number[][];
+  table: Record<string, unknown>;
+  refused: string;
+  warnings: string[];
+}
+
+/**
+ * Models fitted to tests of a material, best prediction first; `recommended` is one of them.
+ *
+ * `name` is a name for the material, `rejected` says which models could not be fitted, and why.
+ */
+export interface CouponFitEvent {
+  t: "coupon_fit";
+  name: string;
+  curves: CouponCurve[];
+  models: CouponModel[];
+  recommended: string;
+  rejected: string[];
+}
+
 /** A file that is ready to be fetched at `url`. */
 export interface ExportedEvent {
   t: "exported";
@@ -1911,6 +1966,8 @@ export type AnyEvent =
   | RunsEvent
   | ComparedEvent
   | MeasuredEvent
+  | TableUsesEvent
+  | CouponFitEvent
   | ExportedEvent
   | MoldsEvent
   | SavedEvent

@@ -2,13 +2,15 @@ import { useEffect, useState } from "react";
 import { CAD_HINT, CAD_SUFFIXES, CAD_WHAT, LARGEST_UPLOAD, MESHES } from "../protocol";
 import { toast } from "../store/studio";
 import { openDocument } from "./actions";
+import { TABLES, takeTable } from "./dropTable";
 
 /** Endings of files that can be opened. */
 export const TAKEN: readonly string[] = [".toml", ...MESHES, ".zip"];
 
-/** Send a file to the server and open it; tables of measurements are taken by their own pane. */
+/** Open a file that was dropped or chosen; a table goes to the pane that its columns are for. */
 export async function upload(file: File): Promise<void> {
   const kind = file.name.slice(file.name.lastIndexOf(".")).toLowerCase();
+  if (TABLES.includes(kind)) return takeTable(file);
   if (!TAKEN.includes(kind)) {
     toast({ level: "warning", ...refusalOf(file.name) });
     return;
@@ -23,7 +25,7 @@ export function refusalOf(name: string): { readonly what: string; readonly hint:
     return { what: `${name} ${CAD_WHAT}`, hint: `Try: ${CAD_HINT}.` };
   return {
     what: `${name} is nothing that can be opened`,
-    hint: `Drop ${TAKEN.join(", ")}; a .csv of measurements goes on the Calibrate pane.`,
+    hint: `Drop ${TAKEN.join(", ")}, or a table of measurements (${TABLES.join(", ")}).`,
   };
 }
 
@@ -89,6 +91,8 @@ export function DropZone() {
     };
   }, []);
   return over ? (
-    <div className="drop-here">Drop a design, a mesh, voxels or a run folder (.zip)</div>
+    <div className="drop-here">
+      Drop a design, a mesh, voxels, a table of measurements (.csv) or a run folder (.zip)
+    </div>
   ) : null;
 }

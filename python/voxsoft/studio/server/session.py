@@ -63,6 +63,7 @@ from voxsoft.studio.documents.tables import (
     mapped_text,
     measured,
     measured_test,
+    table_uses,
 )
 from voxsoft.studio.documents.uploads import safe_name, unpack_folder
 from voxsoft.studio.documents.versions import Versions, versions_event
@@ -754,6 +755,28 @@ class Session:
             return reported(made, rev, "", "")
         offered = self.offer(made.archive, "molds")
         return reported(made, rev, offered.url, offered.name)
+
+    def table(self, asked: dict[str, Any]) -> events.TableUses:
+        """Say which uses a table that was dropped can have.
+
+        Raises
+        ------
+        VoxSoftError
+            It is no table.
+        """
+        return table_uses(str(asked.get("name", ""))[:300], str(asked.get("text", "")))
+
+    def coupons(self, asked: dict[str, Any]) -> events.CouponFit:
+        """Fit models to tests of a material.
+
+        Raises
+        ------
+        VoxSoftError
+            A table that cannot be used, or no model that can be fitted.
+        """
+        from voxsoft.studio.documents.coupons import fitted_coupons
+
+        return fitted_coupons(asked)
 
     def _shown(self) -> Shown:
         """The state on the screen now."""
