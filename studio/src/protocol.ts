@@ -169,16 +169,28 @@ export interface HelloCommand {
 }
 
 /**
+ * Reading of a mesh: the unit of its numbers, a factor on them, and its axis that points up.
+ *
+ * The unit of an array is the width of its voxels, such as "0.5 mm".
+ */
+export interface MeshImport {
+  unit: string;
+  scale?: number;
+  up?: "-x" | "-y" | "-z" | "x" | "y" | "z";
+}
+
+/**
  * Open a document: a template, a robot, a file or run folder, an upload, or a study's trial.
  *
  * A trial is named "ID/INDEX"; a run by its id in the list of runs; a start by its three answers,
- * "pressure-finger-bend".
+ * "pressure-finger-bend". `mesh` tells how an uploaded mesh is read.
  */
 export interface OpenCommand {
   t: "open";
   seq: number;
   what: "file" | "robot" | "run" | "start" | "template" | "trial" | "upload";
   name: string;
+  mesh?: MeshImport | null;
 }
 
 /** Replace the text of the document; `rev` is the revision that was edited. */
@@ -287,8 +299,8 @@ export interface SyncCommand {
 /**
  * Add a body: a design file of the folder, a template, or a file that was uploaded.
  *
- * It stands `beyond` so many m along x. The body of a design that has no others becomes the first
- * of a new design of several.
+ * It stands `beyond` so many m along x; `mesh` is as of `Open`. The body of a design that has no
+ * others becomes the first of a new design of several.
  */
 export interface AddBodyCommand {
   t: "add_body";
@@ -296,6 +308,7 @@ export interface AddBodyCommand {
   what: "file" | "template" | "upload";
   name: string;
   beyond?: number;
+  mesh?: MeshImport | null;
 }
 
 /** Ask for the design files beside the document. */
@@ -1704,6 +1717,24 @@ export interface MeasuredEvent {
 }
 
 /**
+ * A mesh that was uploaded: its box from `low` to `high` in its own numbers, and its unit.
+ *
+ * The unit is a guess unless it is `stated`; of an array of `voxels` it is the width of one. The
+ * longest side has `cells` voxels.
+ */
+export interface MeshFactsEvent {
+  t: "mesh_facts";
+  name: string;
+  low: Triple;
+  high: Triple;
+  unit: string;
+  stated: boolean;
+  voxels: boolean;
+  parts: string[];
+  cells: number;
+}
+
+/**
  * Uses of a table of numbers that was dropped on the page, the likeliest first.
  *
  * `coupon` is a test of a material, `stations` are points measured on a body, `curve` is a number
@@ -1966,6 +1997,7 @@ export type AnyEvent =
   | RunsEvent
   | ComparedEvent
   | MeasuredEvent
+  | MeshFactsEvent
   | TableUsesEvent
   | CouponFitEvent
   | ExportedEvent

@@ -3,6 +3,7 @@ import { CAD_HINT, CAD_SUFFIXES, CAD_WHAT, LARGEST_UPLOAD, MESHES } from "../pro
 import { toast } from "../store/studio";
 import { openDocument } from "./actions";
 import { TABLES, takeTable } from "./dropTable";
+import { askImport } from "./importMesh";
 
 /** Endings of files that can be opened. */
 export const TAKEN: readonly string[] = [".toml", ...MESHES, ".zip"];
@@ -16,7 +17,13 @@ export async function upload(file: File): Promise<void> {
     return;
   }
   const sent = await sendFile(file);
-  if (sent) openDocument({ t: "open", what: "upload", name: sent.name });
+  if (!sent) return;
+  if (!MESHES.some((ending) => sent.name.endsWith(ending))) {
+    openDocument({ t: "open", what: "upload", name: sent.name });
+    return;
+  }
+  const read = await askImport(sent.name);
+  if (read) openDocument({ t: "open", what: "upload", name: sent.name, mesh: read.how });
 }
 
 /** Reason why a file of this name is not opened, and a remedy. */

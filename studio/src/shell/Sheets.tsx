@@ -5,6 +5,7 @@ import { openSheet, setMode, usePage } from "../store/page";
 import { useView } from "../store/view";
 import { SCHEMES, schemeWords } from "../view/hands/schemes";
 import { type Action, actions } from "./actions";
+import { ImportSheet } from "./ImportSheet";
 import { Icon } from "./icons";
 import { DiscardSheet, SaveSheet } from "./SaveSheet";
 import { Toasts } from "./Toasts";
@@ -41,6 +42,11 @@ export function Sheets() {
       {sheet === "discard" && (
         <Scrim label="Changes that were not saved" testId="discard-sheet">
           <DiscardSheet />
+        </Scrim>
+      )}
+      {sheet === "import" && (
+        <Scrim label="Import of a mesh" testId="import-sheet">
+          <ImportSheet />
         </Scrim>
       )}
       <Toasts />

@@ -104,3 +104,54 @@ def test_a_measured_curve_lies_over_the_path(served, open_tab, first):
     tab.find("path-problem").wait_for(state="detached")
     tab.find("path-misfit").wait_for()
     assert tab.errors == []
+
+
+def finger(unit):
+    """Triangles of a box of 40 mm x 10 mm x 10 mm, as text in STL."""
+    x, y, z = (side / unit for side in (0.04, 0.01, 0.01))
+    corners = [(i & 1, i >> 1 & 1, i >> 2) for i in range(8)]
+    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    lines = ["solid finger"]
+    for a, b, c, d in quads:
+        for triangle in ((a, b, c), (a, c, d)):
+            at = (corners[k] for k in triangle)
+            spots = (f"vertex {i * x!r} {j * y!r} {k * z!r}" for i, j, k in at)
+            lines += ["facet normal 0 0 0", "outer loop", *spots, "endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid finger", ""])
+
+
+def test_a_mesh_in_meters_asks_for_its_unit_with_all_sizes(served, open_tab):
+    tab = open_tab(served.address, mode="design", symbols=False)
+    tab.find("text-editor").locator(".cm-content").wait_for()
+    drop(tab, "finger.stl", finger(unit=1.0))
+    sheet = tab.find("import-sheet")
+    sheet.wait_for()
+    sizes = sheet.locator(".import-units").inner_text()
+    for size in ("40 × 10 × 10 um", "0.4 × 0.1 × 0.1 mm", "40 × 10 × 10 mm"):
+        assert size in sizes
+    assert sheet.get_by_role("radio", name="40 × 10 × 10 mm").is_checked()
+    result = tab.find("import-result")
+    assert "voxels of 1.2 mm" in result.inner_text() or "voxels of 1.3 mm" in result.inner_text()
+    tab.shot("import")
+    # The voxels follow the unit, the factor and the turn.
+    sheet.get_by_label("Scale").fill("2")
+    sheet.get_by_label("Scale").press("Tab")
+    result.get_by_text("80 × 20 × 20 mm, in voxels of 2.5 mm").wait_for()
+    sheet.get_by_label("Up in the file").select_option("x")
+    result.get_by_text("20 × 20 × 80 mm, in voxels of 2.5 mm").wait_for()
+    tab.find("import-now").click()
+    has_text(tab, 'voxel_size = "2.5 mm"')
+    has_text(tab, 'kind = "rotate"')
+    tab.until("voxsoft.triangles > 0 && document.querySelector('.cm-lintRange-error') === null")
+    assert tab.errors == []
+
+
+def test_a_mesh_that_was_given_up_leaves_the_design(served, open_tab):
+    tab = open_tab(served.address, mode="design", symbols=False)
+    tab.find("text-editor").locator(".cm-content").wait_for()
+    rev = tab.page.evaluate("voxsoft.rev")
+    drop(tab, "finger.stl", finger(unit=1e-3))
+    tab.find("import-sheet").wait_for()
+    tab.page.keyboard.press("Escape")
+    tab.find("import-sheet").wait_for(state="detached")
+    assert tab.page.evaluate("voxsoft.rev") == rev

@@ -1069,6 +1069,23 @@ class Measured(Event):
     problems: list[Finding]
 
 
+class MeshFacts(Event):
+    """A mesh that was uploaded: its box from `low` to `high` in its own numbers, and its unit.
+
+    The unit is a guess unless it is `stated`; of an array of `voxels` it is the width of one. The
+    longest side has `cells` voxels.
+    """
+
+    name: str
+    low: Triple
+    high: Triple
+    unit: str
+    stated: bool
+    voxels: bool
+    parts: list[str]
+    cells: int
+
+
 class TableUses(Event):
     """Uses of a table of numbers that was dropped on the page, the likeliest first.
 
@@ -1277,6 +1294,7 @@ AnyEvent = (
     | Runs
     | Compared
     | Measured
+    | MeshFacts
     | TableUses
     | CouponFit
     | Exported

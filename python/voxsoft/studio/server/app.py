@@ -72,6 +72,7 @@ def make_app(session: Session, token: str, port: int) -> Guard:
         Route("/upload", pages.upload, methods=["POST"]),
         Route("/export", pages.export, methods=["POST"]),
         Route("/molds", pages.molds, methods=["POST"]),
+        Route("/mesh", pages.mesh, methods=["POST"]),
         Route("/table", pages.table, methods=["POST"]),
         Route("/coupons", pages.coupons, methods=["POST"]),
         WebSocketRoute("/ws", pages.websocket),
@@ -221,6 +222,10 @@ class _Pages:
     async def molds(self, request: Request) -> Response:
         """Answer with the molds of the document; making them takes seconds."""
         return await self._made(self._session.molds, request)
+
+    async def mesh(self, request: Request) -> Response:
+        """Answer with the size and the unit of a mesh that was uploaded."""
+        return await self._made(self._session.mesh, request)
 
     async def table(self, request: Request) -> Response:
         """Answer with the uses of a table that was dropped."""

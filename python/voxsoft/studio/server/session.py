@@ -65,7 +65,7 @@ from voxsoft.studio.documents.tables import (
     measured_test,
     table_uses,
 )
-from voxsoft.studio.documents.uploads import safe_name, unpack_folder
+from voxsoft.studio.documents.uploads import facts_of_mesh, safe_name, unpack_folder
 from voxsoft.studio.documents.versions import Versions, versions_event
 from voxsoft.studio.motion.engine import Engine
 from voxsoft.studio.outputs.album import Album
@@ -283,7 +283,7 @@ class Session:
         if command.what == "template":
             file = file_of_template(command.name, document.folder)
         elif command.what == "upload":
-            upload = uploaded_document(self._upload(command.name), document.folder)
+            upload = uploaded_document(self._upload(command.name), document.folder, command.mesh)
             file = file_of_document(upload, document.folder)
         if command.what != "file":
             self.tabs.publish(events.Saved(what="design", path=str(file)))
@@ -421,7 +421,7 @@ class Session:
             case "file":
                 self._open(document_at(Path(command.name), self._home))
             case "upload":
-                self._open_upload(command.name)
+                self._open_upload(command.name, command.mesh)
             case "run":
                 self._open_run(self.list.folder_of(command.name))
             case "trial":
@@ -473,13 +473,13 @@ class Session:
             raise FileError(name, "was not uploaded", "drop the file on the page again")
         return file
 
-    def _open_upload(self, name: str) -> None:
+    def _open_upload(self, name: str, mesh: commands.MeshImport | None) -> None:
         file = self._upload(name)
         if file.suffix == ".zip":
             folder = unpack_folder(file, self._free_folder(file.stem))
             self._open(document_at(folder, self._home))
         else:
-            self._open(uploaded_document(file, self._home))
+            self._open(uploaded_document(file, self._home, mesh))
 
     def _open_run(self, folder: Path) -> None:
         kind = kind_of(folder)
@@ -755,6 +755,16 @@ class Session:
             return reported(made, rev, "", "")
         offered = self.offer(made.archive, "molds")
         return reported(made, rev, offered.url, offered.name)
+
+    def mesh(self, asked: dict[str, Any]) -> events.MeshFacts:
+        """Measure a mesh that was uploaded, so that the page can ask for its unit.
+
+        Raises
+        ------
+        VoxSoftError
+            It is not there, cannot be read, or encloses nothing.
+        """
+        return facts_of_mesh(self._upload(str(asked.get("name", ""))))
 
     def table(self, asked: dict[str, Any]) -> events.TableUses:
         """Say which uses a table that was dropped can have.
