@@ -83,18 +83,21 @@ export function DropZone() {
     };
     const onDrop = (event: DragEvent) => {
       setOver(false);
-      // A pane that takes files itself has prevented the default before.
-      if (!hasFiles(event) || event.defaultPrevented) return;
+      const { target } = event;
+      // A place that takes files itself is marked.
+      const own = target instanceof Element && target.closest("[data-takes-files]") !== null;
+      if (!hasFiles(event) || own) return;
       event.preventDefault();
       for (const file of event.dataTransfer?.files ?? []) void upload(file);
     };
     addEventListener("dragover", onOver);
     addEventListener("dragleave", onLeave);
-    addEventListener("drop", onDrop);
+    // Groups of panes prevent the default of every drop, also of files: they are asked last.
+    addEventListener("drop", onDrop, true);
     return () => {
       removeEventListener("dragover", onOver);
       removeEventListener("dragleave", onLeave);
-      removeEventListener("drop", onDrop);
+      removeEventListener("drop", onDrop, true);
     };
   }, []);
   return over ? (

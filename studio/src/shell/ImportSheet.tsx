@@ -95,7 +95,7 @@ function Card(props: { facts: MeshFactsEvent }) {
         </p>
       )}
       <p data-testid="import-result">
-        {sizesText({ facts, how })}, in voxels of {voxel}
+        {sizesText({ facts, how })}, in voxels of {shownLength(voxel)}
       </p>
       <div className="sheet-buttons">
         <Button kind="quiet" onClick={() => openSheet(null)}>
@@ -116,6 +116,11 @@ function lengthText(meter: number, digits: number): string {
   return `${formatNumber(meter * 1e6, digits)} um`;
 }
 
+/** A length as it is set in type. */
+function shownLength(text: string): string {
+  return text.replace(/\bum$/, "µm");
+}
+
 /** Sides of the box, in the unit that suits the longest. */
 function sizesText(read: Parameters<typeof boxOfImport>[0]): string {
   const { low, high } = boxOfImport(read);
@@ -125,5 +130,6 @@ function sizesText(read: Parameters<typeof boxOfImport>[0]): string {
       .split(" ")
       .at(-1) ?? "mm";
   const factor = { m: 1, mm: 1e-3, um: 1e-6 }[unit] ?? 1;
-  return `${sides.map((side) => formatNumber(side / factor, 3)).join(" × ")} ${unit}`;
+  const numbers = sides.map((side) => formatNumber(side / factor, 3));
+  return shownLength(`${numbers.join(" × ")} ${unit}`);
 }

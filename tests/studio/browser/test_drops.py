@@ -82,6 +82,7 @@ def test_points_of_a_beam_go_to_the_calibration(served, open_tab):
 @pytest.mark.parametrize("first", ["table", "path"])
 def test_a_measured_curve_lies_over_the_path(served, open_tab, first):
     tab = open_tab(served.address, symbols=False)
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
     pane = tab.find("path-pane")
     if first == "path":
         tab.page.get_by_text("Path", exact=True).click()
@@ -120,14 +121,14 @@ def finger(unit):
     return "\n".join([*lines, "endsolid finger", ""])
 
 
-def test_a_mesh_in_meters_asks_for_its_unit_with_all_sizes(served, open_tab):
-    tab = open_tab(served.address, mode="design", symbols=False)
+def test_a_mesh_in_meters_asks_for_its_unit_with_all_sizes(own_server, open_tab):
+    tab = open_tab(own_server.address, mode="design", symbols=False)
     tab.find("text-editor").locator(".cm-content").wait_for()
     drop(tab, "finger.stl", finger(unit=1.0))
     sheet = tab.find("import-sheet")
     sheet.wait_for()
     sizes = sheet.locator(".import-units").inner_text()
-    for size in ("40 × 10 × 10 um", "0.4 × 0.1 × 0.1 mm", "40 × 10 × 10 mm"):
+    for size in ("40 × 10 × 10 µm", "0.4 × 0.1 × 0.1 mm", "40 × 10 × 10 mm"):
         assert size in sizes
     assert sheet.get_by_role("radio", name="40 × 10 × 10 mm").is_checked()
     result = tab.find("import-result")

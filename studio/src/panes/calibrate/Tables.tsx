@@ -57,6 +57,7 @@ export function Tables() {
       {/* biome-ignore lint/a11y/noStaticElementInteractions: the button above does the same */}
       <div
         className={`drop-table${over ? " is-over" : ""}`}
+        data-takes-files
         onDragOver={(event) => {
           event.preventDefault();
           setOver(true);

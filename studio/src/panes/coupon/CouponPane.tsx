@@ -54,6 +54,8 @@ export default function CouponPane() {
 function Tests() {
   const tests = useCoupons((state) => state.tests);
   const sizes = useCoupons((state) => state.sizes);
+  // A table of stresses and strains needs no sizes: they are shown where something is missing.
+  const asked = useCoupons((state) => state.problem !== null);
   const picker = useRef<HTMLInputElement>(null);
   return (
     <Section
@@ -106,20 +108,22 @@ function Tests() {
         </div>
       ))}
       {tests.length > 0 &&
-        SIZES.map(([key, label, placeholder, title]) => (
-          <TextField
-            key={key}
-            label={label}
-            title={title}
-            placeholder={placeholder}
-            right
-            value={sizes[key]}
-            onCommit={(text) => {
-              setSizes({ [key]: text.trim() });
-              return null;
-            }}
-          />
-        ))}
+        SIZES.filter(([key]) => key === "max_strain" || asked || sizes[key] !== "").map(
+          ([key, label, placeholder, title]) => (
+            <TextField
+              key={key}
+              label={label}
+              title={title}
+              placeholder={placeholder}
+              right
+              value={sizes[key]}
+              onCommit={(text) => {
+                setSizes({ [key]: text.trim() });
+                return null;
+              }}
+            />
+          ),
+        )}
     </Section>
   );
 }
