@@ -177,16 +177,29 @@ export interface HelloCommand {
 }
 
 /**
+ * Reading of a mesh: the unit of its numbers, a factor on them, and its axis that points up.
+ *
+ * The unit of an array is the width of its voxels, such as "0.5 mm".
+ */
+export interface MeshImport {
+  unit: string;
+  scale?: number;
+  up?: "-x" | "-y" | "-z" | "x" | "y" | "z";
+}
+
+/**
  * Open a document: a template, a robot, a file or run folder, an upload, or a study's trial.
  *
  * A trial is named "ID/INDEX"; a run by its id in the list of runs; a start by its three answers,
- * "pressure-finger-bend"; a document that was left without being saved by its id.
+ * "pressure-finger-bend"; a document that was left without being saved by its id. `mesh` tells how
+ * an uploaded mesh is read.
  */
 export interface OpenCommand {
   t: "open";
   seq: number;
   what: "file" | "robot" | "run" | "start" | "template" | "trial" | "unsaved" | "upload";
   name: string;
+  mesh?: MeshImport | null;
 }
 
 /** Replace the text of the document; `rev` is the revision that was edited. */
@@ -301,8 +314,8 @@ export interface SyncCommand {
 /**
  * Add a body: a design file of the folder, a template, or a file that was uploaded.
  *
- * It stands `beyond` so many m along x. The body of a design that has no others becomes the first
- * of a new design of several.
+ * It stands `beyond` so many m along x; `mesh` is as of `Open`. The body of a design that has no
+ * others becomes the first of a new design of several.
  */
 export interface AddBodyCommand {
   t: "add_body";
@@ -310,6 +323,7 @@ export interface AddBodyCommand {
   what: "file" | "template" | "upload";
   name: string;
   beyond?: number;
+  mesh?: MeshImport | null;
 }
 
 /**
@@ -1693,7 +1707,11 @@ export interface StationError {
   percent: number;
 }
 
-/** The result of a calibration; errors in m. `card` is the text of the material card. */
+/**
+ * The result of a calibration; errors in m. `card` is the text of the material card.
+ *
+ * `miss` says where and by how much the model misses more than marks are misread, or is empty.
+ */
 export interface CalibratedEvent {
   t: "calibrated";
   job: string;
@@ -1706,6 +1724,8 @@ export interface CalibratedEvent {
   max_error: number;
   material: Record<string, unknown>;
   card: string;
+  miss: string;
+  warnings: string[];
 }
 
 /**
@@ -1794,6 +1814,79 @@ export interface MeasuredEvent {
   arcs: number[];
   points: Triple[];
   problems: Finding[];
+}
+
+/**
+ * A mesh that was uploaded: its box from `low` to `high` in its own numbers, and its unit.
+ *
+ * The unit is a guess unless it is `stated`; of an array of `voxels` it is the width of one. The
+ * longest side has `cells` voxels.
+ */
+export interface MeshFactsEvent {
+  t: "mesh_facts";
+  name: string;
+  low: Triple;
+  high: Triple;
+  unit: string;
+  stated: boolean;
+  voxels: boolean;
+  parts: string[];
+  cells: number;
+}
+
+/**
+ * Uses of a table of numbers that was dropped on the page, the likeliest first.
+ *
+ * `coupon` is a test of a material, `stations` are points measured on a body, `curve` is a number
+ * over another one.
+ */
+export interface TableUsesEvent {
+  t: "table_uses";
+  name: string;
+  uses: ("coupon" | "curve" | "stations")[];
+}
+
+/** A test of a material: the engineering strain and stress that were fitted, Pa. */
+export interface CouponCurve {
+  name: string;
+  mode: string;
+  strain: number[];
+  stress: number[];
+}
+
+/**
+ * A model fitted to tests of a material.
+ *
+ * `error` is that of the stress, Pa, and `young` the initial modulus between `low` and `high`
+ * (95 %). `stresses` are those of the model at the strains of each test. `table` is the material
+ * as a design writes it, empty where `refused` says why it cannot be used.
+ */
+export interface CouponModel {
+  name: string;
+  size: number;
+  error: number;
+  largest: number;
+  young: number;
+  low: number;
+  high: number;
+  stresses: number[][];
+  table: Record<string, unknown>;
+  refused: string;
+  warnings: string[];
+}
+
+/**
+ * Models fitted to tests of a material, best prediction first; `recommended` is one of them.
+ *
+ * `name` is a name for the material, `rejected` says which models could not be fitted, and why.
+ */
+export interface CouponFitEvent {
+  t: "coupon_fit";
+  name: string;
+  curves: CouponCurve[];
+  models: CouponModel[];
+  recommended: string;
+  rejected: string[];
 }
 
 /** A file that is ready to be fetched at `url`. */
@@ -2008,6 +2101,9 @@ export type AnyEvent =
   | RunsEvent
   | ComparedEvent
   | MeasuredEvent
+  | MeshFactsEvent
+  | TableUsesEvent
+  | CouponFitEvent
   | ExportedEvent
   | MoldsEvent
   | SavedEvent

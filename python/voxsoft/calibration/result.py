@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,11 @@ from voxsoft.calibration.identifiability import Profile
 from voxsoft.calibration.misfit import Deviation
 from voxsoft.materials import Card, Hyperelastic, Lattice, Material, with_constants
 from voxsoft.units import format_quantity
+
+#: Mean miss that no reading of marks explains, and one that is left to the solver where neighbors
+#: deviate alike, in percent of the sag.
+_MISREAD: Final = 5.0
+_SMALL_MISS: Final = 1.0
 
 
 @dataclass(frozen=True)
@@ -127,6 +132,25 @@ class Fit:
         return (
             f"{self.experiment.name}: neighboring stations deviate alike (correlation "
             f"{self.correlation:.2f}), which noise does not: check sizes, clamp and scale{line}."
+        )
+
+    @property
+    def miss(self) -> str:
+        """Largest miss with its place, where the model misses more than marks are misread.
+
+        Marks of which neighbors deviate alike by more than 1 % of the sag are not misread, nor are
+        those that deviate by more than 5 % in the mean.
+        """
+        mean = float(self.percent.mean())
+        if mean <= _MISREAD and not (self.is_systematic and mean > _SMALL_MISS):
+            return ""
+        worst = int(np.argmax(self.errors))
+        station = self.experiment.measurement.station_names[worst]
+        off = format_quantity(float(f"{self.errors[worst]:.2g}"), "length")
+        return (
+            f"{self.experiment.name}: the model misses by up to {off}, {self.percent[worst]:.0f} % "
+            f"of the sag, at {station}: try finer voxels, another law of the material, or the "
+            "sizes and the clamp of the specimen; intervals of the constants are too narrow."
         )
 
     def summary(self) -> dict[str, Any]:
@@ -319,9 +343,15 @@ class Calibration(Shown):
 
     @property
     def warnings(self) -> list[str]:
-        """Warnings about the data, in sentences: a line that was assumed, a systematic misfit."""
-        each = ((fit.experiment.caution, fit.caution) for fit in self.fits)
-        return [caution for pair in each for caution in pair if caution]
+        """Warnings in sentences: a miss of the model, an assumed line, a systematic misfit."""
+        each = ((fit.miss, fit.experiment.caution, fit.caution) for fit in self.fits)
+        return [caution for some in each for caution in some if caution]
+
+    @property
+    def miss(self) -> str:
+        """Miss of the experiment that fits worst, see :attr:`Fit.miss`; empty without one."""
+        missed = [fit for fit in self.fits if fit.miss]
+        return max(missed, key=lambda fit: float(fit.percent.mean())).miss if missed else ""
 
     def _rounded(self) -> Material:
         """Round to 4 digits: all moduli of a lattice, and the other searched constants."""
@@ -335,7 +365,7 @@ class Calibration(Shown):
         for profile in self.profiles:
             if not profile.identifiable:
                 yield f"{profile.name} is not identified by the data: {profile.sentence}."
-        yield from (fit.caution for fit in self.fits)
+        yield from (sentence for fit in self.fits for sentence in (fit.miss, fit.caution))
 
     def _record(self) -> dict[str, Any]:
         sizes = dict.fromkeys(fit.experiment.voxel_size for fit in self.fits)

@@ -8,14 +8,24 @@ from contextlib import contextmanager
 from typing import Any
 
 import tomlkit
+from tomlkit.container import Container
 from tomlkit.exceptions import TOMLKitError
-from tomlkit.items import AoT, Table
+from tomlkit.items import AoT, InlineTable, Table, Trivia
 
 from voxsoft.errors import DesignError
 from voxsoft.files.toml_text import write_toml
 from voxsoft.records import place
 
 Path = Sequence[str | int]
+
+
+class _InlineTable(InlineTable):
+    """Inline table with a blank inside of its braces, as all files of VoxSoft have them."""
+
+    def as_string(self) -> str:
+        """Return the text of the table."""
+        inside = super().as_string()[1:-1].strip()
+        return f"{{ {inside} }}" if inside else "{}"
 
 
 def with_value(text: str, path: Path, value: object) -> str:
@@ -130,6 +140,8 @@ def _changes(before: object, after: object, path: Path) -> Iterator[tuple[Path, 
 def _set(document: tomlkit.TOMLDocument, path: list[str | int], value: object) -> None:
     above: Any = None
     here: Any = document
+    if path[0] not in document and (len(path) > 1 or _is_section(value)):
+        _part_from_above(document)
     for at, step in enumerate(path[:-1]):
         above, here = here, _inside(here, step, path[: at + 1], follower=path[at + 1])
     last = path[-1]
@@ -152,9 +164,15 @@ def _inside(here: Any, step: str | int, path: list[str | int], follower: str | i
         if isinstance(follower, int):
             here[step] = tomlkit.aot() if len(path) == 1 else tomlkit.array()
         else:
-            here[step] = tomlkit.table() if len(path) == 1 else tomlkit.inline_table()
+            here[step] = (
+                tomlkit.table() if len(path) == 1 else _InlineTable(Container(), Trivia(), new=True)
+            )
     elif isinstance(step, int) and step == len(here):
-        here.append(tomlkit.table() if isinstance(here, AoT) else tomlkit.inline_table())
+        here.append(
+            tomlkit.table()
+            if isinstance(here, AoT)
+            else _InlineTable(Container(), Trivia(), new=True)
+        )
     inner = here[step]
     if not isinstance(inner, (Mapping, list)):
         raise TypeError(f"{place(path)} holds {inner!r}, nothing below it can be set")
@@ -181,6 +199,22 @@ def _set_entry(here: Any, index: int, value: object, path: list[str | int]) -> N
         here[index] = _item(value)
 
 
+def _is_section(value: object) -> bool:
+    """Return True for a table, and for a list of nothing but tables."""
+    if isinstance(value, list):
+        return bool(value) and all(isinstance(each, Mapping) for each in value)
+    return isinstance(value, Mapping)
+
+
+def _part_from_above(document: tomlkit.TOMLDocument) -> None:
+    """Put an empty line between the end of a text and a section that follows."""
+    text = document.as_string()
+    for end in ("\n", "\n\n"):
+        if text.strip() and not text.endswith(end):
+            document.add(tomlkit.nl())
+            text += "\n"
+
+
 def _part_sections(sections: AoT, added: Table) -> None:
     """Put an empty line between an added section of a list and its neighbors.
 
@@ -196,7 +230,7 @@ def _part_sections(sections: AoT, added: Table) -> None:
 def _item(value: object, *, top: bool = False) -> Any:  # noqa: ANN401
     """Convert a value to TOML: tables inline, except at the top, which lists repeat."""
     if isinstance(value, Mapping):
-        table = tomlkit.table() if top else tomlkit.inline_table()
+        table = tomlkit.table() if top else _InlineTable(Container(), Trivia(), new=True)
         for key, inner in value.items():
             table[key] = _item(inner)
         return table

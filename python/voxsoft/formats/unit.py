@@ -15,6 +15,8 @@ from voxsoft.units import format_quantity, parse
 UNITS: Final = ("mm", "cm", "inch", "m")
 #: Limits of the size of a soft robot [m]; beyond, the numbers are likely in another unit.
 _SMALLEST, _LARGEST = 0.5e-3, 5.0
+#: Lengths of most soft robots [m].
+_USUAL: Final = (5e-3, 1.0)
 
 
 def meter_of(
@@ -105,6 +107,20 @@ inch, m; the body would be, in mm: 80 mm long, cm: 800 mm long, inch: 2.03 m lon
         f"a mesh file does not say its unit; its numbers span {shown}",
         f"give {ask}, one of {', '.join(UNITS)}; the body would be, in {listed}",
     )
+
+
+def guess(longest: float) -> str:
+    """Guess the unit of numbers from the length of a body in them; most programs write mm.
+
+    Examples
+    --------
+    >>> [guess(longest) for longest in (80.0, 0.08, 3.2)]
+    ['mm', 'm', 'cm']
+    """
+    usual = ("mm", "m", "cm", "inch")
+    low, high = _USUAL
+    likely = (unit for unit in usual if low <= longest * parse(f"1 {unit}", "length") <= high)
+    return next(likely, "mm")
 
 
 def doubt(extents: NDArray[np.float64], meter: float) -> str:

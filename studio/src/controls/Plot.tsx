@@ -15,6 +15,8 @@ export interface Series {
   readonly color: string;
   readonly dashed?: boolean;
   readonly points?: boolean;
+  /** False: points alone. */
+  readonly line?: boolean;
 }
 
 export interface PlotProps {
@@ -91,7 +93,7 @@ export function Plot(props: PlotProps) {
               className={series.dashed ? "is-dashed" : undefined}
               style={{
                 borderColor: `var(${series.color})`,
-                borderStyle: series.dashed ? "dashed" : "solid",
+                borderStyle: series.line === false ? "dotted" : series.dashed ? "dashed" : "solid",
               }}
             />
             {series.label}
@@ -158,6 +160,7 @@ function options(element: HTMLElement, latest: { current: PlotProps }): uPlot.Op
         width: 1.5,
         pxAlign: 0, // whole pixels would make waves of smooth curves
         dash: one.dashed ? [5, 4] : undefined,
+        ...(one.line === false ? { paths: () => null } : {}),
         // A single row, as an equilibrium leaves it, is no line.
         points: { show: (plot: uPlot) => one.points === true || plot.data[0].length < 2, size: 5 },
         spanGaps: true,

@@ -2,7 +2,14 @@
 import { KINDS as ALL } from "../protocol";
 import { type Dimension, PLAIN } from "./dimension";
 import { type Amounts, NO_PARAMETERS, writtenFormula } from "./formula";
-import { factorOf, formatNumber, formatQuantity, isOneNumber, parseQuantity } from "./units";
+import {
+  factorOf,
+  formatNumber,
+  formatQuantity,
+  isOneNumber,
+  parseQuantity,
+  spaced,
+} from "./units";
 import { unitOf } from "./unitTable";
 
 const KINDS: Readonly<Record<string, (typeof ALL)[keyof typeof ALL]>> = ALL;
@@ -58,7 +65,7 @@ export function readWritten(
   if (unit === "" || read.value === 0 || !Number.isNaN(bare) || !isOneNumber(plain)) {
     return { value: writeValue(read.value, factorOf(unit), unit) };
   }
-  return { value: plain };
+  return { value: spaced(plain) };
 }
 
 /** A number for a design file in a given unit, without the noise of binary fractions. */

@@ -8,7 +8,7 @@ const SHOWN: Readonly<Record<string, string>> = {
   m: "mm",
   Pa: "kPa",
   "m^2": "cm^2",
-  "m^3": "ml",
+  "m^3": "mL",
   rad: "deg",
   kg: "g",
   "m/s": "mm/s",
@@ -54,6 +54,12 @@ export function parseQuantity(text: string, shown: string): Parsed {
     return { problem: `“${typed}” is ${came}; expected ${due}` };
   }
   return read;
+}
+
+/** A number and its unit with one space between them, such as `20 mm` for 20mm. */
+export function spaced(text: string): string {
+  const [, number, unit] = QUANTITY.exec(text) ?? [];
+  return number && unit ? `${number} ${unit}` : text;
 }
 
 /** Check if a text is one number with its unit, known or not, so that nothing is to be worked out. */

@@ -27,6 +27,7 @@ export const PANES: readonly PaneDefinition[] = [
   pane("path", "Path", () => import("./path/PathPane")),
   pane("timeline", "Timeline", () => import("./timeline/TimelinePane")),
   pane("calibrate", "Calibrate", () => import("./calibrate/CalibratePane")),
+  pane("coupon", "Tensile tests", () => import("./coupon/CouponPane")),
   pane("overlay", "Measured and simulated", () => import("./calibrate/OverlayPane")),
   pane("generations", "Generations", () => import("./calibrate/GenerationsPane")),
   pane("errors", "Errors", () => import("./calibrate/ErrorsPane")),

@@ -5,7 +5,7 @@ import { openSheet, usePage } from "../store/page";
 import { useStudio } from "../store/studio";
 import { finishTyping } from "../store/typing";
 import { listenForKeys, provideDock } from "./actions";
-import { Dock, resetLayout, showPane } from "./Dock";
+import { Dock, frontPanes, resetLayout, showPane } from "./Dock";
 import { DropZone } from "./DropZone";
 import { LinkBand } from "./LinkLamp";
 import { Sheets } from "./Sheets";
@@ -14,7 +14,7 @@ import { TopBar } from "./TopBar";
 import { wantsTour } from "./tour";
 import "./shell.css";
 
-provideDock({ panes: PANES, show: showPane, reset: resetLayout });
+provideDock({ panes: PANES, show: showPane, front: frontPanes, reset: resetLayout });
 
 export function App() {
   const starting = usePage((page) => page.sheet === "start");

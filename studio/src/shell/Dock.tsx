@@ -10,7 +10,7 @@ import {
 import "dockview-react/dist/styles/dockview.css";
 import { Suspense, useCallback, useEffect, useRef } from "react";
 import { PANES, paneById } from "../panes/registry";
-import { keepAs, kept, MODES, type Mode, usePage } from "../store/page";
+import { keepAs, kept, MODES, type Mode, setMode, usePage } from "../store/page";
 import { PaneFence } from "./Fence";
 import { Icon } from "./icons";
 import { add, build, holdsViews } from "./layouts";
@@ -30,15 +30,28 @@ const knownPanes = () => PANES.map((pane) => pane.id).join(" ");
 
 let dock: DockviewApi | null = null;
 
-/** Bring a pane to the front, opening it where it is closed. */
-export function showPane(id: string): void {
+/** Pane to show once the dock holds the panes of a mode. */
+let wanted: string | null = null;
+
+/** Bring a pane to the front, opening it where it is closed; in another mode if one is named. */
+export function showPane(id: string, mode?: Mode): void {
   if (!dock) return;
+  if (mode && mode !== usePage.getState().mode) {
+    wanted = id;
+    setMode(mode);
+    return;
+  }
   const panel = dock.getPanel(id);
   if (panel) panel.api.setActive();
   else {
     const anchor = dock.activePanel?.id;
     add(dock, id, anchor ? { referencePanel: anchor, direction: "within" } : undefined);
   }
+}
+
+/** Panes that are seen: the one in front of each group. */
+export function frontPanes(): readonly string[] {
+  return dock?.groups.flatMap((group) => group.activePanel?.id ?? []) ?? [];
 }
 
 /** Forget the kept layout of the current mode and build its default again. */
@@ -150,6 +163,8 @@ export function Dock() {
     save();
     shown.current = mode;
     fill(dock, mode);
+    if (wanted) showPane(wanted);
+    wanted = null;
     document.documentElement.dataset.layout = mode;
   }, [mode, save]);
 

@@ -2,19 +2,28 @@ import { useEffect, useState } from "react";
 import { CAD_HINT, CAD_SUFFIXES, CAD_WHAT, LARGEST_UPLOAD, MESHES } from "../protocol";
 import { toast } from "../store/studio";
 import { openDocument } from "./actions";
+import { TABLES, takeTable } from "./dropTable";
+import { askImport } from "./importMesh";
 
 /** Endings of files that can be opened. */
 export const TAKEN: readonly string[] = [".toml", ...MESHES, ".zip"];
 
-/** Send a file to the server and open it; tables of measurements are taken by their own pane. */
+/** Open a file that was dropped or chosen; a table goes to the pane that its columns are for. */
 export async function upload(file: File): Promise<void> {
   const kind = file.name.slice(file.name.lastIndexOf(".")).toLowerCase();
+  if (TABLES.includes(kind)) return takeTable(file);
   if (!TAKEN.includes(kind)) {
     toast({ level: "warning", ...refusalOf(file.name) });
     return;
   }
   const sent = await sendFile(file);
-  if (sent) openDocument({ t: "open", what: "upload", name: sent.name });
+  if (!sent) return;
+  if (!MESHES.some((ending) => sent.name.endsWith(ending))) {
+    openDocument({ t: "open", what: "upload", name: sent.name });
+    return;
+  }
+  const read = await askImport(sent.name);
+  if (read) openDocument({ t: "open", what: "upload", name: sent.name, mesh: read.how });
 }
 
 /** Reason why a file of this name is not opened, and a remedy. */
@@ -23,7 +32,7 @@ export function refusalOf(name: string): { readonly what: string; readonly hint:
     return { what: `${name} ${CAD_WHAT}`, hint: `Try: ${CAD_HINT}.` };
   return {
     what: `${name} is nothing that can be opened`,
-    hint: `Drop ${TAKEN.join(", ")}; a .csv of measurements goes on the Calibrate pane.`,
+    hint: `Drop ${TAKEN.join(", ")}, or a table of measurements (${TABLES.join(", ")}).`,
   };
 }
 
@@ -74,21 +83,26 @@ export function DropZone() {
     };
     const onDrop = (event: DragEvent) => {
       setOver(false);
-      // A pane that takes files itself has prevented the default before.
-      if (!hasFiles(event) || event.defaultPrevented) return;
+      const { target } = event;
+      // A place that takes files itself is marked.
+      const own = target instanceof Element && target.closest("[data-takes-files]") !== null;
+      if (!hasFiles(event) || own) return;
       event.preventDefault();
       for (const file of event.dataTransfer?.files ?? []) void upload(file);
     };
     addEventListener("dragover", onOver);
     addEventListener("dragleave", onLeave);
-    addEventListener("drop", onDrop);
+    // Groups of panes prevent the default of every drop, also of files: they are asked last.
+    addEventListener("drop", onDrop, true);
     return () => {
       removeEventListener("dragover", onOver);
       removeEventListener("dragleave", onLeave);
-      removeEventListener("drop", onDrop);
+      removeEventListener("drop", onDrop, true);
     };
   }, []);
   return over ? (
-    <div className="drop-here">Drop a design, a mesh, voxels or a run folder (.zip)</div>
+    <div className="drop-here">
+      Drop a design, a mesh, voxels, a table of measurements (.csv) or a run folder (.zip)
+    </div>
   ) : null;
 }

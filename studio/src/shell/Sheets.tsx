@@ -6,6 +6,7 @@ import { openSheet, setMode, usePage } from "../store/page";
 import { useView } from "../store/view";
 import { SCHEMES, schemeWords } from "../view/hands/schemes";
 import { type Action, actions } from "./actions";
+import { ImportSheet } from "./ImportSheet";
 import { Icon } from "./icons";
 import { DiscardSheet, SaveSheet } from "./SaveSheet";
 import { Toasts } from "./Toasts";
@@ -47,6 +48,11 @@ export function Sheets() {
       {sheet === "remove" && (
         <Scrim label="Remove what is in use" testId="remove-sheet">
           <RemoveSheet />
+        </Scrim>
+      )}
+      {sheet === "import" && (
+        <Scrim label="Import of a mesh" testId="import-sheet">
+          <ImportSheet />
         </Scrim>
       )}
       <Toasts />

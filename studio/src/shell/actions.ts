@@ -6,6 +6,7 @@ import { newestFilm, toggleFilm } from "../run/film";
 import {
   MODE_TITLES,
   MODES,
+  type Mode,
   openSheet,
   type Pending,
   setMode,
@@ -39,7 +40,10 @@ export interface Action {
 
 export interface DockActions {
   readonly panes: readonly { readonly id: string; readonly title: string }[];
-  show(id: string): void;
+  /** Bring a pane to the front, in another mode if one is named. */
+  show(id: string, mode?: Mode): void;
+  /** Panes that are seen. */
+  front(): readonly string[];
   reset(): void;
 }
 
@@ -56,9 +60,14 @@ export function provideDock(actions: DockActions): void {
   dock = actions;
 }
 
-/** Bring a pane to the front. */
-export function showPane(id: string): void {
-  dock?.show(id);
+/** Bring a pane to the front, in another mode if one is named. */
+export function showPane(id: string, mode?: Mode): void {
+  dock?.show(id, mode);
+}
+
+/** Panes that are seen. */
+export function frontPanes(): readonly string[] {
+  return dock?.front() ?? [];
 }
 
 export function togglePlay(): void {

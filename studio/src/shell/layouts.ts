@@ -34,7 +34,7 @@ const LAYOUTS: Readonly<Record<Mode, Layout>> = {
     leftShare: 0.21,
   },
   calibrate: {
-    left: [["calibrate"]],
+    left: [["calibrate", "coupon"]],
     main: ["view", "overlay"],
     bottom: [["generations"], ["errors", "log"]],
     right: [],

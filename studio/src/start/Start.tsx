@@ -3,6 +3,7 @@ import { Button } from "../controls/Choice";
 import icon from "../icon.svg";
 import type { RecentFile, Robot } from "../protocol";
 import { TAKEN, upload } from "../shell/DropZone";
+import { TABLES } from "../shell/dropTable";
 import { Icon } from "../shell/icons";
 import { BodyPicture } from "../shell/VersionsSheet";
 import { openSheet } from "../store/page";
@@ -117,7 +118,7 @@ export function Start() {
               type="file"
               tabIndex={-1}
               aria-label="Open from the start screen"
-              accept={TAKEN.join(",")}
+              accept={[...TAKEN, ...TABLES].join(",")}
               onChange={(event) => {
                 const files = [...(event.target.files ?? [])];
                 event.target.value = "";

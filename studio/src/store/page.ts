@@ -26,10 +26,11 @@ export type Sheet =
   | "versions"
   | "discard"
   | "remove"
+  | "import"
   | null;
 
 /** File to be opened once the open design has been saved or given up. */
-export type Pending = Pick<OpenCommand, "t" | "what" | "name">;
+export type Pending = Pick<OpenCommand, "t" | "what" | "name" | "mesh">;
 
 export interface Page {
   mode: Mode;

@@ -12,6 +12,8 @@ describe("readWritten", () => {
   });
   it("keeps the unit that was typed", () => {
     expect(readWritten("0.5 cm", "length")).toEqual({ value: "0.5 cm" });
+    expect(readWritten("20mm", "length")).toEqual({ value: "20 mm" });
+    expect(readWritten("2,5kPa", "pressure")).toEqual({ value: "2.5 kPa" });
     expect(readWritten("1 psi", "pressure")).toEqual({ value: "1 psi" });
   });
   it("passes text that only VoxSoft knows", () => {

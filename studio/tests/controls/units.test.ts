@@ -70,7 +70,7 @@ describe("format", () => {
   it("writes the units that people read", () => {
     expect(formatQuantity(0.02, "m")).toBe("20 mm");
     expect(formatQuantity(4000, "Pa")).toBe("4 kPa");
-    expect(formatQuantity(1e-6, "m^3")).toBe("1 ml");
+    expect(formatQuantity(1e-6, "m^3")).toBe("1 mL");
     expect(formatNumber(-0.00001234)).toBe("−1.23e−5");
     expect(formatNumber(Number.NaN)).toBe("–");
     expect(shownUnit("1")).toBe("1");

@@ -127,6 +127,7 @@ def test_objects_to_grip_are_added_beside_the_body_and_taken_back(served, open_t
     file = tmp_path / "wedge.stl"
     file.write_text(STL)
     tab.find("object-file").set_input_files(file)
+    tab.find("import-now").click()
     tab.until("voxsoft.objectPosition('wedge') !== null")
     # The finger is held at its left end and 10 mm wide: all stand in a row to the right of it.
     places = page.evaluate(

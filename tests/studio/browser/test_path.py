@@ -41,7 +41,7 @@ def test_a_field_is_followed_and_seen_again_after_a_reload(gripper, open_tab, tm
     assert "root mean square of 3 points" in tab.find("path-misfit").inner_text()
     tab.shot("path-measured")
     numbers.select_option("tip.x")
-    tab.page.get_by_label("tip.x over loads[0].value[2]").wait_for()
+    tab.page.get_by_label("Displacement of tip along x over magnetic field along z").wait_for()
     tab.page.reload()
     tab.page.get_by_text("Path", exact=True).click()
     tab.find("path-end").wait_for()
@@ -71,7 +71,7 @@ def test_rubber_creeps_over_time_and_names_its_stiffness(serving, tmp_path, open
         end.wait_for()
         assert "3 equilibria" in end.inner_text()
         pane.get_by_label("Number along the path").select_option("tip.z")
-        tab.page.get_by_label("tip.z over time").wait_for()
+        tab.page.get_by_label("Displacement of tip along z over time").wait_for()
         tab.shot("path-creep")
         assert tab.errors == []
     finally:
@@ -93,7 +93,7 @@ def test_a_path_that_is_lost_says_where(serving, tmp_path, open_tab, coarse):
         tab.find("path-start").click()
         end = tab.find("path-end")
         end.wait_for()
-        assert "lost at loads[0].value" in end.inner_text()
+        assert "lost at traction = " in end.inner_text()
         tab.shot("path-lost")
     finally:
         server.stop()

@@ -61,6 +61,16 @@ def test_a_section_that_is_added_stands_apart_as_the_others_do(text, there):
     assert there in with_value(text, ["b", text.count("[[b]]")], {"x": 9})
 
 
+def test_text_of_a_form_is_laid_out_as_that_of_templates():
+    text = with_value('name = "robot"\n', ["shapes", "body"], {"kind": "box", "hole": {}})
+    text = with_value(text, ["parts", 0], {"shape": "body"})
+    text = with_value(text, ["loads"], [{"kind": "gravity"}])
+    assert text == (
+        'name = "robot"\n\n[shapes]\nbody = { kind = "box", hole = {} }\n\n'
+        '[[parts]]\nshape = "body"\n\n[[loads]]\nkind = "gravity"\n'
+    )
+
+
 def test_the_last_good_design_stays():
     edited = document()
     good = edited.design

@@ -15,9 +15,11 @@ from voxsoft.files import write_surfaces
 from voxsoft.simulation.setup.volumes import volumes_of
 from voxsoft.studio.documents.uploads import (
     design_of_mesh,
+    facts_of_mesh,
     safe_name,
     unpack_folder,
 )
+from voxsoft.studio.protocol.commands import MeshImport
 
 
 @pytest.mark.parametrize(
@@ -128,8 +130,8 @@ def test_the_objects_of_a_3mf_are_parts_by_name_in_its_unit(tmp_path):
 def test_a_mesh_of_a_doubtful_size_is_asked_about(tmp_path):
     file = tmp_path / "box_m.stl"
     trimesh.creation.box((0.04, 0.02, 0.02)).export(file)
-    text = design_of_mesh(file)
-    assert ", m: 40 mm long" in text
+    text = design_of_mesh(file, MeshImport(unit="mm"))
+    assert ", m: 40 mm long" in design_of_mesh(file)
     found = [str(each) for each in check(Design.from_document(tomllib.loads(text))).findings]
     assert any("box_m.stl is read in mm" in each for each in found)
 
@@ -160,3 +162,39 @@ def test_voxels_of_voxcad_keep_their_size(tmp_path):
     found = voxels_of(design)
     assert found.voxel_size == 0.0005
     np.testing.assert_array_equal(found.array, [[[1, 1]], [[2, 0]]])
+
+
+@pytest.mark.parametrize(
+    ("sides", "unit"), [((40, 10, 10), "mm"), ((0.04, 0.01, 0.01), "m"), ((4, 1, 1), "cm")]
+)
+def test_the_unit_of_a_mesh_is_guessed_from_its_size(tmp_path, sides, unit):
+    file = tmp_path / "finger.stl"
+    trimesh.creation.box(sides).export(file)
+    facts = facts_of_mesh(file)
+    assert (facts.unit, facts.stated, facts.voxels, facts.parts) == (unit, False, False, [])
+    np.testing.assert_allclose(np.subtract(facts.high, facts.low), sides, rtol=1e-6)
+    design = Design.from_document(tomllib.loads(design_of_mesh(file)))
+    assert mesh_of(design).volume == pytest.approx(4e-6, rel=0.05)
+    assert design.voxel_size == pytest.approx(0.04 / facts.cells, rel=0.05)
+
+
+@pytest.mark.parametrize("up", ["x", "-x", "y", "-y", "z", "-z"])
+def test_an_imported_mesh_is_scaled_and_turned_and_stands_on_its_clamp(tmp_path, up):
+    file = tmp_path / "finger.stl"
+    trimesh.creation.box(bounds=((1, 2, 3), (2, 4, 6))).export(file)
+    text = design_of_mesh(file, MeshImport(unit="cm", scale=2.0, up=up))
+    design = Design.from_document(tomllib.loads(text))
+    low, high = design.shapes["body"].build().bounds()
+    along = "xyz".index(up[-1])
+    assert high[2] - low[2] == pytest.approx(0.02 * (along + 1))
+    [first, last] = [np.array([0.02, 0.04, 0.06])[along], np.array([0.04, 0.08, 0.12])[along]]
+    assert low[2] == pytest.approx(-last if up[0] == "-" else first)
+    region = tomllib.loads(text)["clamps"][0]["region"]["z"]
+    assert Design.from_document(tomllib.loads(text)).clamps[0].region is not None
+    assert float(region[0].split()[0]) == pytest.approx(1e3 * low[2], abs=1e-3)
+
+
+def test_a_unit_that_a_file_states_is_no_guess(tmp_path):
+    file = tmp_path / "box.glb"
+    trimesh.creation.box((4.0, 2.0, 2.0)).export(file)
+    assert (facts_of_mesh(file).unit, facts_of_mesh(file).stated) == ("m", True)

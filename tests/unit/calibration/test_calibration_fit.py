@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from voxsoft.calibration import Experiment, Measurement, calibrate
+from voxsoft.calibration.misfit import Deviation
+from voxsoft.calibration.result import Fit
 from voxsoft.design import Design
 from voxsoft.errors import MeasurementError, SimulationError, StudyError
 from voxsoft.files.calibrations import write_calibration
@@ -65,6 +67,25 @@ def test_marks_on_another_line_than_assumed_are_cautioned_of(line, caution):
     assert caution in found.card("x").caution
     if caution:
         assert "the marks were on the lower edge" in fit.caution
+
+
+@pytest.mark.parametrize(
+    ("share", "alike", "is_missed"),
+    [(0.2, True, True), (0.2, False, True), (0.02, True, True), (0.02, False, False)],
+)
+def test_a_model_that_misses_more_than_marks_are_misread_says_where(share, alike, is_missed):
+    arcs = np.arange(1, 10) * 5e-3
+    values = np.column_stack([arcs, -10.0 * arcs**2])
+    seen = Measurement(quantities=["x", "dz"], values=values, arcs=arcs, name="coupon")
+    tested = Experiment(families.beam().with_parameters(length="60 mm"), seen)
+    signs = np.ones(9) if alike else np.where(np.arange(9) % 2, -1.0, 1.0)
+    off = np.column_stack([np.zeros(9), share * tested.sag * signs])
+    off[6] *= 1.5
+    fit = Fit(tested, Deviation(values + off, values, 1.0, np.zeros((0, 3))))
+    assert bool(fit.miss) == is_missed
+    if is_missed:
+        assert "coupon: the model misses by up to" in fit.miss
+        assert "at arc 35 mm: try finer voxels" in fit.miss
 
 
 @pytest.fixture(scope="module")

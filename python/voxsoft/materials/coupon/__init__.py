@@ -21,7 +21,12 @@ from voxsoft.materials.coupon.modulus_test import (
     read_modulus_tests,
 )
 from voxsoft.materials.coupon.result import CouponFit, ModelFit
-from voxsoft.materials.coupon.table import read_curve, read_cycles, read_timed_test
+from voxsoft.materials.coupon.table import (
+    curve_quantities,
+    read_curve,
+    read_cycles,
+    read_timed_test,
+)
 from voxsoft.materials.coupon.timed import TestKind, TimedTest
 from voxsoft.materials.coupon.untested import UntestedMode
 
@@ -45,6 +50,7 @@ __all__ = [
     "Toe",
     "ToeCorrection",
     "UntestedMode",
+    "curve_quantities",
     "fit_branches",
     "fit_coupons",
     "fit_softening",

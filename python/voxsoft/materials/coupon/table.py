@@ -211,6 +211,37 @@ def read_timed_test(
     return TimedTest(time, strain, stress, kind, name)
 
 
+def curve_quantities(text: str, *, name: str = "table") -> tuple[str, str] | None:
+    """Return the names of the quantities of a curve in a table, or None of any other table.
+
+    Parameters
+    ----------
+    text
+        Text of the table; see :func:`read_curve`.
+    name
+        Name in errors.
+
+    Raises
+    ------
+    MeasurementError
+        The text is no table.
+
+    Examples
+    --------
+    >>> curve_quantities("time_s,Extension (mm),Load (N)")
+    ('displacement', 'force')
+    >>> curve_quantities("pressure_kPa,angle_deg") is None
+    True
+    """
+    for row in TextTable.of(text, name).rows[:PREAMBLE]:
+        names = {column.name for column in _known(row)}
+        across = next((each for each in _STRAINS if each in names), None)
+        along = next((each for each in _STRESSES if each in names), None)
+        if across and along:
+            return across, along
+    return None
+
+
 def _columns(
     data: str | Measured, name: str, area: float | str | None, length: float | str | None
 ) -> tuple[Floats, Floats]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -39,6 +39,11 @@ _DOUBLE: Final = 2.0
 def young_of(material: Material) -> float | None:
     """Young's modulus at small strain in Pa, or None of a rigid material."""
     return None if isinstance(material, Rigid) else float(material.young(_USUAL_VOXEL))
+
+
+def written(material: Material) -> dict[str, Any]:
+    """A material as a design file writes it."""
+    return material.model_dump(mode="json", by_alias=True, exclude_none=True, context=EXACT)
 
 
 def materials_of(document: DesignDocument) -> events.Materials:
@@ -95,7 +100,6 @@ def _facts(card: Card, origin: events.Origin) -> events.MaterialFacts:
     material = card.material
     tested = getattr(material, "tested_stretch", None)
     stretches, stresses = _curve(material, card.elongation_at_break)
-    dumped = material.model_dump(mode="json", by_alias=True, exclude_none=True, context=EXACT)
     return events.MaterialFacts(
         name=card.name,
         title=card.title,
@@ -116,7 +120,7 @@ def _facts(card: Card, origin: events.Origin) -> events.MaterialFacts:
         license=card.license,
         stretches=stretches,
         stresses=stresses,
-        table=dumped,
+        table=written(material),
     )
 
 

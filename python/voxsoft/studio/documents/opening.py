@@ -14,6 +14,7 @@ from voxsoft.jobs import load
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 from voxsoft.studio.documents.document import DesignDocument
 from voxsoft.studio.documents.uploads import MESHES, design_of_mesh
+from voxsoft.studio.protocol.commands import MeshImport
 from voxsoft.studio.running.studying import design_text_of, stored_trial
 from voxsoft.study.trial import Trial
 from voxsoft.units import format_quantity
@@ -103,8 +104,8 @@ def document_at(path: Path, home: Path) -> DesignDocument:
     return opened
 
 
-def uploaded_document(file: Path, home: Path) -> DesignDocument:
-    """A file that was dropped on the page, as a new document.
+def uploaded_document(file: Path, home: Path, mesh: MeshImport | None = None) -> DesignDocument:
+    """A file that was dropped on the page, as a new document; a mesh is read as it says.
 
     Raises
     ------
@@ -116,9 +117,9 @@ def uploaded_document(file: Path, home: Path) -> DesignDocument:
         opened.path, opened.saved, opened.folder = None, None, home
         return opened
     if file.suffix in MESHES:
-        text = design_of_mesh(file)
+        text = design_of_mesh(file, mesh)
     else:
-        raise FileError(file.name, "holds measurements", "open it in the Calibrate pane")
+        raise FileError(file.name, "holds measurements", "drop it on the page: a pane takes it")
     return DesignDocument(text, f"{file.stem}.toml", folder=home)
 
 

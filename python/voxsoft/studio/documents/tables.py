@@ -128,6 +128,40 @@ def measured(
     return event, found
 
 
+def table_uses(name: str, text: str) -> events.TableUses:
+    r"""Say which uses a table can have, by the names of its columns.
+
+    Raises
+    ------
+    MeasurementError
+        It is no table.
+
+    Examples
+    --------
+    >>> table_uses("a.csv", "strain,stress_kPa\n0,0").uses
+    ['coupon']
+    >>> table_uses("a.csv", "displacement_mm,force_N\n0,0").uses
+    ['coupon', 'curve']
+    >>> table_uses("a.csv", "arc_position_mm,dz_mm\n0,0").uses
+    ['stations']
+    >>> table_uses("a.csv", "pressure_kPa,angle_deg\n0,0").uses
+    ['curve', 'stations']
+    """
+    # With its fits the package takes SciPy: a studio that starts does without.
+    from voxsoft.materials.coupon import curve_quantities
+
+    if is_test(name):
+        return events.TableUses(name=name, uses=["stations"])
+    named = curve_quantities(text, name=name)
+    if named is not None:
+        alone = "displacement" not in named and "force" not in named
+        return events.TableUses(name=name, uses=["coupon"] if alone else ["coupon", "curve"])
+    columns = {each.quantity for each in guessed_columns(text)}
+    if columns & {"arc", "probe"}:
+        return events.TableUses(name=name, uses=["stations"])
+    return events.TableUses(name=name, uses=["curve", "stations"])
+
+
 def is_test(name: str) -> bool:
     """Return True for a test of instruments, in TOML, by the name of its file."""
     return name.lower().endswith(".toml")

@@ -16,11 +16,14 @@ from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
 from voxsoft.formats.read import read_contents
 from voxsoft.formats.registry import READ, counts_voxels
-from voxsoft.formats.unit import length_of, name_of
+from voxsoft.formats.unit import guess, length_of, name_of
 from voxsoft.shapes import TriangleMesh
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 from voxsoft.shapes.mesh_bodies import sizes_in_units
 from voxsoft.shapes.surface_files import labels_in, parts_in
+from voxsoft.studio.protocol import events
+from voxsoft.studio.protocol.commands import MeshImport
+from voxsoft.studio.protocol.message import Triple
 from voxsoft.units import format_quantity
 
 #: Largest size of all unpacked files of an archive [bytes].
@@ -63,15 +66,8 @@ def safe_name(name: str) -> str:
     return f"{folder_name(stem, 'upload')}{suffix}"
 
 
-def design_of_mesh(file: Path) -> str:
-    """Write a design file whose body is a mesh or an array of voxels, dropped on the page.
-
-    Parameters
-    ----------
-    file
-        The file. Its numbers are in the unit that it says, else in mm, as most programs write them;
-        voxels of an array are 1 mm wide where it does not say it. Its objects, or its labels, are
-        parts.
+def facts_of_mesh(file: Path) -> events.MeshFacts:
+    """Measure a mesh or an array of voxels in its own numbers, and tell or guess its unit.
 
     Raises
     ------
@@ -79,37 +75,100 @@ def design_of_mesh(file: Path) -> str:
         The file cannot be read, encloses nothing, or is an array of other numbers than labels.
     """
     contents = read_contents(file)
-    meter = contents.unit
-    unit = "mm" if meter is None else name_of(meter)
-    low, high = TriangleMesh(path=str(file), unit=unit).build().bounds()
-    pieces = [
-        _Piece(file, unit, part) for part in parts_in(contents) or labels_in(contents) or (None,)
-    ]
-    if counts_voxels(file.name):
-        unit = "1 mm" if meter is None else format_quantity(meter, "length")
-        pieces = [each._replace(unit=unit) for each in pieces]
-        why = "are taken as" if meter is None else "are, as it says,"
-        about = (
-            f"# A body from {file.name}, each label of which is a part. Its voxels {why} {unit}",
-            "# wide: change `unit`, `voxel_size` and the lengths below, if that is wrong.",
-        )
-        return _standing(about, pieces, unit, low[2], file.stem)
-    size = max(b - a for a, b in zip(low, high, strict=True)) / _FIRST_CELLS
-    voxel = format_quantity(float(f"{size:.2g}"), "length")
-    sizes = sizes_in_units(_FIRST_CELLS * size / length_of(unit))
-    why = "are taken as" if meter is None else "are, as it says, in"
-    about = (
-        f"# A body from {file.name}. Its numbers {why} {unit}: change `unit`, and",
-        f"# the lengths below, if that is wrong. It would be, {sizes}.",
+    low, high = TriangleMesh(path=str(file), unit="1 m").build().bounds()
+    voxels = counts_voxels(file.name)
+    unit = "1 mm" if voxels else guess(max(b - a for a, b in zip(low, high, strict=True)))
+    if contents.unit is not None:
+        unit = format_quantity(contents.unit, "length") if voxels else name_of(contents.unit)
+    return events.MeshFacts(
+        name=file.name,
+        low=low,
+        high=high,
+        unit=unit,
+        stated=contents.unit is not None,
+        voxels=voxels,
+        parts=list(parts_in(contents) or labels_in(contents)),
+        cells=_FIRST_CELLS,
     )
-    return _standing(about, pieces, voxel, low[2], file.stem)
+
+
+def design_of_mesh(file: Path, how: MeshImport | None = None) -> str:
+    """Write a design file whose body is a mesh or an array of voxels, dropped on the page.
+
+    Parameters
+    ----------
+    file
+        The file. Its objects, or its labels, are parts.
+    how
+        Reading of its numbers; default: in the unit that it says, else in the likeliest one. Voxels
+        of an array are 1 mm wide where it does not say it.
+
+    Raises
+    ------
+    FileError, ShapeError
+        The file cannot be read, encloses nothing, or is an array of other numbers than labels.
+    """
+    facts = facts_of_mesh(file)
+    chosen = how or MeshImport(unit=facts.unit)
+    meter = length_of(chosen.unit) * chosen.scale
+    low, high = _turned(facts.low, facts.high, chosen.up)
+    pieces = [_Piece(file, chosen, part) for part in facts.parts or (None,)]
+    longest = meter * max(b - a for a, b in zip(low, high, strict=True))
+    voxel = format_quantity(float(f"{longest / _FIRST_CELLS:.2g}"), "length")
+    if how is not None:
+        about = [f"# A body from {file.name}, imported in the unit {chosen.unit}."]
+    elif facts.voxels:
+        why = "are, as it says," if facts.stated else "are taken as"
+        wide = f"{why} {chosen.unit}"
+        about = [
+            f"# A body from {file.name}, each label of which is a part. Its voxels {wide}",
+            "# wide: change `unit`, `voxel_size` and the lengths below, if that is wrong.",
+        ]
+    else:
+        why = "are, as it says, in" if facts.stated else "are taken as"
+        sizes = sizes_in_units(longest / length_of(chosen.unit))
+        about = [
+            f"# A body from {file.name}. Its numbers {why} {chosen.unit}: change `unit`, and",
+            f"# the lengths below, if that is wrong. It would be, {sizes}.",
+        ]
+    if facts.voxels:
+        voxel = format_quantity(meter, "length")
+    return _standing(about, pieces, voxel, meter * low[2], file.stem)
+
+
+#: Turns about an axis that bring an axis of a file up.
+_TURNS: Final = {
+    "x": ("y", -90),
+    "-x": ("y", 90),
+    "y": ("x", 90),
+    "-y": ("x", -90),
+    "-z": ("x", 180),
+}
+
+
+def _turned(low: Triple, high: Triple, up: str) -> tuple[Triple, Triple]:
+    """Turn a box so that an axis points up.
+
+    Examples
+    --------
+    >>> _turned((0, 0, 0), (1, 2, 3), "y")
+    ((0, -3, 0), (1, 0, 2))
+    """
+    ends = [_upward(corner, up) for corner in (low, high)]
+    return tuple(map(min, *ends)), tuple(map(max, *ends))
+
+
+def _upward(point: Triple, up: str) -> Triple:
+    x, y, z = point
+    turns = {"x": (-z, y, x), "-x": (z, y, -x), "y": (x, -z, y), "-y": (x, z, -y)}
+    return turns.get(up, (x, -y, -z) if up == "-z" else point)
 
 
 class _Piece(NamedTuple):
     """A file of a body, or a part of it."""
 
     file: Path
-    unit: str
+    how: MeshImport
     part: str | None = None
 
     @property
@@ -120,7 +179,13 @@ class _Piece(NamedTuple):
     def shape(self) -> str:
         part = "" if self.part is None else f", part = {json.dumps(self.part)}"
         path = json.dumps(str(self.file))
-        return f'{{ kind = "mesh", path = {path}, unit = "{self.unit}"{part} }}'
+        shape = f'{{ kind = "mesh", path = {path}, unit = "{self.how.unit}"{part} }}'
+        if self.how.scale != 1.0:
+            shape = f'{{ kind = "scale", of = {shape}, factor = {self.how.scale!r} }}'
+        if self.how.up in _TURNS:
+            axis, angle = _TURNS[self.how.up]
+            shape = f'{{ kind = "rotate", of = {shape}, axis = "{axis}", angle = "{angle} deg" }}'
+        return shape
 
 
 def _key(name: str) -> str:

@@ -53,15 +53,28 @@ class Sync(Command):
     """Ask for `synced` once all commands before it are done: requests beside the socket wait."""
 
 
+class MeshImport(Entry):
+    """Reading of a mesh: the unit of its numbers, a factor on them, and its axis that points up.
+
+    The unit of an array is the width of its voxels, such as "0.5 mm".
+    """
+
+    unit: ShortText
+    scale: Positive = 1.0
+    up: Literal["x", "-x", "y", "-y", "z", "-z"] = "z"
+
+
 class Open(Command):
     """Open a document: a template, a robot, a file or run folder, an upload, or a study's trial.
 
     A trial is named "ID/INDEX"; a run by its id in the list of runs; a start by its three answers,
-    "pressure-finger-bend"; a document that was left without being saved by its id.
+    "pressure-finger-bend"; a document that was left without being saved by its id. `mesh` tells how
+    an uploaded mesh is read.
     """
 
     what: Literal["template", "robot", "start", "file", "run", "upload", "trial", "unsaved"]
     name: ShortText
+    mesh: MeshImport | None = None
 
 
 class Text(Command):
@@ -161,13 +174,14 @@ class Rename(Command):
 class AddBody(Command):
     """Add a body: a design file of the folder, a template, or a file that was uploaded.
 
-    It stands `beyond` so many m along x. The body of a design that has no others becomes the first
-    of a new design of several.
+    It stands `beyond` so many m along x; `mesh` is as of `Open`. The body of a design that has no
+    others becomes the first of a new design of several.
     """
 
     what: Literal["file", "template", "upload"]
     name: ShortText
     beyond: float = 0.0
+    mesh: MeshImport | None = None
 
 
 class AddFeature(Command):

@@ -18,6 +18,8 @@ Origin = Literal["card", "design", "file"]
 LiveMotion = Literal["explicit", "implicit", "none"]
 #: Form of a history: points, a sine, an expression of time, a table in a file, none.
 HistoryWay = Literal["points", "sine", "expression", "table", "none"]
+#: Use of a table of numbers: a test of a material, points on a body, a number over another one.
+TableUse = Literal["coupon", "stations", "curve"]
 JobKind = Literal["run", "study", "calibrate"]
 JobState = Literal[
     "running", "pausing", "paused", "stopping", "stopped", "done", "failed", "interrupted"
@@ -1018,7 +1020,10 @@ class StationError(Entry):
 
 
 class Calibrated(Event):
-    """The result of a calibration; errors in m. `card` is the text of the material card."""
+    """The result of a calibration; errors in m. `card` is the text of the material card.
+
+    `miss` says where and by how much the model misses more than marks are misread, or is empty.
+    """
 
     job: str
     parameters: list[FittedParameter]
@@ -1030,6 +1035,8 @@ class Calibrated(Event):
     max_error: float
     material: dict[str, Json]
     card: str
+    miss: str = ""
+    warnings: list[str] = field(default_factory=list)
 
 
 class Recipe(Event):
@@ -1120,6 +1127,77 @@ class Measured(Event):
     arcs: list[float]
     points: list[Triple]
     problems: list[Finding]
+
+
+class MeshFacts(Event):
+    """A mesh that was uploaded: its box from `low` to `high` in its own numbers, and its unit.
+
+    The unit is a guess unless it is `stated`; of an array of `voxels` it is the width of one. The
+    longest side has `cells` voxels.
+    """
+
+    name: str
+    low: Triple
+    high: Triple
+    unit: str
+    stated: bool
+    voxels: bool
+    parts: list[str]
+    cells: int
+
+
+class TableUses(Event):
+    """Uses of a table of numbers that was dropped on the page, the likeliest first.
+
+    `coupon` is a test of a material, `stations` are points measured on a body, `curve` is a number
+    over another one.
+    """
+
+    name: str
+    uses: list[TableUse]
+
+
+class CouponCurve(Entry):
+    """A test of a material: the engineering strain and stress that were fitted, Pa."""
+
+    name: str
+    mode: str
+    strain: list[float]
+    stress: list[float]
+
+
+class CouponModel(Entry):
+    """A model fitted to tests of a material.
+
+    `error` is that of the stress, Pa, and `young` the initial modulus between `low` and `high`
+    (95 %). `stresses` are those of the model at the strains of each test. `table` is the material
+    as a design writes it, empty where `refused` says why it cannot be used.
+    """
+
+    name: str
+    size: int
+    error: float
+    largest: float
+    young: float
+    low: float
+    high: float
+    stresses: list[list[float]]
+    table: dict[str, Json]
+    refused: str
+    warnings: list[str]
+
+
+class CouponFit(Event):
+    """Models fitted to tests of a material, best prediction first; `recommended` is one of them.
+
+    `name` is a name for the material, `rejected` says which models could not be fitted, and why.
+    """
+
+    name: str
+    curves: list[CouponCurve]
+    models: list[CouponModel]
+    recommended: str
+    rejected: list[str]
 
 
 class Exported(Event):
@@ -1279,6 +1357,9 @@ AnyEvent = (
     | Runs
     | Compared
     | Measured
+    | MeshFacts
+    | TableUses
+    | CouponFit
     | Exported
     | Molds
     | Saved

@@ -66,4 +66,6 @@ def calibrated_event(job: str, answer: Calibration, card: str) -> events.Calibra
         max_error=answer.max_error,
         material=answer.material.model_dump(mode="json", exclude_none=True),
         card=card,
+        miss=answer.miss,
+        warnings=answer.warnings,
     )

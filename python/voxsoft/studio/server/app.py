@@ -72,6 +72,9 @@ def make_app(session: Session, token: str, port: int) -> Guard:
         Route("/upload", pages.upload, methods=["POST"]),
         Route("/export", pages.export, methods=["POST"]),
         Route("/molds", pages.molds, methods=["POST"]),
+        Route("/mesh", pages.mesh, methods=["POST"]),
+        Route("/table", pages.table, methods=["POST"]),
+        Route("/coupons", pages.coupons, methods=["POST"]),
         WebSocketRoute("/ws", pages.websocket),
     ]
 
@@ -219,12 +222,30 @@ class _Pages:
 
     async def molds(self, request: Request) -> Response:
         """Answer with the molds of the document; making them takes seconds."""
+        return await self._made(self._session.molds, request)
+
+    async def mesh(self, request: Request) -> Response:
+        """Answer with the size and the unit of a mesh that was uploaded."""
+        return await self._made(self._session.mesh, request)
+
+    async def table(self, request: Request) -> Response:
+        """Answer with the uses of a table that was dropped."""
+        return await self._made(self._session.table, request)
+
+    async def coupons(self, request: Request) -> Response:
+        """Answer with the models fitted to tests of a material; it takes a second."""
+        return await self._made(self._session.coupons, request)
+
+    async def _made(
+        self, make: Callable[[dict[str, Any]], events.Event], request: Request
+    ) -> Response:
+        """Answer with a message that is made of a request, or with its problem."""
         try:
-            made = await self._aside(self._session.molds, await _asked(request))
+            made = await self._aside(make, await _asked(request))
         except VoxSoftError as error:
             return _problem(422, error.where, error.what, error.hint)
         except (ValueError, UnicodeError, RecursionError) as error:
-            return _problem(400, "molds", str(error))
+            return _problem(400, request.url.path.strip("/"), str(error))
         return Response(encode(made), media_type="application/json")
 
     async def websocket(self, socket: WebSocket) -> None:

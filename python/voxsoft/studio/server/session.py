@@ -64,8 +64,9 @@ from voxsoft.studio.documents.tables import (
     mapped_text,
     measured,
     measured_test,
+    table_uses,
 )
-from voxsoft.studio.documents.uploads import safe_name, unpack_folder
+from voxsoft.studio.documents.uploads import facts_of_mesh, safe_name, unpack_folder
 from voxsoft.studio.documents.versions import Versions, versions_event
 from voxsoft.studio.motion.engine import Engine
 from voxsoft.studio.outputs.album import Album
@@ -285,7 +286,7 @@ class Session:
         if command.what == "template":
             file = file_of_template(command.name, document.folder)
         elif command.what == "upload":
-            upload = uploaded_document(self._upload(command.name), document.folder)
+            upload = uploaded_document(self._upload(command.name), document.folder, command.mesh)
             file = file_of_document(upload, document.folder)
         if command.what != "file":
             self.tabs.publish(events.Saved(what="design", path=str(file)))
@@ -444,7 +445,7 @@ class Session:
             case "file":
                 self._open(document_at(Path(command.name), self._home))
             case "upload":
-                self._open_upload(command.name)
+                self._open_upload(command.name, command.mesh)
             case "unsaved":
                 self._open(self._recent.unsaved(command.name).document(self._home))
             case "run":
@@ -508,13 +509,13 @@ class Session:
             raise FileError(name, "was not uploaded", "drop the file on the page again")
         return file
 
-    def _open_upload(self, name: str) -> None:
+    def _open_upload(self, name: str, mesh: commands.MeshImport | None) -> None:
         file = self._upload(name)
         if file.suffix == ".zip":
             folder = unpack_folder(file, self._free_folder(file.stem))
             self._open(document_at(folder, self._home))
         else:
-            self._open(uploaded_document(file, self._home))
+            self._open(uploaded_document(file, self._home, mesh))
 
     def _open_run(self, folder: Path) -> None:
         kind = kind_of(folder)
@@ -807,6 +808,38 @@ class Session:
             return reported(made, rev, "", "")
         offered = self.offer(made.archive, "molds")
         return reported(made, rev, offered.url, offered.name)
+
+    def mesh(self, asked: dict[str, Any]) -> events.MeshFacts:
+        """Measure a mesh that was uploaded, so that the page can ask for its unit.
+
+        Raises
+        ------
+        VoxSoftError
+            It is not there, cannot be read, or encloses nothing.
+        """
+        return facts_of_mesh(self._upload(str(asked.get("name", ""))))
+
+    def table(self, asked: dict[str, Any]) -> events.TableUses:
+        """Say which uses a table that was dropped can have.
+
+        Raises
+        ------
+        VoxSoftError
+            It is no table.
+        """
+        return table_uses(str(asked.get("name", ""))[:300], str(asked.get("text", "")))
+
+    def coupons(self, asked: dict[str, Any]) -> events.CouponFit:
+        """Fit models to tests of a material.
+
+        Raises
+        ------
+        VoxSoftError
+            A table that cannot be used, or no model that can be fitted.
+        """
+        from voxsoft.studio.documents.coupons import fitted_coupons
+
+        return fitted_coupons(asked)
 
     def _shown(self) -> Shown:
         """The state on the screen now."""

@@ -27,11 +27,16 @@ export function Result(props: { result: CalibratedEvent; root: Schema }) {
           <div key={one.name} className="fitted">
             <span>{one.name}</span>
             <strong>{one.text}</strong>
-            <span className={`badge ${badgeOf(one.identifiable)[0]}`}>
-              {badgeOf(one.identifiable)[1]}
+            <span className={`badge ${badgeOf(one.identifiable, result.miss)[0]}`}>
+              {badgeOf(one.identifiable, result.miss)[1]}
             </span>
             {one.identifiable !== null && <p className="muted">{one.sentence}</p>}
           </div>
+        ))}
+        {result.warnings.map((sentence) => (
+          <p key={sentence} className="fit-miss" role="status" data-testid="fit-miss">
+            {sentence}
+          </p>
         ))}
         <p>
           Mean error <strong>{formatKind(result.mean_error, "length", 3)}</strong>, largest{" "}
@@ -63,7 +68,9 @@ export function Result(props: { result: CalibratedEvent; root: Schema }) {
   );
 }
 
-function badgeOf(identifiable: boolean | null): readonly [string, string] {
+/** Color and words for a constant: nothing is settled by a model that misses the measured shape. */
+export function badgeOf(identifiable: boolean | null, miss: string): readonly [string, string] {
   if (identifiable === null) return ["", "not asked"];
-  return identifiable ? ["good", "determined"] : ["warn", "not determined"];
+  if (!identifiable) return ["warn", "not determined"];
+  return miss ? ["warn", "determined, but the model misses"] : ["good", "determined"];
 }

@@ -2,9 +2,10 @@
 import { useRef, useState } from "react";
 import { Button, Section, Select } from "../../controls/Choice";
 import type { MeasuredColumn, MeasuredEvent } from "../../protocol";
+import { TABLES, takeTable } from "../../shell/dropTable";
 import { useStudio } from "../../store/studio";
 import { Glyph } from "../design/fields/Glyph";
-import { addFile, changeFile, type MeasuredFile, removeFile, useCalibrateDraft } from "./draft";
+import { changeFile, type MeasuredFile, removeFile, useCalibrateDraft } from "./draft";
 
 const QUANTITIES: Readonly<Record<string, string>> = {
   "": "not used",
@@ -23,7 +24,7 @@ const LABELS = new Set(["", "probe", "material", "note"]);
 const UNITS = ["mm", "cm", "m"];
 
 function take(files: FileList | null): void {
-  for (const file of files ?? []) void addFile(file);
+  for (const file of files ?? []) void takeTable(file, "stations");
 }
 
 export function Tables() {
@@ -45,7 +46,7 @@ export function Tables() {
         type="file"
         tabIndex={-1}
         multiple
-        accept=".csv,.tsv,.txt,.toml"
+        accept={[...TABLES, ".toml"].join(",")}
         aria-label="Choose a table of measurements"
         data-testid="measurement-file"
         onChange={(event) => {
@@ -56,6 +57,7 @@ export function Tables() {
       {/* biome-ignore lint/a11y/noStaticElementInteractions: the button above does the same */}
       <div
         className={`drop-table${over ? " is-over" : ""}`}
+        data-takes-files
         onDragOver={(event) => {
           event.preventDefault();
           setOver(true);

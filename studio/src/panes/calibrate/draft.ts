@@ -3,7 +3,6 @@ import { create } from "zustand";
 import type { ColumnMap } from "../../protocol";
 import { onAnotherDocument } from "../../store/another";
 import { send } from "../../store/session";
-import { toast } from "../../store/studio";
 
 export interface MeasuredFile {
   readonly name: string;
@@ -50,8 +49,6 @@ export const useCalibrateDraft = create<CalibrateDraft>(() => ({
 // Measured tables stay for the next specimen; the name and the ranges are of the one before.
 onAnotherDocument(() => useCalibrateDraft.setState({ name: "", bounds: {} }));
 
-const LARGEST = 8_000_000;
-
 function ask(file: MeasuredFile): void {
   send({
     t: "measurement",
@@ -68,23 +65,10 @@ export function askAgain(): void {
 }
 
 /** Take a table of measurements; its columns are guessed first. */
-export async function addFile(given: File): Promise<void> {
-  if (given.size > LARGEST) {
-    toast({
-      level: "error",
-      what: `${given.name} has ${Math.round(given.size / 1e6)} MB; a table has at most 8 MB`,
-      hint: "Keep the stations of the shape at rest only.",
-    });
-    return;
-  }
-  const file: MeasuredFile = {
-    name: given.name,
-    text: await given.text(),
-    columns: null,
-    select: null,
-  };
+export function addTable(name: string, text: string): void {
+  const file: MeasuredFile = { name, text, columns: null, select: null };
   useCalibrateDraft.setState((draft) => ({
-    files: [...draft.files.filter((one) => one.name !== file.name), file],
+    files: [...draft.files.filter((one) => one.name !== name), file],
   }));
   ask(file);
 }

@@ -11,10 +11,13 @@ export function tellFits(): void {
     for (const [id, result] of Object.entries(now.calibrated)) {
       // A past one that is opened is no news: only one that ran until now is.
       if (id in before.calibrated || now.jobs[id]?.state !== "running") continue;
+      const error = `Mean error ${formatKind(result.mean_error, "length", 3)}.`;
       toast({
-        level: "good",
-        what: "The material is fitted",
-        hint: `Mean error ${formatKind(result.mean_error, "length", 3)}.`,
+        level: result.miss ? "warning" : "good",
+        what: result.miss
+          ? "The material is fitted, but the model misses the measured shape"
+          : "The material is fitted",
+        hint: result.miss || error,
         action: { label: "Show the fit", run: showFit },
       });
     }

@@ -2,6 +2,7 @@ import { useRef, useState } from "react";
 import { Button, Section } from "../../controls/Choice";
 import type { Template } from "../../protocol";
 import { TAKEN, upload } from "../../shell/DropZone";
+import { TABLES } from "../../shell/dropTable";
 import { useStudio } from "../../store/studio";
 import { openHere } from "./edits";
 import { EMPTY } from "./empty";
@@ -48,7 +49,7 @@ export function Gallery() {
             type="file"
             tabIndex={-1}
             aria-label="Open a design, a mesh, voxels or a run folder"
-            accept={TAKEN.join(",")}
+            accept={[...TAKEN, ...TABLES].join(",")}
             onChange={(event) => {
               for (const file of event.target.files ?? []) void upload(file);
               event.target.value = "";

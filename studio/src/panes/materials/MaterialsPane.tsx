@@ -2,6 +2,7 @@
 import { useDeferredValue, useEffect, useMemo, useState } from "react";
 import { Button, Empty, Select } from "../../controls/Choice";
 import type { MaterialFacts } from "../../protocol";
+import { showPane } from "../../shell/actions";
 import { onReady, send } from "../../store/session";
 import { toast, useStudio } from "../../store/studio";
 import { edit } from "../design/edits";
@@ -76,6 +77,12 @@ export default function MaterialsPane() {
           options={Object.entries(SORTS).map(([value, label]) => ({ value, label }))}
           onChange={(next) => setSort(next as Sort)}
         />
+        <Button
+          title="Fit a material to a tensile test (.csv), and make a part of it"
+          onClick={() => showPane("coupon", "calibrate")}
+        >
+          From a tensile test…
+        </Button>
         <ForPart parts={parts} part={part} />
         {known.mixed && (
           <p className="materials-mixed" role="status" data-testid="materials-mixed">

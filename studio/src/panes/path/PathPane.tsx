@@ -6,7 +6,9 @@ import { NumberField } from "../../controls/NumberField";
 import { Plot } from "../../controls/Plot";
 import { factorOf, shownUnit, unitText } from "../../controls/units";
 import type { PathColumn, PathEvent } from "../../protocol";
-import { toast, useStudio } from "../../store/studio";
+import { TABLES, takeTable } from "../../shell/dropTable";
+import { useStudio } from "../../store/studio";
+import { Glyph } from "../design/fields/Glyph";
 import { troubleOf } from "../design/trouble";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
@@ -14,7 +16,10 @@ import { PastNote, useIsPast } from "../jobs/PastNote";
 import { useElsewhere, useJob } from "../study/current";
 import { useStart } from "../study/useStart";
 import { type Changeable, changeable, overText, stiffnessNote, unitOfValue } from "./lines";
-import { type Measured, misfit, readMeasured, together } from "./measured";
+import { type Measured, misfit, together } from "./measured";
+import { overlaid, suggested } from "./overlay";
+import { markOf, type PathTable, removeCurve, showColumn, usePathTables } from "./tables";
+import { capital, columnWords, overWords } from "./words";
 import "../design/design.css";
 import "./path.css";
 
@@ -26,6 +31,7 @@ export default function PathPane() {
   const form = useFormOfDocument();
   const job = useJob("run");
   const elsewhere = useElsewhere("run");
+  const tables = useTables();
   const choices = useMemo(
     () => (form?.design ? changeable(form.design, document?.parameters ?? []) : []),
     [form, document],
@@ -38,23 +44,27 @@ export default function PathPane() {
     );
   }
   const path = (job && paths[job.id]) ?? null;
+  const said = (message: string) =>
+    path ? message.replace(path.over, overWords(path.over, choices)) : message;
   return (
     <div className="pane" data-testid="path-pane">
       <div className="section">
         <Setup
           key={document.id}
           choices={choices}
+          table={tables[0]}
           note={(key) => (form?.design ? stiffnessNote(form.design, key) : null)}
           unfit={troubleOf(document)}
         />
       </div>
+      <Curves waiting={path === null} />
       {path ? (
         <>
           <PastNote job={path.job} ofState />
-          <Curve key={document.id} path={path} />
+          <Curve key={document.id} path={path} choices={choices} />
           {path.message && (
             <p className={`path-end ${path.status === "ok" ? "muted" : "bad"}`} role="status">
-              <span data-testid="path-end">{path.message}</span>
+              <span data-testid="path-end">{said(path.message)}</span>
             </p>
           )}
         </>
@@ -63,7 +73,7 @@ export default function PathPane() {
           <p>Each point of the curve is an equilibrium; the last one is kept as a run.</p>
         </Empty>
       )}
-      {job && job.state !== "done" && <JobCard job={job} />}
+      {job && job.state !== "done" && <JobCard job={{ ...job, message: said(job.message) }} />}
       {elsewhere.map((one) => one.id !== job?.id && <JobCard key={one.id} job={one} />)}
     </div>
   );
@@ -71,6 +81,8 @@ export default function PathPane() {
 
 function Setup(props: {
   choices: readonly Changeable[];
+  /** The newest measured curve, which the path is to be compared with. */
+  table: PathTable | undefined;
   note: (key: string) => string | null;
   unfit: string | null;
 }) {
@@ -79,8 +91,12 @@ function Setup(props: {
   const [range, setRange] = useState<readonly [number, number] | null>(null);
   const [count, setCount] = useState(POINTS);
   const { start, starting } = useStart("run");
-  const what = choices.find((one) => one.key === key) ?? (choices[0] as Changeable);
-  const [from, to] = range ?? [what.start, what.value];
+  const { table } = props;
+  const asTable = useMemo(() => suggested(choices, table), [choices, table]);
+  const what =
+    choices.find((one) => one.key === key) ?? asTable?.what ?? (choices[0] as Changeable);
+  const end = asTable?.what.key === what.key ? asTable.end : what.value;
+  const [from, to] = range ?? [what.start, end];
   const follow = () => {
     const name = `${what.label} along a path`;
     start({ kind: "run", name, solver: {}, over: overText(what, from, to, count) });
@@ -136,32 +152,26 @@ function Setup(props: {
   );
 }
 
-function Curve(props: { path: PathEvent }) {
-  const { path } = props;
-  const [requested, request] = useState("");
-  const column =
-    path.columns.find((one) => one.name === requested) ?? (mostTelling(path) as PathColumn);
+function Curve(props: { path: PathEvent; choices: readonly Changeable[] }) {
+  const { path, choices } = props;
+  const tables = useTables();
+  const requested = usePathTables((state) => state.column);
   const shown = (kind: string) => shownUnit(siUnit(kind));
-  const label = (name: string, kind: string) => {
+  const label = (words: string, kind: string) => {
     const unit = shown(kind);
-    return unit === "1" ? name : `${name} [${unitText(unit)}]`;
+    return unit === "1" ? capital(words) : `${capital(words)} [${unitText(unit)}]`;
   };
   const scaled = (values: readonly (number | null)[], kind: string) =>
     values.map((value) => (value ?? Number.NaN) / factorOf(shown(kind)));
-  const picker = useRef<HTMLInputElement>(null);
-  const [curves, setCurves] = useState<Readonly<Record<string, Measured>>>({});
-  const key = `${path.over} ${column.name}`;
-  const measured = curves[key];
-  const open = async (file: File) => {
-    const found = readMeasured(await file.text(), file.name, path.kind, column.kind);
-    if ("problem" in found) {
-      toast({ level: "error", what: `${file.name} is no measured curve`, hint: found.problem });
-    } else setCurves({ ...curves, [key]: found });
-  };
   const past = useIsPast({ job: path.job, ofState: true });
+  const found = useMemo(() => overlaid(path, tables, requested), [path, tables, requested]);
+  if (!found) return null;
+  const { column, measured, problem } = found;
+  const over = overWords(path.over, choices);
+  const words = columnWords(column.name);
   const y = column.values.map((value) => value ?? Number.NaN);
   const data = measured ? together(path.values, y, measured) : [path.values, y];
-  const computed = { label: column.name, color: "--series-1", points: true };
+  const computed = { label: words, color: "--series-1", points: true };
   const beside = { label: measured?.name ?? "", color: "--series-2", points: true, dashed: true };
   return (
     <div className={past ? "path-curve is-past" : "path-curve"} data-testid="path-curve">
@@ -170,39 +180,72 @@ function Curve(props: { path: PathEvent }) {
           bare
           label="Number along the path"
           value={column.name}
-          options={path.columns.map((one) => ({ value: one.name, label: one.name }))}
-          onChange={request}
-        />
-        <Button
-          title="Lay a measured curve over it: two columns of a CSV file, named with their units"
-          onClick={() => picker.current?.click()}
-        >
-          Measured…
-        </Button>
-        <input
-          ref={picker}
-          className="visually-hidden"
-          type="file"
-          tabIndex={-1}
-          accept=".csv,.txt"
-          aria-label="CSV file of a measured curve"
-          data-testid="path-measured"
-          onChange={(event) => {
-            const file = event.target.files?.[0];
-            event.target.value = "";
-            if (file) void open(file);
-          }}
+          options={path.columns.map(({ name }) => ({ value: name, label: columnWords(name) }))}
+          onChange={(name) => showColumn(name, column.name)}
         />
       </div>
       {measured && <Misfits measured={measured} path={path} column={column} />}
+      {problem && (
+        <p className="path-misfit bad" role="status" data-testid="path-problem">
+          {tables[0]?.name}: {problem}.
+        </p>
+      )}
       <Plot
         key={`${column.name} ${measured?.name}`}
-        label={`${column.name} over ${path.over}`}
+        label={`${capital(words)} over ${over}`}
         testId="plot-path"
-        x={{ label: label(path.over, path.kind) }}
-        y={{ label: label(column.name, column.kind) }}
+        x={{ label: label(over, path.kind) }}
+        y={{ label: label(words, column.kind) }}
         series={measured ? [computed, beside] : [computed]}
         data={data.map((values, i) => scaled(values, i === 0 ? path.kind : column.kind))}
+      />
+    </div>
+  );
+}
+
+/** Tables of the open document. */
+function useTables(): readonly PathTable[] {
+  const tables = usePathTables((state) => state.tables);
+  const mark = useStudio((state) => markOf(state.document));
+  return useMemo(() => tables.filter(({ of }) => of === mark), [tables, mark]);
+}
+
+/** The measured curves that were dropped, and the way to choose one. */
+function Curves(props: { waiting: boolean }) {
+  const tables = useTables();
+  const picker = useRef<HTMLInputElement>(null);
+  return (
+    <div className="path-tables">
+      {tables.map(({ name }) => (
+        <span key={name} className="path-table" data-testid="path-table">
+          {name}
+          <Button icon kind="quiet" label={`Remove ${name}`} onClick={() => removeCurve(name)}>
+            <Glyph name="trash" />
+          </Button>
+        </span>
+      ))}
+      {props.waiting && tables.length > 0 && (
+        <span className="muted">lies over the path once it is followed.</span>
+      )}
+      <Button
+        title="Lay a measured curve over it: columns of a CSV file, named with their units"
+        onClick={() => picker.current?.click()}
+      >
+        Measured…
+      </Button>
+      <input
+        ref={picker}
+        className="visually-hidden"
+        type="file"
+        tabIndex={-1}
+        accept={TABLES.join(",")}
+        aria-label="CSV file of a measured curve"
+        data-testid="path-measured"
+        onChange={(event) => {
+          const file = event.target.files?.[0];
+          event.target.value = "";
+          if (file) void takeTable(file, "curve");
+        }}
       />
     </div>
   );
@@ -220,16 +263,4 @@ function Misfits(props: { measured: Measured; path: PathEvent; column: PathColum
       {measured.assumed && ". It names no units: those of the axes were taken."}
     </p>
   );
-}
-
-/** A number that the design asks for comes first; without it, the displacement that changes most. */
-function mostTelling(path: PathEvent): PathColumn | undefined {
-  const first = path.columns[0];
-  const moved = path.columns.filter((one) => /\.[xyz]$/.test(one.name));
-  const size = (column: PathColumn) =>
-    Math.max(...column.values.map((value) => Math.abs(value ?? 0)));
-  const standard = first && ["cavity_volume", "elastic_energy"].includes(first.name);
-  return standard && moved.length > 0
-    ? moved.reduce((best, one) => (size(one) > size(best) ? one : best))
-    : first;
 }

@@ -1,5 +1,6 @@
 // Values of a design that can change along a path, and the range of a path as text.
 
+import { cavityName } from "../../controls/cavities";
 import { siUnit, writtenUnit } from "../../controls/kinds";
 import { factorOf } from "../../controls/units";
 import type { Parameter } from "../../protocol";
@@ -99,13 +100,24 @@ export function stiffnessNote(design: Table, key: string): string | null {
   );
 }
 
+/** A load in words, with the chamber that it is in. */
+function labelOfLoad(load: Table): string {
+  const [label] = LOADS[String(load.kind)] ?? ["load"];
+  if (load.cavity === undefined || load.cavity === null || load.cavity === "all") return label;
+  const named = typeof load.cavity === "string" && !/^\d+$/.test(load.cavity);
+  return `${label} in ${named ? load.cavity : cavityName({ name: "" }, Number(load.cavity))}`;
+}
+
 /** Values that a path may change: loads, tendons, activations, moved clamps, time, and parameters of them. */
 export function changeable(design: Table, parameters: readonly Parameter[]): Changeable[] {
   const found: Changeable[] = [];
-  tables(design.loads).forEach((load, i) => {
-    const [label, kind] = LOADS[String(load.kind)] ?? ["load", "number"];
-    const where = load.cavity === undefined || load.cavity === "all" ? "" : ` in ${load.cavity}`;
-    found.push(...numbers(load.value, `loads[${i}].value`, `${label}${where}`, kind));
+  const loads = tables(design.loads);
+  const labels = loads.map(labelOfLoad);
+  loads.forEach((load, i) => {
+    const [, kind] = LOADS[String(load.kind)] ?? ["load", "number"];
+    const alike = labels.filter((one) => one === labels[i]).length > 1;
+    const label = alike ? `${labels[i]} (load ${i + 1})` : `${labels[i]}`;
+    found.push(...numbers(load.value, `loads[${i}].value`, label, kind));
   });
   tables(design.tendons).forEach((tendon, i) => {
     for (const drive of DRIVES) {

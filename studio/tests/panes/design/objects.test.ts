@@ -59,9 +59,10 @@ it("writes primitives about one middle, and a mesh moved there", () => {
   expect(newShape("cylinder", HANGING)).toMatchObject({
     ...{ base: ["10 mm", "5 mm", "-80 mm"], height: "18 mm", radius: "9 mm" },
   });
-  expect(meshShape("/a.stl", [100, 0, 0], [110, 10, 10], HANGING)).toEqual({
+  const mesh = { kind: "mesh", path: "/a.stl", unit: "mm" };
+  expect(meshShape(mesh, [0.1, 0, 0], [0.11, 0.01, 0.01], HANGING)).toEqual({
     kind: "translate",
-    of: { kind: "mesh", path: "/a.stl", unit: "mm" },
+    of: mesh,
     by: ["-95 mm", 0, "-72 mm"],
   });
 });

@@ -4,9 +4,10 @@ import { useEffect, useRef, useState } from "react";
 import { Button, Section, Select } from "../../../controls/Choice";
 import { describeValue } from "../../../controls/kinds";
 import { TextField } from "../../../controls/TextField";
-import type { DesignFile } from "../../../protocol";
+import type { DesignFile, MeshImport } from "../../../protocol";
 import { MESHES } from "../../../protocol";
 import { sendFile } from "../../../shell/DropZone";
+import { askImport } from "../../../shell/importMesh";
 import { send } from "../../../store/session";
 import { useStudio } from "../../../store/studio";
 import { edit, openHere, problemsAt, problemText } from "../edits";
@@ -81,8 +82,17 @@ function aboutBody(value: Table): string {
 function AddBody(props: { files: readonly DesignFile[] }) {
   const templates = useStudio((state) => state.hello?.templates) ?? [];
   const picker = useRef<HTMLInputElement>(null);
-  const add = (what: "file" | "template" | "upload", name: string) =>
-    send({ t: "add_body", what, name, beyond: beyondOf(useStudio.getState().body) });
+  const add = (what: "file" | "template" | "upload", name: string, mesh?: MeshImport) => {
+    const beyond = beyondOf(useStudio.getState().body);
+    send({ t: "add_body", what, name, beyond, ...(mesh ? { mesh } : {}) });
+  };
+  const addFile = async (file: File) => {
+    const sent = await sendFile(file);
+    if (!sent) return;
+    if (sent.name.endsWith(".toml")) return add("upload", sent.name);
+    const read = await askImport(sent.name);
+    if (read) add("upload", sent.name, read.how);
+  };
   return (
     <>
       <select
@@ -124,11 +134,10 @@ function AddBody(props: { files: readonly DesignFile[] }) {
         hidden
         aria-label="Design of a body"
         data-testid="body-file"
-        onChange={async (event) => {
+        onChange={(event) => {
           const chosen = event.target.files?.[0];
           event.target.value = "";
-          const sent = chosen && (await sendFile(chosen));
-          if (sent) add("upload", sent.name);
+          if (chosen) void addFile(chosen);
         }}
       />
     </>

@@ -4,7 +4,8 @@ import { useRef } from "react";
 import { Button, Section, Select } from "../../../controls/Choice";
 import { bytesOf } from "../../../engine/base64";
 import { MESHES } from "../../../protocol";
-import { refusalOf, sendFile } from "../../../shell/DropZone";
+import { sendFile } from "../../../shell/DropZone";
+import { askImport, boxOfImport, shapeOfImport } from "../../../shell/importMesh";
 import { toast, useStudio } from "../../../store/studio";
 import { setView } from "../../../store/view";
 import { edit, editAll } from "../edits";
@@ -102,14 +103,14 @@ function AddObject(props: { values: readonly Table[] }) {
             {kind}
           </option>
         ))}
-        <option value="stl">STL file…</option>
+        <option value="stl">From a file…</option>
       </select>
       <input
         ref={file}
         type="file"
         accept={MESHES.join(",")}
         hidden
-        aria-label="STL file of an object"
+        aria-label="Mesh file of an object"
         data-testid="object-file"
         onChange={(event) => {
           const chosen = event.target.files?.[0];
@@ -126,29 +127,12 @@ async function readObject(
   around: () => Surroundings | null,
   add: (name: string, shape: Table) => void,
 ): Promise<void> {
-  if (!/\.stl$/i.test(file.name)) {
-    toast({ level: "warning", ...refusalOf(file.name) });
-    return;
-  }
-  // Three's reader of STL is wanted by few: it is fetched when one is.
-  const { STLLoader } = await import("three/examples/jsm/loaders/STLLoader.js");
-  try {
-    const geometry = new STLLoader().parse(await file.arrayBuffer());
-    const points = geometry.getAttribute("position").array;
-    geometry.dispose();
-    const { low, high } = boxOf(points);
-    if (!low.concat(high).every(Number.isFinite)) throw new Error("it holds no triangles");
-    const sent = await sendFile(file);
-    if (!sent) return;
-    const name = sent.name.replace(/\.stl$/i, "");
-    add(name, meshShape(sent.path, low, high, around()));
-  } catch (error) {
-    toast({
-      level: "error",
-      what: `${file.name} cannot be read as STL`,
-      hint: error instanceof Error ? error.message : "",
-    });
-  }
+  const sent = await sendFile(file);
+  const read = sent && (await askImport(sent.name));
+  if (!sent || !read) return;
+  const { low, high } = boxOfImport(read);
+  const name = sent.name.replace(/\.[^.]+$/, "");
+  add(name, meshShape(shapeOfImport(read.how, sent.path), low, high, around()));
 }
 
 function ObjectFields(props: {

@@ -31,21 +31,17 @@ export function newShape(kind: Primitive, around: Surroundings | null): Table {
   }
 }
 
-/** A mesh from a file whose box goes from `low` to `high`, in mm, moved beside the body. */
+/** A mesh from a file, of a box from `low` to `high`, m, moved beside the body. */
 export function meshShape(
-  path: string,
+  shape: Table,
   low: Triple,
   high: Triple,
   around: Surroundings | null,
 ): Table {
-  const size = low.map((x, axis) => 1e-3 * ((high[axis] as number) - x)) as Triple;
+  const size = low.map((x, axis) => (high[axis] as number) - x) as Triple;
   const spot = spotFor(size, around);
-  const by = spot.map((x, axis) => x - 5e-4 * ((low[axis] as number) + (high[axis] as number)));
-  return {
-    kind: "translate",
-    of: { kind: "mesh", path, unit: "mm" },
-    by: writtenPlace(by as Triple),
-  };
+  const by = spot.map((x, axis) => x - 0.5 * ((low[axis] as number) + (high[axis] as number)));
+  return { kind: "translate", of: shape, by: writtenPlace(by as Triple) };
 }
 
 /** Lengths of a shape that is sized end at a tenth of a millimeter, m. */

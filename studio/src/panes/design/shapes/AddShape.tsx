@@ -3,6 +3,7 @@
 import { useRef } from "react";
 import { MESHES } from "../../../protocol";
 import { sendFile } from "../../../shell/DropZone";
+import { askImport, shapeOfImport } from "../../../shell/importMesh";
 import { send } from "../../../store/session";
 import type { Schema } from "../fields/schema";
 import { ShapeIcon } from "./ShapeIcon";
@@ -22,7 +23,8 @@ export function AddShape(props: Props & { variants: Readonly<Record<string, Sche
   const file = useRef<HTMLInputElement>(null);
   const addFile = async (mesh: File) => {
     const sent = await sendFile(mesh);
-    if (sent) props.onAdd({ kind: "mesh", path: sent.path, unit: "mm" });
+    const read = sent && (await askImport(sent.name));
+    if (read) props.onAdd(shapeOfImport(read.how, sent.path));
   };
   return (
     <>
