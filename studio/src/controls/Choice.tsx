@@ -118,10 +118,16 @@ export function Empty(props: { title: string; children?: ReactNode }) {
   );
 }
 
-export function Section(props: { title: string; action?: ReactNode; children: ReactNode }) {
+export function Section(props: {
+  title: string;
+  action?: ReactNode;
+  /** Purpose of a section that holds nothing yet, which is then one line. */
+  empty?: string | false;
+  children?: ReactNode;
+}) {
   return (
-    <section className="section">
-      <h3>
+    <section className={props.empty ? "section is-empty" : "section"}>
+      <h3 title={props.empty || undefined}>
         <span>{props.title}</span>
         {props.action}
       </h3>

@@ -142,10 +142,21 @@ export function reachActions(show: (pane: string) => void): Action[] {
     ...shapes,
     ...exports,
     action(
-      "fit-material",
-      "Find the constants of a material from measurements",
+      "fit-coupons",
+      "Fit a material to tensile tests",
       "Form",
-      "calibrate, tensile test, fit, CSV, stress strain curve",
+      "tension, stress strain curve, CSV, specimen, dumbbell",
+      {
+        mode: "calibrate",
+        pane: "coupon",
+        press: [],
+      },
+    ),
+    action(
+      "fit-material",
+      "Calibrate a material on a measured specimen",
+      "Form",
+      "fit, inverse, beam, markers, CSV, constants",
       {
         mode: "calibrate",
         pane: "calibrate",
@@ -153,7 +164,7 @@ export function reachActions(show: (pane: string) => void): Action[] {
       },
     ),
     action(
-      "thinner",
+      "check-body",
       "Check the body: thinnest walls, cavities, volumes",
       "Form",
       "thickness, wall, leak, voxels",

@@ -17,7 +17,8 @@ describe("the palette", () => {
     ["clamp", "Add a clamp"],
     ["add box", "Add a shape: box"],
     ["thickness", "Check the body: thinnest walls, cavities, volumes"],
-    ["tensile", "Find the constants of a material from measurements"],
+    ["tensile", "Fit a material to tensile tests"],
+    ["calibrate", "Calibrate a material on a measured specimen"],
     ["fixture", "Add a clamp"],
   ])("finds by %s an action, not a pane", (query, title) => {
     expect(first(query)).toBe(title);

@@ -224,6 +224,7 @@ function Floor(props: { form: Form }) {
   return (
     <Section
       title="Floor"
+      empty={!there && "None. A floor is a plane that nothing sinks through."}
       action={
         there ? (
           <Button icon kind="quiet" label="Remove the floor" onClick={() => edit(["floor"], null)}>
@@ -234,11 +235,7 @@ function Floor(props: { form: Form }) {
         )
       }
     >
-      {there ? (
-        <TableFields path={["floor"]} schema={schema} value={source.floor} />
-      ) : (
-        <p className="muted">None. A floor is a plane that nothing sinks through.</p>
-      )}
+      {there && <TableFields path={["floor"]} schema={schema} value={source.floor} />}
     </Section>
   );
 }

@@ -239,6 +239,9 @@ function titleOf(section: string, value: Table, index: number): string {
   return `${single(section)} ${index + 1}`;
 }
 
+/** Sections without which no robot is solved: they say so where they are empty. */
+const NEEDED: ReadonlySet<string> = new Set(["parts", "clamps", "loads"]);
+
 /** A list of tables, such as the loads; the order counts and can be changed. */
 export function EntryList(props: {
   section: string;
@@ -256,9 +259,11 @@ export function EntryList(props: {
   const schema = root.properties?.[section]?.items;
   if (!schema) return null;
   const values = (source[section] as Table[] | undefined) ?? [];
+  const isEmpty = values.length === 0;
   return (
     <Section
       title={props.title}
+      empty={isEmpty && !props.obstacle && !NEEDED.has(section) && props.empty}
       action={
         <Adder
           what={props.what}
@@ -268,7 +273,7 @@ export function EntryList(props: {
         />
       }
     >
-      {values.length === 0 && (
+      {isEmpty && (props.obstacle || NEEDED.has(section)) && (
         <p className="muted">{[props.empty, props.obstacle].filter(Boolean).join(" ")}</p>
       )}
       {values.length > 1 && props.note && <p className="muted">{props.note}</p>}
@@ -371,6 +376,7 @@ export function EntryMap(props: {
   return (
     <Section
       title={props.title}
+      empty={Object.keys(values).length === 0 && props.empty}
       action={
         <span className="row">
           {props.action}
@@ -388,7 +394,6 @@ export function EntryMap(props: {
         </span>
       }
     >
-      {Object.keys(values).length === 0 && <p className="muted">{props.empty}</p>}
       {Object.entries(values).map(([name, value]) => (
         <Entry
           key={name}
