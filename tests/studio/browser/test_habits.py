@@ -97,3 +97,19 @@ def test_a_body_that_was_solved_has_numbers_in_place_of_a_vertical_line(tab):
     tab.find("plot-probes").wait_for()
     tab.find("play").click()
     assert tab.errors == []
+
+
+def test_a_section_that_is_no_list_leaves_the_form_standing(serving, tmp_path, open_tab):
+    server = serving(tmp_path, HIGH, "high.toml")
+    try:
+        tab = open_tab(server.address, mode="design", symbols=False)
+        tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+        tab.page.locator(".cm-content").click()
+        tab.page.keyboard.press("Control+a")
+        tab.page.keyboard.insert_text('schema = "voxsoft/1"\nparts = 3\nshapes = "box"\n')
+        tab.find("faults").wait_for()
+        tab.find("design-form").get_by_label("Add a part", exact=True).wait_for()
+        assert "stopped working" not in tab.page.content()
+        assert tab.errors == []
+    finally:
+        server.stop()

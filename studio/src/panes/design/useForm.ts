@@ -6,6 +6,7 @@ import type { DocumentEvent } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import type { Schema } from "./fields/schema";
 import type { Form } from "./form";
+import { wellFormed } from "./sections";
 
 export const NO_DIAGNOSTICS: Form["diagnostics"] = [];
 
@@ -15,10 +16,11 @@ export function useFormOfDocument(): Form | null {
   const document = useStudio((state) => state.document);
   return useMemo(() => {
     if (!hello || !document?.source) return null;
-    const { source } = document;
+    const root = hello.design_schema as Schema;
+    const source = wellFormed(document.source, root);
     const keys = (section: string) => Object.keys((source[section] as object | undefined) ?? {});
     return {
-      root: hello.design_schema as Schema,
+      root,
       source,
       design: document.design,
       diagnostics: document.diagnostics.length ? document.diagnostics : NO_DIAGNOSTICS,
