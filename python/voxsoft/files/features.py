@@ -47,7 +47,7 @@ def write_feature(feature: str, path: FilePath, *, name: str) -> None:
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder, "arm.toml")
     ...     write_feature("bellows", file, name="arm")
-    ...     "bellows_folds" in file.read_text()
+    ...     "bellows_walls" in file.read_text()
     True
     """
     text = with_feature(with_value(_NOTHING, ["name"], name), feature)
@@ -74,7 +74,7 @@ def with_feature(text: str, name: str, at: tuple[float, float, float] | None = N
     Examples
     --------
     >>> text = with_feature('schema = "voxsoft/1"\nname = "arm"\n', "finger")
-    >>> "finger_length" in text
+    >>> "finger_stem" in text
     True
     """
     try:

@@ -10,7 +10,7 @@ def test_a_bellows_from_nothing_is_solved_with_error_bars(empty):
     tab, hand = empty
     hand.press(test_id="start-bellows")
     tab.until("window.voxsoft !== undefined && voxsoft.triangles > 1000")
-    tab.find("parameter-bellows_folds").wait_for()
+    tab.find("parameter-folds").wait_for()
     tab.shot("feature-bellows")
     hand.press(test_id="mode-simulate")
     hand.press(test_id="rest")

@@ -77,3 +77,13 @@ def test_a_feature_that_is_not_known_is_named():
     with pytest.raises(DesignError, match='no feature "belows"') as caught:
         feature_changes(tomllib.loads(NOTHING), "belows")
     assert "bellows" in str(caught.value)
+
+
+def test_parameters_keep_their_names_where_these_are_free():
+    once = read(with_feature(NOTHING, "bellows"))
+    assert "folds" in once.parameters
+    both = read(with_feature(with_feature(NOTHING, "bellows"), "finger"))
+    # Both have a wall.
+    assert {"wall", "finger_wall", "finger_length"} <= set(both.parameters)
+    assert both.parameters["finger_wall"].value == 0.002
+    assert both.parameters["wall"].value == 0.003

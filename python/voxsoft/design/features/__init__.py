@@ -1,8 +1,9 @@
 """Ready features: a bellows, a fold, a finger, a row of chambers, to add to any design.
 
 Each is a TOML file beside this module with its parameters and shapes, of which ``body`` is the
-whole. Added to a design, all of them get the name of the feature in front, so that several of a
-kind stand beside each other. A first feature comes with a part, a clamp and a load.
+whole. Added to a design, its shapes get the name of the feature in front, and its parameters where
+one of their names is taken, so that several of a kind stand beside each other. A first feature
+comes with a part, a clamp and a load.
 """
 
 from __future__ import annotations
@@ -81,18 +82,20 @@ def feature_changes(
     --------
     >>> added, changes = feature_changes({"shapes": {"bellows": {"kind": "sphere"}}}, "bellows")
     >>> added, changes[0][0]
-    ('bellows2', ['parameters', 'bellows2_wall'])
+    ('bellows2', ['parameters', 'wall'])
     """
     if name not in {each.name for each in FEATURES}:
         known = tuple(each.name for each in FEATURES)
         raise DesignError("feature", f'there is no feature "{name}"', closest(name, known))
     given = _fragment(name)
     new = _free_name(name.replace("-", "_"), source)
-    names = {each: f"{new}_{each}" for each in (*given["parameters"], *given["shapes"])}
+    names = {each: f"{new}_{each}" for each in given["shapes"]}
+    if any(each in source.get("parameters", {}) for each in given["parameters"]):
+        names |= {each: f"{new}_{each}" for each in given["parameters"]}
     if at is None:
         names[_WHOLE] = new
     changes: list[Change] = [
-        ([section, names[key]], _renamed(value, names))
+        ([section, names.get(key, key)], _renamed(value, names))
         for section in ("parameters", "shapes")
         for key, value in given[section].items()
     ]
