@@ -1,6 +1,14 @@
 // A scene that plays without a server: the core's player, told of commands and of time, as one tab sees it.
 // Nothing here knows whether it runs in a worker; time is handed in.
-import type { AnyEvent, BodyEvent, Field, Moment, OverlapEvent, StatEvent } from "../protocol";
+import type {
+  AnyEvent,
+  BodyEvent,
+  EquilibriumEvent,
+  Field,
+  Moment,
+  OverlapEvent,
+  StatEvent,
+} from "../protocol";
 import { CREDITS, PROTOCOL } from "../protocol";
 import { bytesOf } from "./base64";
 import type { Core, Told } from "./core";
@@ -25,6 +33,8 @@ export interface Notes {
   readonly moment?: Moment | null;
   /** True if the state shown first is an equilibrium. */
   readonly at_rest?: boolean;
+  /** Its numbers. */
+  readonly equilibrium?: EquilibriumEvent | null;
 }
 
 export interface Audience {
@@ -114,6 +124,7 @@ export class Player {
     if (notes.moment) this.tellMoment(notes.moment);
     this.audience.event({ t: "log", level: "info", text: notes.sentence });
     this.tell([this.run.stat]);
+    if (notes.equilibrium) this.audience.event(notes.equilibrium);
   }
 
   /** Carry out a command; gives whether time has work to do. */

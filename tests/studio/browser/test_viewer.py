@@ -76,6 +76,9 @@ def test_a_page_of_a_result_opens_as_it_ended_and_plays_the_way_there(coarse, al
     tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
     # Positions on the wire have 16 bits of the body's size, some 1 um here.
     tab.until(f"Math.abs({LOWEST} - {lowest}) < 1e-5")
+    numbers = tab.find("equilibrium")
+    numbers.get_by_text("Probe tip").wait_for()
+    assert "mm" in numbers.inner_text()
     tab.shot("page-of-a-result")
     # An equilibrium has no time.
     assert tab.find("clock").inner_text() == "at rest"

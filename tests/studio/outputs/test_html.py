@@ -13,9 +13,10 @@ from typer.testing import CliRunner
 import voxsoft as vs
 from voxsoft.cli.app import app
 from voxsoft.errors import DesignError, FileError
+from voxsoft.files import write_run
 from voxsoft.studio.bodies.body import StudioBody
 from voxsoft.studio.motion.player import Player
-from voxsoft.studio.outputs.html import page_of
+from voxsoft.studio.outputs.html import export_page, page_of
 from voxsoft.studio.protocol import commands
 from voxsoft.studio.protocol.wire import MessageKind
 
@@ -166,3 +167,26 @@ def test_a_page_of_a_result_knows_where_its_objects_are_at_first():
     assert moment["poses"][0]["position"] == list(result.objects["plate"].position)
     assert moment["contacts"][0]["of"] == ["body", "plate"]
     assert notes_of(pinch.show().text)["moment"] is None
+
+
+def test_a_page_of_a_result_lists_its_numbers(tmp_path):
+    result = vs.simulate(families.cylinder())
+    found = notes_of(result.show().text)["equilibrium"]
+    assert found["t"] == "equilibrium"
+    # The page shows that state as its first frame, and looks for no error bars itself.
+    assert (found["frame"], found["looking"], found["askable"]) == (0, False, False)
+    told = {each["name"]: each["displacement"] for each in found["probes"]}
+    assert told.keys() == result.probes.keys()
+    for name, moved in result.probes.items():
+        assert told[name] == pytest.approx(list(moved))
+    # A run folder has the state of the run, and its page the numbers.
+    write_run(result, tmp_path / "run")
+    export_page(tmp_path / "run", tmp_path / "run.html")
+    again = notes_of((tmp_path / "run.html").read_text())
+    assert again["at_rest"]
+    for probe in again["equilibrium"]["probes"]:
+        assert probe["displacement"] == pytest.approx(told[probe["name"]], abs=1e-9)
+
+
+def test_a_page_of_a_design_has_no_numbers_of_a_result():
+    assert notes_of(families.beam().show().text)["equilibrium"] is None

@@ -120,7 +120,7 @@ class Engine(threading.Thread):
 
         def task() -> None:
             try:
-                answers.put(self._stage.playback.shown_as(name, text))
+                answers.put(self._stage.shown_as(name, text))
             except VoxSoftError as error:
                 answers.put(error)
 

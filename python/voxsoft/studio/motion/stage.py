@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -20,6 +21,7 @@ from voxsoft.studio.motion.pictures import Pictures
 from voxsoft.studio.motion.playback import Playback
 from voxsoft.studio.motion.rest import RestSearch
 from voxsoft.studio.motion.vibration import ModesSearch, Vibration
+from voxsoft.studio.outputs.exports import Shown
 from voxsoft.studio.protocol import commands, events
 from voxsoft.studio.protocol.event_bus import EventBus
 from voxsoft.studio.protocol.tab import Tab
@@ -252,6 +254,19 @@ class Stage:
         if self.playback.state != "at-rest":
             raise SimulationError("error bars", "are those of an equilibrium", "press Solve first")
         self.measure(finer=True)
+
+    def shown_as(self, name: str, text: str) -> Shown:
+        """Return the shown state with its numbers, for an export.
+
+        Raises
+        ------
+        SimulationError
+            There is no body.
+        """
+        shown, known = self.playback.shown_as(name, text), self._equilibrium
+        if known is None or known.frame != self.playback.frame or shown.status != "ok":
+            return shown
+        return replace(shown, equilibrium=known)
 
     def measure(self, *, finer: bool = False) -> None:
         """Tell the numbers of the equilibrium that is shown, once they are known."""

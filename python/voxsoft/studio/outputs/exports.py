@@ -65,6 +65,8 @@ class Shown:
         State of the simulation, and its time [s].
     moment
         Poses of objects, and contacts, as far as they are known.
+    equilibrium
+        Numbers of the equilibrium that is shown, with error bars where these are known.
     """
 
     name: str
@@ -81,6 +83,7 @@ class Shown:
     sentence: str = ""
     time: float = 0.0
     moment: events.Moment | None = None
+    equilibrium: events.Equilibrium | None = None
 
     @property
     def design(self) -> Design:
@@ -190,6 +193,7 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
             positions=shown.positions,
             moment=shown.moment,
             at_rest=shown.status == "ok",
+            equilibrium=shown.equilibrium,
             text=shown.text,
         )
         page.save(target)

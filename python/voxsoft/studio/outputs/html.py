@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
+from voxsoft.comparison.error_bar import ErrorBars
 from voxsoft.design import Design
 from voxsoft.errors import FileError
 from voxsoft.files.atomic import write_atomically
@@ -21,9 +22,11 @@ from voxsoft.files.designs import FilePath, load
 from voxsoft.simulation import Result
 from voxsoft.simulation.compatibility import refuse
 from voxsoft.studio.bodies.body import StudioBody
+from voxsoft.studio.bodies.equilibrium import equilibrium_of
 from voxsoft.studio.bodies.fields import FIELDS
 from voxsoft.studio.bodies.objects import moments_of
 from voxsoft.studio.bodies.overlap_event import overlap_of
+from voxsoft.studio.bodies.reopening import RunState, known_equilibrium
 from voxsoft.studio.bodies.scene import scene_of
 from voxsoft.studio.bodies.smooth import pack_smooth
 from voxsoft.studio.outputs.page import page_file
@@ -33,6 +36,7 @@ from voxsoft.studio.protocol import events
 TEMPLATE: Final = "viewer.html"
 
 _PLACE: Final = '<script id="voxsoft-scene" type="application/octet-stream;base64">'
+_NO_BARS: Final = ErrorBars.none("a page looks for none", "open its design in the studio")
 _TITLE: Final = "<title>VoxSoft</title>"
 
 
@@ -53,6 +57,8 @@ class Notes(msgspec.Struct):
     moment: events.Moment | None = None
     #: True if the state shown first is an equilibrium.
     at_rest: bool = False
+    #: Its numbers, with error bars where these are known.
+    equilibrium: events.Equilibrium | None = None
 
 
 @dataclass(frozen=True)
@@ -95,6 +101,7 @@ def page_of_body(
     positions: NDArray[np.float64] | None = None,
     moment: events.Moment | None = None,
     at_rest: bool = False,
+    equilibrium: events.Equilibrium | None = None,
     text: str = "",
     sentence: str = "",
 ) -> LivePage:
@@ -113,6 +120,8 @@ def page_of_body(
         Poses of objects then, and contacts; default: the unloaded poses.
     at_rest
         True if those positions are an equilibrium.
+    equilibrium
+        Its numbers, which the page lists.
     text
         The design as text; default: as :meth:`voxsoft.design.Design.to_toml` writes it.
     sentence
@@ -143,6 +152,11 @@ def page_of_body(
         # The frame that the page shows first has number 0 there.
         moment=moment and msgspec.structs.replace(moment, frame=0, fields=False),
         at_rest=at_rest and positions is not None,
+        # The page looks for no error bars.
+        equilibrium=equilibrium
+        and msgspec.structs.replace(
+            equilibrium, topology=body.topology, frame=0, looking=False, askable=False
+        ),
     )
     scene = scene_of(body).pack(msgspec.json.encode(notes).decode(), positions)
     return LivePage(_filled(scene, design.name))
@@ -180,12 +194,13 @@ def page_of(shown: Design | Result) -> LivePage:
         positions=shown.positions,
         moment=moment,
         at_rest=shown.status == "ok",
+        equilibrium=equilibrium_of(shown, body.topology, 0, _NO_BARS),
         sentence=sentence,
     )
 
 
 def export_page(source: FilePath, target: FilePath, assignments: Sequence[str] = ()) -> None:
-    """Write the page of a design file or a run folder.
+    """Write the page of a design file, or of the state at rest in a run folder.
 
     Raises
     ------
@@ -200,7 +215,11 @@ def export_page(source: FilePath, target: FilePath, assignments: Sequence[str] =
     file = origin / "design.toml" if origin.is_dir() else origin
     if not file.is_file():
         raise FileError(str(origin), "is no run folder: it holds no design.toml")
-    page_of(load(file, assignments=assignments)).save(target)
+    design = load(file, assignments=assignments)
+    state = RunState(origin) if origin.is_dir() else None
+    body = StudioBody.of(design, rev=1, topology=1) if state else None
+    result = known_equilibrium(body, [state]) if body and state else None
+    page_of(result or design).save(target)
 
 
 def _filled(scene: bytes, name: str) -> str:
