@@ -175,17 +175,17 @@ def test_a_page_of_a_result_lists_its_numbers(tmp_path):
     assert found["t"] == "equilibrium"
     # The page shows that state as its first frame, and looks for no error bars itself.
     assert (found["frame"], found["looking"], found["askable"]) == (0, False, False)
-    told = {each["name"]: each["displacement"] for each in found["probes"]}
-    assert told.keys() == result.probes.keys()
+    moved_by = {each["name"]: each["displacement"] for each in found["probes"]}
+    assert moved_by.keys() == result.probes.keys()
     for name, moved in result.probes.items():
-        assert told[name] == pytest.approx(list(moved))
+        assert moved_by[name] == pytest.approx(list(moved))
     # A run folder has the state of the run, and its page the numbers.
     write_run(result, tmp_path / "run")
     export_page(tmp_path / "run", tmp_path / "run.html")
     again = notes_of((tmp_path / "run.html").read_text())
     assert again["at_rest"]
     for probe in again["equilibrium"]["probes"]:
-        assert probe["displacement"] == pytest.approx(told[probe["name"]], abs=1e-9)
+        assert probe["displacement"] == pytest.approx(moved_by[probe["name"]], abs=1e-9)
 
 
 def test_a_page_of_a_design_has_no_numbers_of_a_result():
