@@ -372,8 +372,8 @@ class _Search:
         self._seconds += result.seconds
         if _path(result) != _path(self.own.result):
             return (
-                "the design's own solver goes another way than the run: its settings belong "
-                "in the design"
+                "the run had a solver or a control of its own, and the design, which is solved "
+                "on other voxels, has another: write the settings of the run into its [solver]"
             )
         return _Run(result, size) if result.status == "ok" else result.message
 

@@ -67,9 +67,7 @@ export function JobCard(props: { job: JobEvent }) {
       </div>
       <Progress label={`Progress of ${job.name || job.kind}`} done={job.done} total={job.total} />
       <div className="job-line" aria-live="polite">
-        <span>
-          {job.done} of {job.total} {job.of}
-        </span>
+        <span>{job.total > 0 ? `${job.done} of ${job.total} ${job.of}` : "getting ready"}</span>
         <span>
           {formatSpan(job.elapsed)}
           {job.state === "running" && job.left !== null && `, about ${formatSpan(job.left)} left`}

@@ -64,7 +64,10 @@ function History(props: { current: CurrentStudy }) {
           <i className="key-line" /> best so far
         </span>
         <span className="plot-key-static">
-          <i className="key-hollow" /> failed or not allowed
+          <i className="key-hollow" /> failed
+        </span>
+        <span className="plot-key-static">
+          <i className="key-hollow is-broken" /> not allowed
         </span>
       </div>
       <PointChart
