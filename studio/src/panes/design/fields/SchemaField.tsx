@@ -11,6 +11,7 @@ import { PromoteTool } from "../parameters/PromoteTool";
 import { isNumber, promoted } from "../parameters/promote";
 import { CavityField } from "./CavityField";
 import { Glyph } from "./Glyph";
+import { numberNames, profileAt } from "./pairs";
 import {
   type Control,
   controlOf,
@@ -309,11 +310,11 @@ function nudge(path: Path, value: unknown, count: number): void {
 }
 
 function TupleField(props: LeafProps & { items: readonly Schema[] }) {
-  const { root, diagnostics } = useForm();
+  const { root, source, diagnostics } = useForm();
   const [refusals, setRefusals] = useState<Readonly<Record<number, string | null>>>({});
   const values = Array.isArray(props.value) ? props.value : [];
   const note = Object.values(refusals).find((one) => one) ?? props.problem;
-  const axes = props.items.length === 2 ? ["from", "to"] : ["x", "y", "z"];
+  const axes = numberNames(source, props.path, props.items.length);
   return (
     <div className="field tuple" title={props.help}>
       <span className="field-label">{props.label}</span>
@@ -350,10 +351,21 @@ function TupleField(props: LeafProps & { items: readonly Schema[] }) {
 }
 
 function ListField(props: SchemaFieldProps & { item: Schema }) {
-  const { root, names } = useForm();
+  const { root, names, source } = useForm();
   const values = Array.isArray(props.value) ? props.value : [];
+  const profile = profileAt(source, props.path);
   return (
     <Nested label={props.label} help={props.help} onRemove={props.onRemove}>
+      {profile && (
+        <div className="field tuple profile-head" aria-hidden="true">
+          <span />
+          <div className="field-value">
+            {profile.map((name) => (
+              <span key={name}>{name}</span>
+            ))}
+          </div>
+        </div>
+      )}
       {values.map((value, i) => (
         // biome-ignore lint/suspicious/noArrayIndexKey: entries have no other name than their place
         <div className="list-entry" key={i}>
