@@ -69,6 +69,18 @@ def test_new_writes_a_commented_design_that_checks(template):
     assert printed("check", "mine.toml")["valid"]
 
 
+@pytest.mark.parametrize("feature", ["bellows", "chamber-row", "finger", "fold"])
+def test_a_new_design_begins_with_a_feature(feature):
+    assert call("new", "mine", "--feature", feature).exit_code == 0
+    assert printed("check", "mine.toml")["valid"]
+
+
+def test_a_new_design_has_one_beginning():
+    outcome = call("new", "mine", "--feature", "fold", "--template", "beam")
+    assert outcome.exit_code == 2
+    assert "starts from one of the two" in outcome.stderr
+
+
 def test_new_keeps_existing_files():
     assert call("new", "mine").exit_code == 0
     Path("mine.toml").write_text("kept")

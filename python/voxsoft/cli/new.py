@@ -14,11 +14,13 @@ from voxsoft.cli.output import plain, say
 def new(
     name: Annotated[str, typer.Argument(help="Name of the design; NAME.toml is written.")],
     template: Annotated[
-        str,
+        str | None,
         typer.Option(
-            "--template", "-t", help="Start from: beam, cylinder, finger, pneunet or sphere."
+            "--template",
+            "-t",
+            help="Start from: beam, cylinder (the default), finger, pneunet or sphere.",
         ),
-    ] = "cylinder",
+    ] = None,
     feature: Annotated[
         str,
         typer.Option(
@@ -33,6 +35,9 @@ def new(
     from voxsoft import files
     from voxsoft.design import families
 
+    if template and feature:
+        raise typer.BadParameter("starts from one of the two", param_hint="--template, --feature")
+    template = template or "cylinder"
     if template not in families.FAMILIES:
         known = ", ".join(families.FAMILIES)
         raise typer.BadParameter(f"{template!r} is not one of {known}", param_hint="--template")

@@ -198,6 +198,7 @@ class TestDesign:
         tab.page.get_by_label("Open a design, a mesh").set_input_files(file)
         tab.find("document-name").get_by_text("mine").wait_for()
         tab.page.get_by_role("button", name="Undo (Ctrl+Z)").click()
+        tab.find("toast").get_by_role("button", name="Back to sphere").click()
         has_text(tab, 'name = "sphere"')
 
 

@@ -89,5 +89,6 @@ def test_edited_work_is_not_replaced_without_a_question(design, own_server):
     design.find("discard").click()
     design.find("document-name").get_by_text("sphere.toml").wait_for()
     design.page.get_by_role("button", name="Undo (Ctrl+Z)").click()
+    design.find("toast").get_by_role("button", name="Back to beam.toml").click()
     design.find("document-name").get_by_text("beam.toml").wait_for()
     assert design.errors == []
