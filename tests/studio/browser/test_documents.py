@@ -43,13 +43,14 @@ def test_a_path_and_its_measured_curve_stay_with_their_design(serving, tmp_path,
         begin(tab, "beam")
         tab.find("document-name").get_by_text("beam.toml").wait_for()
         tab.find("path-curve").wait_for(state="detached")
+        assert tab.find("path-table").count() == 0
         pane.get_by_text("No path yet").wait_for()
         assert not pane.get_by_label("To", exact=True).input_value().startswith("5 ")
-        # The own one has the curve again, until it is changed.
+        # The own one has both curves again, until it is changed.
         reopen(tab, "finger.toml")
         tab.find("path-curve").wait_for()
         assert tab.find("past-note").count() == 0
-        assert tab.find("path-misfit").count() == 0
+        tab.find("path-misfit").wait_for()
         tab.page.get_by_test_id("mode-design").click()
         length = tab.find("parameter-length").get_by_role("textbox", name="length")
         length.fill("50 mm")
