@@ -2,6 +2,8 @@
 
 import pytest
 
+from voxsoft.design import families
+
 pytestmark = pytest.mark.browser
 
 HIGH = """
@@ -110,6 +112,26 @@ def test_a_section_that_is_no_list_leaves_the_form_standing(serving, tmp_path, o
         tab.find("faults").wait_for()
         tab.find("design-form").get_by_label("Add a part", exact=True).wait_for()
         assert "stopped working" not in tab.page.content()
+        assert tab.errors == []
+    finally:
+        server.stop()
+
+
+@pytest.mark.long
+def test_a_wall_that_whole_voxels_round_says_so_at_its_field(serving, tmp_path, open_tab):
+    server = serving(tmp_path, families.family_text("pneunet"), "pneunet.toml")
+    try:
+        tab = open_tab(server.address, mode="design", symbols=False)
+        tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+        assert tab.find("grid-note-wall").count() == 0
+        wall = tab.find("parameter-wall").get_by_role("textbox", name="wall")
+        wall.fill("3.75 mm")
+        wall.press("Enter")
+        note = tab.find("grid-note-wall")
+        note.get_by_text("3.75 mm is 1.5 voxels: whole ones hold 2.5 mm or 5 mm.").wait_for()
+        note.get_by_role("button", name="Voxels of 1.25 mm").click()
+        note.wait_for(state="detached")
+        tab.find("pane-body").get_by_text("1.25 mm").wait_for()
         assert tab.errors == []
     finally:
         server.stop()

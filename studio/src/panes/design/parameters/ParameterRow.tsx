@@ -14,6 +14,7 @@ import { Glyph } from "../fields/Glyph";
 import { Menu, type MenuPlace } from "../fields/Menu";
 import { useForm } from "../form";
 import { remove } from "../removing/remove";
+import { GridNote } from "./GridNote";
 import { lock, useLocked } from "./locks";
 import { ParameterDetails } from "./ParameterDetails";
 import { valuePath } from "./parameterPath";
@@ -137,6 +138,7 @@ export function ParameterRow(props: { parameter: Parameter }) {
           ]}
         />
       )}
+      <GridNote parameter={parameter} />
       {details && <ParameterDetails parameter={parameter} onDone={() => setDetails(false)} />}
     </div>
   );
