@@ -372,8 +372,8 @@ class _Search:
         self._seconds += result.seconds
         if _path(result) != _path(self.own.result):
             return (
-                "the run had a solver or a control of its own, and the design, which is solved "
-                "on other voxels, has another: write the settings of the run into its [solver]"
+                "the design is solved with other settings than the run had: write those of the "
+                "run into its [solver]"
             )
         return _Run(result, size) if result.status == "ok" else result.message
 
