@@ -36,7 +36,7 @@ def broken_by_all(
         low, high = (_written(end, constraint) for end in (min(known), max(known)))
         span = low if low == high else f"{low} to {high}"
         what = (
-            f"no design is allowed: it is {span} in all of {len(solved):,}, "
+            f"no design is allowed: it is {span} in all of {len(known):,}, "
             f"{_bounds(constraint)} is allowed"
         )
         yield Diagnostic("warning", f"constraints.{name}", what, "change the bound, or the ranges")

@@ -1,5 +1,9 @@
 import { describe, expect, it } from "vitest";
-import { brokenCount, commonVoxel } from "../../../src/panes/design/parameters/onGrid";
+import {
+  brokenCount,
+  commonVoxel,
+  namesOfShapes,
+} from "../../../src/panes/design/parameters/onGrid";
 
 describe("a length on voxels", () => {
   it("is whole, also where binary numbers are not", () => {
@@ -10,6 +14,22 @@ describe("a length on voxels", () => {
   it("is broken", () => {
     expect(brokenCount(0.00375, 0.0025)).toBeCloseTo(1.5, 9);
     expect(brokenCount(-0.00375, 0.0025)).toBeCloseTo(1.5, 9);
+  });
+});
+
+describe("lengths of shapes", () => {
+  it("are those of their formulas, at any depth, and no way of a clamp", () => {
+    const source = {
+      parameters: {
+        wall: { value: "3 mm" },
+        gap: "1 mm",
+        whole: { value: "= 2*wall + gap" },
+        lift: { value: "7 mm" },
+      },
+      shapes: { body: { kind: "box", size: ["= whole", "10 mm", "10 mm"] } },
+      clamps: [{ motion: { displacement: [0, 0, "= lift"] } }],
+    };
+    expect([...namesOfShapes(source)].sort()).toEqual(["gap", "wall", "whole"]);
   });
 });
 

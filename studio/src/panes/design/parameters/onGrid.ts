@@ -7,6 +7,23 @@ const FINEST = 0.25;
 /** Relative rounding of a length. */
 const ROUNDING = 1e-6;
 
+/** Names of parameters that shapes depend on, also by the formulas of other parameters. */
+export function namesOfShapes(source: Readonly<Record<string, unknown>>): ReadonlySet<string> {
+  const parameters = (source.parameters as Record<string, unknown> | undefined) ?? {};
+  const found = new Set<string>();
+  const look = (value: unknown): void => {
+    if (typeof value === "string") {
+      for (const [name] of value.startsWith("=") ? value.matchAll(/[A-Za-z_]\w*/g) : []) {
+        if (found.has(name) || !(name in parameters)) continue;
+        found.add(name);
+        look(parameters[name]);
+      }
+    } else if (typeof value === "object" && value !== null) Object.values(value).forEach(look);
+  };
+  look([source.shapes, source.parts]);
+  return found;
+}
+
 /** Number of voxels along a length; null where it is a whole one. */
 export function brokenCount(length: number, voxel: number): number | null {
   const count = Math.abs(length) / voxel;
